@@ -1,0 +1,1 @@
+"""Triage: sends a new bug report to the check that fits it."""

@@ -1,0 +1,1 @@
+"""Bug reports of the field: gathered, labelled, published as ids and labels."""

@@ -1,0 +1,18 @@
+"""Conditions as written in a file, before anybody knows on whose machine they hold."""
+
+import msgspec
+
+
+class Condition(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """One branch that must be taken for a statement to count.
+
+    language: `cmake`, `cpp`, `python`, `manifest` or `launch`.
+    text: the test. For cmake the arguments of if(), variables expanded where known, one space between them; for cpp the
+    expression of #if (`#ifdef X` is written `defined(X)`); for a manifest its condition attribute; for python
+    `try` (an except that covers ImportError), `TYPE_CHECKING`, or the source of the test.
+    negated: True in the else branch.
+    """
+
+    language: str
+    text: str
+    negated: bool = False

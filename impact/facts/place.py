@@ -1,0 +1,42 @@
+"""Where something stands in a file, and the comment that silences a rule there."""
+
+import msgspec
+
+
+class Place(msgspec.Struct, frozen=True, array_like=True, gc=False, order=True):
+    """A position in one file. Lines and columns count from 1; columns count characters, 0 means the whole line."""
+
+    line: int
+    column: int = 0
+
+
+class Problem(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A part of a file that could not be read: where, and in one clause why."""
+
+    line: int
+    message: str
+
+
+class Allow(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A `rosimpact: allow(rule, rule)` comment. It holds for its own line and, alone on a line, for the next one."""
+
+    line: int
+    rules: tuple[str, ...]
+    own_line: bool
+
+
+class Reference(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A mention of another package, or of a file, executable or plugin in one.
+
+    kind: `package` (`$(find p)`, get_package_share_directory), `executable` (node of a launch file, `rosrun`, `ros2 run`),
+    `file` (a launch or data file inside `package`), `plugin` (class name), `command` (shell).
+    package: its name, empty when only `name` is known. name: executable, file, class or command, empty for `package`.
+    conditional: stands under if/unless/try, so it may never run.
+    """
+
+    kind: str
+    package: str
+    name: str
+    line: int
+    column: int = 0
+    conditional: bool = False

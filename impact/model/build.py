@@ -1,0 +1,146 @@
+"""The CMake of one package, interpreted across files: what is found, built, linked, generated, installed, exported."""
+
+import msgspec
+
+from ..facts.condition import Condition
+
+
+class At(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A place in the workspace: path relative to its root, line, column (from 1; column 0 is the whole line)."""
+
+    path: str
+    line: int
+    column: int = 0
+
+
+class Found(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A package looked for by CMake.
+
+    how: `find_package`, `catkin` (a component of find_package(catkin)), `ament_auto` (declared dependencies found by
+    ament_auto_find_build_dependencies), `pkg_check_modules`, `find_library`, `find_path`, `find_program`.
+    version: as asked for, empty when not; components: of find_package, catkin excepted (each is its own Found).
+    conditions: everything the call stands under, outermost first. at is the argument's own place.
+    """
+
+    name: str
+    how: str
+    at: At
+    required: bool = False
+    quiet: bool = False
+    version: str = ""
+    exact: bool = False
+    components: tuple[tuple[str, At], ...] = ()
+    optional_components: tuple[str, ...] = ()
+    prefix: str = ""
+    conditions: tuple[Condition, ...] = ()
+
+
+class Link(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """One item given to a target. how: `link` (target_link_libraries), `ament` (ament_target_dependencies),
+    `include` (target_include_directories), `order` (add_dependencies), `interfaces` (rosidl_target_interfaces).
+    item: as written with variables expanded; an unset `X_LIBRARIES`, `X_INCLUDE_DIRS`, `X_EXPORTED_TARGETS`, `X_TARGETS`
+    stays as `${X_LIBRARIES}` so that what it stands for can still be told. visibility: PUBLIC, PRIVATE, INTERFACE or empty.
+    """
+
+    item: str
+    how: str
+    at: At
+    visibility: str = ""
+    conditions: tuple[Condition, ...] = ()
+
+
+class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Something CMake builds.
+
+    kind: executable, library, interface (INTERFACE library), module, test (add_gtest, ament_add_gtest, rostest ...),
+    custom (add_custom_target), generated (rosidl_generate_interfaces, generate_messages, generate_parameter_library,
+    generate_dynamic_reconfigure_options ...), imported, alias.
+    sources: paths relative to the workspace root when they can be told, else as written.
+    """
+
+    name: str
+    kind: str
+    at: At
+    sources: tuple[str, ...] = ()
+    links: tuple[Link, ...] = ()
+    definitions: tuple[str, ...] = ()
+    standard: int = 0
+    output_name: str = ""
+    alias_of: str = ""
+    conditions: tuple[Condition, ...] = ()
+
+
+class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """An install rule. kind: targets, files, programs, directory, python (catkin_python_setup,
+    ament_python_install_package), export. items: paths relative to the workspace root, or target names.
+    patterns: of PATTERN/REGEX/FILES_MATCHING; excluded patterns start with `!`."""
+
+    kind: str
+    items: tuple[str, ...]
+    destination: str
+    at: At
+    patterns: tuple[str, ...] = ()
+    conditions: tuple[Condition, ...] = ()
+
+
+class Exported(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Something the package promises its dependants.
+
+    how: ament_export_dependencies, ament_export_include_directories, ament_export_libraries, ament_export_targets,
+    catkin_depends, system_depends (DEPENDS), include_dirs, libraries, cfg_extras, plugin_description, component
+    (rclcpp_components: item is the class).
+    """
+
+    item: str
+    how: str
+    at: At
+    conditions: tuple[Condition, ...] = ()
+
+
+class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """One generator call: files relative to the workspace root, packages it depends on, the CMake target it makes.
+    how: rosidl, catkin (add_*_files plus generate_messages), reconfigure, parameters (generate_parameter_library),
+    protobuf."""
+
+    how: str
+    target: str
+    files: tuple[str, ...]
+    dependencies: tuple[tuple[str, At], ...]
+    at: At
+    conditions: tuple[Condition, ...] = ()
+
+
+class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
+    or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
+    for variable, context is the command it is read in."""
+
+    kind: str
+    name: str
+    at: At
+    context: str = ""
+    conditions: tuple[Condition, ...] = ()
+
+
+class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What the CMake of a package says. `minimum`: cmake_minimum_required's version and place. standard: the highest C++
+    standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), 0 when none, with its place.
+    message_files: (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told.
+    files: the CMake files read, relative to the root."""
+
+    project: str = ""
+    minimum: tuple[str, At] | None = None
+    standard: tuple[int, At] | None = None
+    standard_default_only: bool = False
+    found: tuple[Found, ...] = ()
+    targets: tuple[BuildTarget, ...] = ()
+    installs: tuple[Install, ...] = ()
+    exports: tuple[Exported, ...] = ()
+    generated: tuple[GeneratedInterfaces, ...] = ()
+    uses: tuple[Use, ...] = ()
+    include_dirs: tuple[tuple[str, At], ...] = ()
+    links: tuple[Link, ...] = ()
+    catkin_package: At | None = None
+    ament_package: At | None = None
+    unresolved: tuple[tuple[At, str], ...] = ()
+    files: tuple[str, ...] = ()

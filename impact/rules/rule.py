@@ -1,0 +1,93 @@
+"""What a rule is, what it yields, and how rules are found."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+SEVERITIES = ("note", "warning", "error")
+
+
+class Edit(NamedTuple):
+    """A replacement in one file, by byte offsets; start == end inserts."""
+
+    path: str
+    start: int
+    end: int
+    text: str
+
+
+class Hit(NamedTuple):
+    """What a rule yields for one target. check.py merges equal hits of several targets into one Finding.
+
+    at: anything with path, line, column. message: one clause, code in backticks. help: the cure, or empty.
+    severity: empty for the rule's own. fix: edits that cure it (kept only when every target asked for yields the same).
+    """
+
+    at: object
+    subject: str
+    message: str
+    help: str = ""
+    package: str = ""
+    severity: str = ""
+    fix: tuple[Edit, ...] = ()
+
+
+class Finding(NamedTuple):
+    """A finding as reported, see docs/findings.md. message_by_target is filled where the message differs by target."""
+
+    rule: str
+    severity: str
+    package: str
+    path: str
+    line: int
+    column: int
+    subject: str
+    targets: tuple[str, ...]
+    message: str
+    help: str = ""
+    new: bool = True
+    fingerprint: str = ""
+    fix: tuple[Edit, ...] = ()
+
+
+class Rule(NamedTuple):
+    """A registered rule: its name, family (folder), severity, whether it is a preview, its function, its documentation."""
+
+    name: str
+    family: str
+    severity: str
+    preview: bool
+    per_target: bool
+    run: Callable[..., Iterator[Hit]]
+    documentation: str
+
+
+_RULES: dict[str, Rule] = {}
+
+
+def rule(*, severity: str, preview: bool = False, per_target: bool = True):
+    """Registers the decorated generator as a rule. It is called as f(workspace, target), or f(workspace) when it does not
+    depend on a target, or f(workspace, base) in the interfaces family. The name is the module's, with dashes."""
+
+    def register(function):
+        parts = function.__module__.split(".")
+        module = importlib.import_module(function.__module__)
+        name = parts[-1].replace("_", "-")
+        _RULES[name] = Rule(name, parts[-2], severity, preview, per_target, function, module.__doc__ or "")
+        return function
+
+    return register
+
+
+def all_rules() -> dict[str, Rule]:
+    """Every rule by name, importing the families on first use."""
+    package = importlib.import_module(__package__)
+    for family in pkgutil.iter_modules(package.__path__, package.__name__ + "."):
+        if family.ispkg:
+            folder = importlib.import_module(family.name)
+            for module in pkgutil.iter_modules(folder.__path__, folder.__name__ + "."):
+                importlib.import_module(module.name)
+    return dict(sorted(_RULES.items()))

@@ -1,0 +1,97 @@
+"""Target: what another developer has. Answers which version, does a key resolve, what library, who provides."""
+
+from typing import NamedTuple
+
+
+class Provider(NamedTuple):
+    """Who offers a header, CMake package, Python module or executable.
+
+    kind: `ros` (a released package; `name` is the package) or `system` (`name` is a rosdep key, `package` the Debian one).
+    sure: False when it was told by convention (first path part) rather than by a file list.
+    """
+
+    kind: str
+    name: str
+    package: str = ""
+    sure: bool = True
+
+
+class Resolution(NamedTuple):
+    """A rosdep key on a platform: the manager (apt, pip, ...) and what it installs (empty tuple: nothing needed there)."""
+
+    manager: str
+    packages: tuple[str, ...]
+
+
+class ReleasedDependency(NamedTuple):
+    """One dependency of a released package, as its package.xml of that day has it (conditions already evaluated)."""
+
+    name: str
+    kind: str
+    bounds: tuple[tuple[str, str], ...]
+
+
+class Change(NamedTuple):
+    """One known upstream change that is in force on a target.
+
+    kind: header-removed, header-renamed, package-removed, package-renamed, api-removed, api-renamed, api-changed,
+    cmake-removed, msg-field, msg-removed, python-removed, ...
+    state: `removed` (gone on this target), `deprecated` (still there), `absent` (the new spelling is not there yet).
+    version: version of the package on the target, empty when unknown. since: first distro or version with `new`.
+    """
+
+    kind: str
+    package: str
+    old: str
+    new: str
+    state: str
+    version: str
+    since: str
+    source: str
+
+
+class Target:
+    """One machine, real or described. Interface only; see distro.py, capture.py for how one is made.
+
+    Attributes: name, distro (`humble`), ros (1 or 2), date (ISO day), platform (`ubuntu jammy`), python (minor version),
+    notes (what was adjusted, such as a date moved to the first release), approximate (True before the first sync tag),
+    knows_manifests (released manifests of this distro at this date are known).
+    """
+
+    name: str
+    distro: str
+    ros: int
+    date: str
+    platform: str
+    python: int
+    notes: tuple[str, ...]
+    approximate: bool
+    knows_manifests: bool
+
+    def version(self, package: str) -> str | None:
+        """Version of a released ROS package on this target (`2.0.1`), None when it is not there."""
+        raise NotImplementedError
+
+    def ever_released(self, package: str) -> bool:
+        """True when any distro at any date has released a package of this name."""
+        raise NotImplementedError
+
+    def dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+        """What the released package declares, None when its manifest is not known."""
+        raise NotImplementedError
+
+    def resolve(self, key: str) -> Resolution | None:
+        """The rosdep rule for a key on this platform, None when there is none."""
+        raise NotImplementedError
+
+    def known_key(self, key: str) -> bool:
+        """True when rosdep has, or had, a key of this name for any platform."""
+        raise NotImplementedError
+
+    def library(self, name: str) -> str | None:
+        """Version of a platform library by the name of platform_versions.yaml (opencv, boost, cmake, gcc, python3 ...)."""
+        raise NotImplementedError
+
+    def changes(self) -> tuple[Change, ...]:
+        """Known upstream changes that are in force here, deprecations included."""
+        raise NotImplementedError

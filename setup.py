@@ -1,0 +1,12 @@
+"""Maps the top-level rooms to `rosimpact.<room>`; everything else is in pyproject.toml."""
+
+from setuptools import find_packages, setup
+
+ROOMS = ("impact", "corpus", "classifier")
+
+setup(
+    packages=[f"rosimpact.{name}" for name in find_packages(include=[*ROOMS, *(f"{room}.*" for room in ROOMS)])],
+    package_dir={f"rosimpact.{room}": room for room in ROOMS},
+    package_data={f"rosimpact.{room}": ["py.typed"] for room in ROOMS}
+    | {"rosimpact.impact.targets": ["data/*"], "rosimpact.impact.report": ["*.html", "*.json"]},
+)
