@@ -1,9 +1,18 @@
-"""C and C++ sources to facts: includes with their preprocessor conditions, and the names that are used."""
+"""C and C++ sources to facts: includes with their preprocessor conditions, and the names that are used.
+
+Reading is lexical. Comments and literals are blanked without moving an offset, conditional directives cut the rest
+into segments, and names are collected per segment. Nothing is expanded: what a macro hides is hidden here too.
+"""
+
+import re
+import sys
+from bisect import bisect_right
+from itertools import accumulate
 
 import msgspec
 
 from .condition import Condition
-from .place import Problem
+from .place import Problem, Reference
 
 
 class Include(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -32,6 +41,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """includes in order; qualified: distinct qualified names; words: distinct bare identifiers (not keywords) with at
     least four characters, space-joined and sorted (positions are found again in the bytes when a finding needs them);
     defined: macros and include guards the file defines; using: namespaces named by `using namespace` and `using a::b`.
+    exports: classes given to pluginlib and rclcpp_components macros, as written without spaces; references: packages
+    and files named by literals (`package://`, getPath, get_package_share_directory); main: defines a main function.
     """
 
     includes: tuple[Include, ...]
@@ -40,3 +51,331 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     defined: tuple[str, ...] = ()
     using: tuple[str, ...] = ()
     problems: tuple[Problem, ...] = ()
+    exports: tuple[str, ...] = ()
+    references: tuple[Reference, ...] = ()
+    main: bool = False
+
+
+# Conditions beyond these are one unknown condition: hostile input must not cost quadratic memory.
+DEEPEST = 48
+MOST_BRANCHES = 48
+UNTOLD = Condition("cpp", "<too many conditions>")
+
+_KEYWORD_TEXT = """
+    alignas alignof asm auto bool break case catch char char8_t char16_t char32_t class co_await co_return co_yield
+    concept const const_cast consteval constexpr constinit continue decltype default delete do double dynamic_cast else
+    enum explicit export extern false float for friend goto if inline int long mutable namespace new noexcept nullptr
+    operator private protected public register reinterpret_cast requires restrict return short signed sizeof static
+    static_assert static_cast struct switch template this thread_local throw true try typedef typeid typename union
+    unsigned using virtual void volatile wchar_t while define undef final override
+"""
+KEYWORDS = frozenset(_KEYWORD_TEXT.split())
+
+# Every alternative starts with a literal, so that the search skips plain code at the speed of a character set.
+_HIDDEN = re.compile(
+    r"""
+      //[^\n]*(?:(?<=\\)\n[^\n]*)*                                        # comment, continued by a backslash
+    | /\*[^*]*(?:\*(?!/)[^*]*)*(?P<end>\*/)?                              # comment; no end is a problem
+    | "(?<=R")(?:(?<![A-Za-z0-9_]R")|(?<=[uUL8]R"))(?P<raw>[^\s()\\"]{0,16})\((?s:.*?)(?:\)(?P=raw)"|\Z)
+    | "(?:[^"\\\n]+|\\[\s\S])*"?
+    | '(?:(?<=[0-9a-fA-F]')(?<!u8')(?<!case')(?=[0-9a-fA-F])              # digit separator
+        | (?:[^'\\\n]+|\\[\s\S])*'?)
+    | \#[ \t]*(?:include(?:_next)?|import)\b(?:[ \t]|\\\n|/\*[^*\n]*\*/)*
+        (?:<(?P<angled>[^>\n]*)>|"(?P<quoted>[^"\n]*)"|(?P<computed>[A-Za-z_]\w*))
+    | \#[ \t]*(?:error|warning|pragma|line|ident)\b[^\n]*(?:(?<=\\)\n[^\n]*)*
+    """,
+    re.VERBOSE,
+)
+_NOT_NEWLINE = re.compile(r"[^\n]+")
+_DIRECTIVE = re.compile(
+    r"#[ \t]*(ifdef|ifndef|if|elifdef|elifndef|elif|else|endif|define)\b([^\n]*(?:(?<=\\)\n[^\n]*)*)"
+)
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+_IDENTIFIER = re.compile(r"[^\W\d]\w*")
+_WORDS = re.compile(r"\w+(?:\s*::\s*\w+)*")
+_COLONS = re.compile(r"::")
+_TAIL = re.compile(r"\s*::\s*([^\W\d]\w*)((?:\s*::\s*[^\W\d]\w*)*)")
+_HEAD_BACKWARDS = re.compile(r"\s*(\w*[^\W\d])(?!\w)")
+_USING = re.compile(r"using\s+(?:namespace\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;")
+_MAIN = re.compile(r"main\s*\(")
+_BEFORE_MAIN = re.compile(r"\b(?:int|auto|void)\s+(?:\w+\s+)?$")
+_EXPORT = re.compile(
+    r"(?P<macro>PLUGINLIB_(?:EXPORT|REGISTER|DECLARE)_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODE(?:_\w+)?"
+    r"|CLASS_LOADER_REGISTER_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODES)\s*\((?P<arguments>[^;{}]{0,500}?)\)"
+)
+_PACKAGE_URL = re.compile(r'"package://([A-Za-z]\w*)(?:/([^"\n]*))?"')
+_PACKAGE_CALL = re.compile(
+    r"(?:package::getPath|get_package_share_directory|get_package_prefix|get_package_share_path)\s*\(\s*(\")"
+)
+_PACKAGE_LITERAL = re.compile(r'"([A-Za-z]\w*)"\s*[,)]')
+_SPACE = re.compile(r"\s+")
+
+
+def _decode(data: bytes) -> str:
+    """The text of a source, one line break form, undecodable bytes as one replacement character each or so."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        text = data.decode("utf-16", "replace")
+    else:
+        text = data.decode("utf-8-sig", "replace")
+    if "\r" in text:
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
+    return text
+
+
+class _Blocks:
+    """The stack of open #if blocks; gives the conditions in force."""
+
+    def __init__(self) -> None:
+        self.open: list[tuple[list[Condition], Condition | None]] = []
+        self.kept: dict[tuple[Condition, ...], tuple[Condition, ...]] = {}
+
+    def conditions(self) -> tuple[Condition, ...]:
+        result: list[Condition] = []
+        for earlier, own in self.open[:DEEPEST]:
+            if len(earlier) > MOST_BRANCHES:
+                result.append(UNTOLD)
+            else:
+                result += earlier
+            if own is not None:
+                result.append(own)
+        if len(self.open) > DEEPEST:
+            result.append(UNTOLD)
+        key = tuple(result)
+        return self.kept.setdefault(key, key)
+
+    def enter(self, own: Condition | None) -> None:
+        self.open.append(([], own))
+
+    def turn(self, own: Condition | None) -> None:
+        """Into the next branch: the one left is negated. own is None for #else."""
+        earlier, last = self.open.pop()
+        if last is not None and len(earlier) <= MOST_BRANCHES:
+            earlier.append(Condition("cpp", last.text, not last.negated))
+        self.open.append((earlier, own))
+
+    def leave(self) -> None:
+        self.open.pop()
+
+
+def _condition(keyword: str, text: str) -> Condition:
+    text = sys.intern(text)
+    if keyword in ("ifdef", "elifdef", "ifndef", "elifndef"):
+        name = _IDENTIFIER.match(text)
+        text = sys.intern(f"defined({name.group() if name else text})")
+        return Condition("cpp", text, keyword in ("ifndef", "elifndef"))
+    return Condition("cpp", text)
+
+
+def _guard(directives: list[tuple[int, int, str, str]], visible: str) -> tuple[int, int] | None:
+    """Indices of the #ifndef and #endif of a guard around the whole file, None when there is none."""
+    first = next((index for index, directive in enumerate(directives) if directive[2] != "define"), None)
+    if first is None or first + 1 >= len(directives):
+        return None
+    _, _, keyword, text = directives[first]
+    if keyword == "ifndef":
+        name = _IDENTIFIER.match(text)
+    elif keyword == "if":
+        name = re.fullmatch(r"!\s*defined\s*\(?\s*([^\W\d]\w*)\s*\)?", text)
+    else:
+        return None
+    defined = _IDENTIFIER.match(directives[first + 1][3]) if directives[first + 1][2] == "define" else None
+    if name is None or defined is None or name.group(name.lastindex or 0) != defined.group():
+        return None
+    depth = 0
+    for index in range(first, len(directives)):
+        keyword = directives[index][2]
+        if keyword in ("if", "ifdef", "ifndef"):
+            depth += 1
+        elif keyword == "endif":
+            depth -= 1
+            if depth == 0:
+                return (first, index) if not visible[directives[index][1] :].strip() else None
+        elif keyword != "define" and depth == 1:
+            return None
+    return None
+
+
+def extract(data: bytes) -> CppFile:
+    """The facts of one C or C++ file. Never raises; what could not be read is in `problems`.
+
+    Undecodable bytes become replacement characters, so columns are those of an editor that shows them so.
+    """
+    text = _decode(data)
+    problems: list[Problem] = []
+    # Where each line starts, for places.
+    starts = [0, *accumulate(len(line) + 1 for line in text.split("\n"))]
+
+    def place(offset: int) -> tuple[int, int]:
+        line = bisect_right(starts, offset)
+        return line, offset - starts[line - 1] + 1
+
+    found: list[tuple[int, bool, str]] = []
+
+    def blank(match: re.Match[str]) -> str:
+        hidden = match.group()
+        first = hidden[0]
+        if first == "#":
+            group = match.lastgroup
+            if group == "angled" or group == "quoted":
+                found.append((match.start(group), group == "angled", match.group(group)))
+            elif group == "computed":
+                problems.append(Problem(place(match.start())[0], f"`#include {match.group(group)}` names a macro"))
+        elif first == '"':
+            # Quotes stay, so that a literal can be told from a comment.
+            if "\n" not in hidden and len(hidden) > 1:
+                return '"' + " " * (len(hidden) - 2) + '"'
+        elif first == "'":
+            if hidden == "'":
+                return hidden
+        elif hidden[1] == "*" and match.lastgroup is None:
+            problems.append(Problem(place(match.start())[0], "comment without an end"))
+        if "\n" in hidden:
+            return _NOT_NEWLINE.sub(_spaces, hidden)
+        return " " * len(hidden)
+
+    visible = _HIDDEN.sub(blank, text)
+
+    directives: list[tuple[int, int, str, str]] = []
+    for match in _DIRECTIVE.finditer(visible):
+        start = match.start()
+        line_start = visible.rfind("\n", 0, start) + 1
+        if visible[line_start:start].strip():
+            continue
+        body = match.group(2)
+        if '"' in body:
+            body = _COMMENT.sub(" ", text[match.start(2) : match.end(2)])
+        directives.append((start, match.end(), match.group(1), " ".join(body.replace("\\\n", " ").split())))
+
+    guard = _guard(directives, visible)
+    blocks = _Blocks()
+    segments: list[tuple[int, int, tuple[Condition, ...]]] = []
+    defined: dict[str, None] = {}
+    position = 0
+    conditions: tuple[Condition, ...] = ()
+    for index, (start, end, keyword, body) in enumerate(directives):
+        if keyword == "define":
+            name = _IDENTIFIER.match(body)
+            if name:
+                defined[sys.intern(name.group())] = None
+            continue
+        segments.append((position, start, conditions))
+        position = end
+        if guard and index in guard:
+            continue
+        if keyword in ("if", "ifdef", "ifndef"):
+            blocks.enter(_condition(keyword, body))
+        elif not blocks.open:
+            problems.append(Problem(place(start)[0], f"`#{keyword}` without `#if`"))
+        elif keyword == "endif":
+            blocks.leave()
+        else:
+            blocks.turn(None if keyword == "else" else _condition(keyword, body))
+        conditions = blocks.conditions()
+    segments.append((position, len(visible), conditions))
+    if blocks.open:
+        problems.append(Problem(len(starts) - 1, f"{len(blocks.open)} `#if` without `#endif`"))
+
+    words: set[str] = set()
+    qualified: list[Name] = []
+    seen: dict[tuple[Condition, ...], set[str]] = {}
+    backwards = visible[::-1]
+    length = len(visible)
+    for start, end, conditions in segments:
+        words.update(_WORDS.findall(visible, start, end))
+        known = seen.setdefault(conditions, set())
+        position = start
+        for colons in _COLONS.finditer(visible, start, end):
+            at = colons.start()
+            if at < position:
+                continue
+            tail = _TAIL.match(visible, at, end)
+            if tail is None:
+                position = at + 2
+                continue
+            position = tail.end()
+            head = _HEAD_BACKWARDS.match(backwards, length - at, length - start)
+            name_at = tail.start(1)
+            name = tail.group(1) + tail.group(2)
+            if head is not None:
+                spelt = head.group(1)[::-1]
+                # `return ::close(fd)`, `API ::ns::Type f()`: the colons start the name.
+                apart = head.start(1) > head.start() and visible[at + 2] not in " \n\t"
+                if spelt in KEYWORDS or (apart and spelt.isupper()):
+                    if not tail.group(2):
+                        words.add(name)
+                        continue
+                else:
+                    name = spelt + "::" + name
+                    name_at = length - head.end(1)
+            elif not tail.group(2) or backwards[length - at : length - at + 1] in (">", ")"):
+                continue
+            if "::" not in name:
+                continue
+            if not name.isascii() or " " in name or "\n" in name or "\t" in name:
+                name = _SPACE.sub("", name)
+            if name not in known:
+                name = sys.intern(name)
+                known.add(name)
+                qualified.append(Name(name, *place(name_at), conditions))
+
+    return CppFile(
+        includes=_includes(found, segments, place),
+        qualified=tuple(qualified),
+        words=" ".join(
+            sorted(w for w in words if len(w) > 3 and ":" not in w and not w[0].isdigit() and w not in KEYWORDS)
+        ),
+        defined=tuple(defined),
+        using=tuple(dict.fromkeys(_SPACE.sub("", match.group(1)) for match in _USING.finditer(visible))),
+        problems=tuple(sorted(problems, key=_by_line)),
+        exports=_exports(visible),
+        references=_references(text, visible, place),
+        main=any(
+            _BEFORE_MAIN.search(visible, max(0, match.start() - 60), match.start()) for match in _MAIN.finditer(visible)
+        ),
+    )
+
+
+def _by_line(problem: Problem) -> int:
+    return problem.line
+
+
+def _spaces(match: re.Match[str]) -> str:
+    return " " * (match.end() - match.start())
+
+
+def _includes(found, segments, place) -> tuple[Include, ...]:
+    includes: list[Include] = []
+    begins = [start for start, _, _ in segments]
+    for offset, angled, path in found:
+        conditions = segments[bisect_right(begins, offset) - 1][2]
+        line, column = place(offset)
+        includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, conditions))
+    return tuple(includes)
+
+
+def _exports(visible: str) -> tuple[str, ...]:
+    """Classes registered as plugins or components: the first argument, or the later one of ROS 1's old macros."""
+    exports: dict[str, None] = {}
+    for match in _EXPORT.finditer(visible):
+        line_start = visible.rfind("\n", 0, match.start()) + 1
+        if visible[line_start : match.start()].lstrip().startswith("#"):
+            continue
+        arguments = [_SPACE.sub("", argument) for argument in match.group("arguments").split(",")]
+        macro = match.group("macro")
+        index = 2 if macro.startswith("PLUGINLIB_DECLARE") else 1 if macro.startswith("PLUGINLIB_REGISTER") else 0
+        if index < len(arguments) and arguments[index].strip("()"):
+            exports[arguments[index].strip("()").removeprefix("::")] = None
+    return tuple(exports)
+
+
+def _references(text: str, visible: str, place) -> tuple[Reference, ...]:
+    references: list[Reference] = []
+    for match in _PACKAGE_URL.finditer(text):
+        if visible[match.start()] == '"':
+            kind = "file" if match.group(2) else "package"
+            references.append(Reference(kind, match.group(1), match.group(2) or "", *place(match.start(1))))
+    for match in _PACKAGE_CALL.finditer(visible):
+        literal = _PACKAGE_LITERAL.match(text, match.start(1))
+        if literal:
+            references.append(Reference("package", literal.group(1), "", *place(literal.start(1))))
+    return tuple(references)
