@@ -1,0 +1,511 @@
+"""A distro as of a day: released packages, declared dependencies, rosdep keys and platform libraries.
+
+Availability follows syncs: a package counts from the day on which a sync brought it to apt, in the version that the
+synced commit of rosdistro had. Before a distro's first known sync (tags exist from 2020-08 on) the commit's date stands
+and the target is approximate.
+"""
+
+import datetime
+import re
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+import msgspec
+
+from . import snapshot as snapshots
+from .platform import library_name, normal_platform, python_minor
+from .rosdep import decode_rule, resolve_rule, split_platform
+from .snapshot import KINDS, Snapshot
+from .target import Change, ReleasedDependency, Resolution, Target
+
+
+class TargetError(Exception):
+    """A target that cannot be made; the message says what is known instead."""
+
+
+class DistroFacts(msgspec.Struct, frozen=True):
+    """What data/distros.yaml says of a distro. Days are ISO; end_of_life None means none is set."""
+
+    released: str
+    end_of_life: str | None
+    lts: bool
+    platform: str
+    libraries_from: dict[str, str] = {}
+
+
+class Known(NamedTuple):
+    """One distro of the snapshot in brief: first_day and last_day bound the releases known."""
+
+    name: str
+    ros: int
+    python: int
+    status: str
+    released: str
+    end_of_life: str
+    lts: bool
+    first_day: str
+    last_day: str
+
+
+class Library(NamedTuple):
+    """A platform library's version and the id of the source that states it."""
+
+    version: str
+    source: str
+
+
+class _Released(NamedTuple):
+    version: str
+    repository: int
+    ts: int
+
+
+_WITH_KINDS = ("build_export", "buildtool_export", "exec")
+_DAY = datetime.timedelta(days=1)
+
+
+def known_distros(data: Snapshot | None = None) -> tuple[Known, ...]:
+    """All distros of the snapshot, oldest first."""
+    data = data or snapshots.default()
+    facts = dict(data.rows("SELECT name, facts FROM distro_fact"))
+    found = []
+    for name, ros, python, status, first, last in data.rows(
+        "SELECT name, ros, python, status, (SELECT min(ts) FROM release WHERE distro = d.id),"
+        " (SELECT max(ts) FROM release WHERE distro = d.id) FROM distro d"
+    ):
+        fact = msgspec.json.decode(facts[name], type=DistroFacts) if name in facts else None
+        found.append(
+            Known(
+                name,
+                ros,
+                python,
+                status,
+                fact.released if fact else _day_of(first) if first else "",
+                (fact.end_of_life or "") if fact else "",
+                fact.lts if fact else False,
+                _day_of(first) if first else "",
+                _day_of(last) if last else "",
+            )
+        )
+    return tuple(sorted(found, key=lambda known: known.released))
+
+
+def _day_of(ts: int) -> str:
+    return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
+
+
+def _end_of_day(day: str) -> int:
+    start = datetime.datetime.combine(datetime.date.fromisoformat(day), datetime.time(), datetime.timezone.utc)
+    return int((start + _DAY).timestamp()) - 1
+
+
+def _version_key(version: str) -> list[int]:
+    return [int(part) for part in re.findall(r"\d+", version)]
+
+
+class DistroTarget(Target):
+    """A distro at a date, with overrides.
+
+    distro: its name. date: ISO day, None for the newest day of the data. platform: `ubuntu jammy`, None for the
+    distro's main one at that date. versions: versions that differ on this machine, by ROS package or platform library;
+    an empty text means "not installed". name: what to call the target, by default as it was asked for.
+
+    Raises TargetError for an unknown distro or a malformed date. Further attributes: end_of_life (ISO day, empty when
+    none is set), lts, python_major, data_date.
+    """
+
+    def __init__(
+        self,
+        distro: str,
+        date: str | None = None,
+        platform: str | None = None,
+        versions: Mapping[str, str] | None = None,
+        name: str | None = None,
+        data: Snapshot | None = None,
+    ):
+        self._data = data or snapshots.default()
+        self._asked = (distro, date, platform, dict(versions or {}), name)
+        row = self._data.row("SELECT id, ros, python FROM distro WHERE name = ?", (distro,))
+        if row is None:
+            raise TargetError(_unknown_distro(distro, self._data))
+        self._id, self.ros, self.python_major = row
+        self.distro = distro
+        self.data_date = self._data.date
+        self._overrides = {key: str(value) for key, value in (versions or {}).items()}
+        self._facts = _facts(distro, self._data)
+        self.end_of_life = (self._facts.end_of_life or "") if self._facts else ""
+        self.lts = bool(self._facts and self._facts.lts)
+        notes: list[str] = []
+        self.date = self._place_date(date, notes)
+        self._cut, self.approximate = self._availability()
+        self._rule_ts = _end_of_day(self.date)
+        self.platform = self._choose_platform(platform)
+        self.notes = tuple(notes)
+        self.name = name or (distro if date is None else f"{distro}@{date}")
+        self._library_cells: dict[str, Library] | None = None
+        self._released: dict[str, _Released] | None = None
+        self._names: frozenset[str] | None = None
+        self._declared: dict[str, tuple[ReleasedDependency, ...] | None] = {}
+        self._keys: dict[str, Resolution | None] = {}
+        self._known: frozenset[str] | None = None
+        self._ever: frozenset[str] | None = None
+        self._by_debian: dict[str, tuple[str, ...]] | None = None
+        self._with_manifests: bool | None = None
+        self._changes: tuple[Change, ...] | None = None
+
+    def __reduce__(self):
+        # A target travels to worker processes as its recipe; each opens the shared cache file itself.
+        distro, date, platform, versions, name = self._asked
+        return DistroTarget, (distro, date, platform, versions, name)
+
+    def _place_date(self, date: str | None, notes: list[str]) -> str:
+        if date is None:
+            return self.data_date
+        try:
+            day = datetime.date.fromisoformat(str(date)).isoformat()
+        except ValueError:
+            raise TargetError(f"`{date}` is no date: write it as in `{self.distro}@2024-03-01`") from None
+        first = self._data.row("SELECT min(ts) FROM release WHERE distro = ?", (self._id,))
+        if first and first[0] is not None and day < _day_of(first[0]):
+            moved = _day_of(first[0])
+            notes.append(f"{self.distro} had no release on {day}: moved to its first, {moved}")
+            return moved
+        if day > self.data_date:
+            notes.append(f"the distro data ends on {self.data_date}: {day} is answered as of then")
+        return day
+
+    def _availability(self) -> tuple[int, bool]:
+        """The rosdistro commit time that stands on this day, and whether that is approximate."""
+        sync = self._data.row(
+            "SELECT cut FROM sync WHERE distro = ? AND day <= ? ORDER BY day DESC LIMIT 1", (self._id, self.date)
+        )
+        return (sync[0], False) if sync else (_end_of_day(self.date), True)
+
+    def _choose_platform(self, platform: str | None) -> str:
+        if platform:
+            return normal_platform(platform)
+        row = self._data.row(
+            "SELECT names FROM platforms WHERE distro = ? AND ts <= ? ORDER BY ts DESC LIMIT 1",
+            (self._id, _end_of_day(self.date)),
+        ) or self._data.row("SELECT names FROM platforms WHERE distro = ? ORDER BY ts LIMIT 1", (self._id,))
+        supported = row[0].split(",") if row and row[0] else []
+        if self._facts and (self._facts.platform in supported or not supported):
+            return self._facts.platform
+        return supported[0] if supported else ""
+
+    # Released packages
+
+    def _packages(self) -> dict[str, _Released]:
+        if self._released is None:
+            found: dict[str, _Released] = {}
+            for repository, ts, version, names in self._data.rows(
+                "SELECT r.repository, max(r.ts), r.version, p.names FROM release r"
+                " LEFT JOIN packages p ON p.id = r.packages WHERE r.distro = ? AND r.ts <= ? GROUP BY r.repository",
+                (self._id, self._cut),
+            ):
+                if version is None:
+                    continue
+                for name in names.split(" "):
+                    old = found.get(name)
+                    # Two repositories may name one package for a while; the later release is the one in force.
+                    if old is None or old.ts < ts:
+                        found[name] = _Released(version, repository, ts)
+            self._released = found
+        return self._released
+
+    def version(self, package: str) -> str | None:
+        if package in self._overrides and self.ever_released(package):
+            return self._overrides[package] or None
+        released = self._packages().get(package)
+        return _upstream(released.version) if released else None
+
+    def released_names(self) -> frozenset[str]:
+        """All packages released here, overrides included."""
+        if self._names is None:
+            names = set(self._packages())
+            for name, version in self._overrides.items():
+                if self.ever_released(name):
+                    names.add(name) if version else names.discard(name)
+            self._names = frozenset(names)
+        return self._names
+
+    def ever_released(self, package: str) -> bool:
+        if self._ever is None:
+            self._ever = frozenset(name for (name,) in self._data.rows("SELECT name FROM package"))
+        return package in self._ever
+
+    def history(self, package: str) -> tuple[tuple[str, str | None], ...]:
+        """(day, version) of every release of a package in this distro, oldest first; version None: dropped."""
+        events = []
+        for repository in self._homes(package):
+            held = False
+            for ts, version, names in self._data.rows(
+                "SELECT r.ts, r.version, p.names FROM release r LEFT JOIN packages p ON p.id = r.packages"
+                " WHERE r.distro = ? AND r.repository = ? ORDER BY r.ts",
+                (self._id, repository),
+            ):
+                here = version is not None and package in names.split(" ")
+                if here or held:
+                    events.append((ts, not here, _upstream(version) if version and here else None))
+                held = here
+        events.sort(key=lambda event: event[:2])
+        steps: list[tuple[str, str | None]] = []
+        last: tuple[int, str | None] | None = None
+        for ts, _, version in events:
+            # A move between repositories in one commit is no drop: its arrival sorts first.
+            if version is None and last and last[0] == ts and last[1] is not None:
+                continue
+            if last is None or last[1] != version:
+                steps.append((_day_of(ts), version))
+            last = (ts, version)
+        return tuple(steps)
+
+    def _homes(self, package: str) -> list[int]:
+        return [
+            repository
+            for (repository,) in self._data.rows(
+                "SELECT h.repository FROM home h JOIN package p ON p.id = h.package WHERE p.name = ? AND h.distro = ?",
+                (package, self._id),
+            )
+        ]
+
+    def since(self, package: str) -> str:
+        """ISO day of the package's first release in this distro, empty when it never was; the commit's day."""
+        steps = self.history(package)
+        return steps[0][0] if steps else ""
+
+    def repository(self, package: str) -> tuple[str, str, str] | None:
+        """(name, source URL, branch) of the repository that releases a package here; empty texts where not known."""
+        released = self._packages().get(package)
+        if released is None:
+            return None
+        row = self._data.row(
+            "SELECT n.name, u.text, s.branch FROM repository n"
+            " LEFT JOIN source s ON s.repository = n.id AND s.distro = ? AND s.ts <= ?"
+            " LEFT JOIN url u ON u.id = s.url WHERE n.id = ? ORDER BY s.ts DESC LIMIT 1",
+            (self._id, max(self._cut, released.ts), released.repository),
+        )
+        return (row[0], row[1] or "", row[2] or "") if row else None
+
+    # Declared dependencies
+
+    @property
+    def knows_manifests(self) -> bool:  # type: ignore[override]
+        if self._with_manifests is None:
+            row = self._data.row("SELECT 1 FROM manifest WHERE distro = ? LIMIT 1", (self._id,))
+            self._with_manifests = row is not None
+        return self._with_manifests
+
+    def dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+        """What the released package declares, None when no manifest of it is known in this distro.
+
+        Where this very version's manifest is not known, the nearest earlier one stands, else the nearest later one.
+        """
+        if package not in self._declared:
+            self._declared[package] = self._read_dependencies(package)
+        return self._declared[package]
+
+    def _manifest(self, package: str) -> tuple[str, str] | None:
+        version = self.version(package)
+        if version is None:
+            return None
+        rows = self._data.rows(
+            "SELECT m.version, d.entries, m.build_type FROM manifest m JOIN package p ON p.id = m.package"
+            " LEFT JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND m.distro = ?",
+            (package, self._id),
+        )
+        if not rows:
+            return None
+        wanted = _version_key(version)
+        keyed = [(_version_key(known), entries, build) for known, entries, build in rows]
+        keyed.sort(key=lambda row: row[0])
+        chosen = next((row for row in reversed(keyed) if row[0] <= wanted), keyed[0])
+        return chosen[1] or "", chosen[2] or ""
+
+    def _read_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+        manifest = self._manifest(package)
+        if manifest is None:
+            return None
+        found = []
+        for line in manifest[0].splitlines():
+            name, letters, condition, bounds = (*line.split("\t"), "", "")[:4]
+            if condition and not self.holds(condition):
+                continue
+            pairs = tuple((bound, value) for bound, _, value in (item.partition("=") for item in bounds.split()))
+            found.extend(ReleasedDependency(name, KINDS[letter], pairs) for letter in letters)
+        return tuple(found)
+
+    def build_type(self, package: str) -> str:
+        """`ament_cmake`, `ament_python`, `catkin`, `cmake` ...; empty when not known or not said."""
+        manifest = self._manifest(package)
+        return manifest[1] if manifest else ""
+
+    def holds(self, condition: str) -> bool:
+        """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
+        from catkin_pkg.condition import evaluate_condition
+
+        context = {
+            "ROS_VERSION": str(self.ros),
+            "ROS_DISTRO": self.distro,
+            "ROS_PYTHON_VERSION": str(self.python_major),
+        }
+        try:
+            return bool(evaluate_condition(condition, context))
+        except Exception:
+            return False
+
+    def closure(self, package: str, kinds: Iterable[str] = _WITH_KINDS) -> frozenset[str]:
+        """Names that come along with a released package: its dependencies of these kinds, and theirs of these kinds.
+
+        The package itself is not in it. Names that are no released package (rosdep keys) are, and end there.
+        """
+        wanted = frozenset(kinds)
+        seen: set[str] = set()
+        waiting = [package]
+        while waiting:
+            for dependency in self.dependencies(waiting.pop()) or ():
+                if dependency.kind in wanted and dependency.name not in seen:
+                    seen.add(dependency.name)
+                    waiting.append(dependency.name)
+        seen.discard(package)
+        return frozenset(seen)
+
+    # rosdep keys
+
+    def resolve(self, key: str) -> Resolution | None:
+        if key not in self._keys:
+            os_name, release = split_platform(self.platform)
+            # Some keys stand for every operating system under the name `*`.
+            self._keys[key] = self._resolve(key, os_name, release) or self._resolve(key, "*", release)
+        return self._keys[key]
+
+    def _resolve(self, key: str, os_name: str, release: str) -> Resolution | None:
+        row = self._data.row(
+            "SELECT rule FROM rule WHERE key = ? AND os = ? AND ts <= ? ORDER BY ts DESC LIMIT 1",
+            (key, os_name, self._rule_ts),
+        )
+        return resolve_rule(decode_rule(row[0]), os_name, release, self.python_major) if row else None
+
+    def known_key(self, key: str) -> bool:
+        if self._known is None:
+            self._known = frozenset(name for (name,) in self._data.rows("SELECT DISTINCT key FROM rule"))
+        return key in self._known
+
+    def keys_of(self, debian_package: str) -> tuple[str, ...]:
+        """rosdep keys that install this system package on the platform, sorted; shortest names first."""
+        if self._by_debian is None:
+            os_name, release = split_platform(self.platform)
+            found: dict[str, list[str]] = {}
+            for key, rule, _ in self._data.rows(
+                "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key", (os_name, self._rule_ts)
+            ):
+                resolution = resolve_rule(decode_rule(rule), os_name, release, self.python_major)
+                if resolution and resolution.manager in ("apt", "dnf", "yum"):
+                    for name in resolution.packages:
+                        found.setdefault(name, []).append(key)
+            self._by_debian = {name: tuple(sorted(keys, key=lambda k: (len(k), k))) for name, keys in found.items()}
+        return self._by_debian.get(debian_package, ())
+
+    def declared_ok(self, name: str) -> str:
+        """How a name in a manifest stands here.
+
+        `released` (a package of this target), `key` (rosdep resolves it here), `known-elsewhere` (a package or key of
+        another distro, day or platform), `unknown` (never seen in public).
+        """
+        if name in self.released_names():
+            return "released"
+        if self.resolve(name) is not None:
+            return "key"
+        if self.ever_released(name) or self.known_key(name):
+            return "known-elsewhere"
+        return "unknown"
+
+    # Platform libraries
+
+    def _libraries(self) -> dict[str, Library]:
+        if self._library_cells is None:
+            self._library_cells = {
+                name: Library(version, source)
+                for name, version, source in self._data.rows(
+                    "SELECT name, version, source FROM library WHERE platform = ?", (self.platform,)
+                )
+            }
+        return self._library_cells
+
+    @property
+    def python(self) -> int:  # type: ignore[override]
+        """Minor version of the Python that ROS code runs on; distros on Python 2 (python_major 2) have 7."""
+        if self.python_major == 2:
+            return 7
+        minor = python_minor(self.library("python"))
+        return minor if minor is not None else 0
+
+    def library(self, name: str) -> str | None:
+        wanted = library_name(name)
+        for spelling in (name, wanted):
+            if spelling in self._overrides:
+                return self._overrides[spelling] or None
+        instead = self._facts.libraries_from.get(wanted) if self._facts else None
+        if instead and (version := self.version(instead)):
+            return version
+        cell = self._libraries().get(wanted)
+        return cell.version if cell else None
+
+    def library_source(self, name: str) -> str:
+        """Where a platform library's version is from, in words; empty when the version is not known."""
+        cell = self._libraries().get(library_name(name))
+        if cell is None:
+            return ""
+        row = self._data.row("SELECT text FROM source_note WHERE id = ?", (cell.source,))
+        return row[0] if row else cell.source
+
+    def library_names(self) -> frozenset[str]:
+        """Platform libraries whose version is known here."""
+        return frozenset(self._libraries()) | {library_name(name) for name, value in self._overrides.items() if value}
+
+    def library_since(self, name: str) -> tuple[str, str] | None:
+        """(platform, version) of the oldest platform of the same system that has this library in the same version."""
+        wanted, version = library_name(name), self.library(name)
+        if version is None:
+            return None
+        order = _platform_order()
+        system = split_platform(self.platform)[0]
+        rows = self._data.rows("SELECT platform FROM library WHERE name = ? AND version = ?", (wanted, version))
+        same = sorted((p for (p,) in rows if p.startswith(system + " ")), key=lambda p: order.get(p, len(order)))
+        return (same[0], version) if same else (self.platform, version)
+
+    # Known upstream changes
+
+    def changes(self) -> tuple[Change, ...]:
+        if self._changes is None:
+            from .changes import changes_in_force
+
+            found: tuple[Change, ...] = changes_in_force(self)
+            self._changes = found
+            return found
+        return self._changes
+
+
+def _platform_order() -> dict[str, int]:
+    from .platform import CODENAMES
+
+    return {name: place for place, name in enumerate(CODENAMES.values())}
+
+
+def _facts(distro: str, data: Snapshot) -> DistroFacts | None:
+    row = data.row("SELECT facts FROM distro_fact WHERE name = ?", (distro,))
+    return msgspec.json.decode(row[0], type=DistroFacts) if row else None
+
+
+def _upstream(version: str) -> str:
+    """`1.2.3-0` → `1.2.3`: the part after the dash counts the packaging."""
+    return version.partition("-")[0]
+
+
+def _unknown_distro(name: str, data: Snapshot) -> str:
+    import difflib
+
+    names = [known.name for known in known_distros(data)]
+    close = difflib.get_close_matches(name, names, 1)
+    hint = f"; did you mean `{close[0]}`?" if close else "."
+    return f"unknown distro `{name}`{hint} Known: {', '.join(names)}"

@@ -1,0 +1,293 @@
+"""The shipped snapshot of distro data: unpacked once into the user's cache, then read as SQLite.
+
+What is shipped: `data/distros.sqlite.zst` (tables below), `data/snapshot.json` (its date and content hash) and the
+reviewed fact files `data/platform_versions.yaml` and `data/distros.yaml`, which are loaded into the same database when
+it is unpacked. The unpacked file is named after the content of all three, so a new version of the data never meets an
+old file. A file that turns out broken is unpacked again; where no folder can be written the database lives in memory.
+"""
+
+import contextlib
+import hashlib
+import os
+import sqlite3
+import tempfile
+import threading
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+SCHEMA = """
+CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
+CREATE TABLE distro(id INTEGER PRIMARY KEY, name TEXT UNIQUE, ros INTEGER, python INTEGER, status TEXT);
+CREATE TABLE platforms(distro INTEGER, ts INTEGER, names TEXT, PRIMARY KEY(distro, ts)) WITHOUT ROWID;
+CREATE TABLE sync(distro INTEGER, day TEXT, cut INTEGER, PRIMARY KEY(distro, day)) WITHOUT ROWID;
+CREATE TABLE repository(id INTEGER PRIMARY KEY, name TEXT UNIQUE);
+CREATE TABLE package(id INTEGER PRIMARY KEY, name TEXT UNIQUE);
+CREATE TABLE url(id INTEGER PRIMARY KEY, text TEXT);
+CREATE TABLE packages(id INTEGER PRIMARY KEY, names TEXT);
+CREATE TABLE release(distro INTEGER, repository INTEGER, ts INTEGER, version TEXT, packages INTEGER,
+    PRIMARY KEY(distro, repository, ts)) WITHOUT ROWID;
+CREATE TABLE home(package INTEGER, distro INTEGER, repository INTEGER,
+    PRIMARY KEY(package, distro, repository)) WITHOUT ROWID;
+CREATE TABLE source(distro INTEGER, repository INTEGER, ts INTEGER, url INTEGER, branch TEXT, status TEXT,
+    PRIMARY KEY(distro, repository, ts)) WITHOUT ROWID;
+CREATE TABLE manifest(distro INTEGER, package INTEGER, version TEXT, dependencies INTEGER, build_type TEXT,
+    PRIMARY KEY(distro, package, version)) WITHOUT ROWID;
+CREATE TABLE dependencies(id INTEGER PRIMARY KEY, entries TEXT);
+CREATE TABLE rule(key TEXT, os TEXT, ts INTEGER, rule TEXT, PRIMARY KEY(key, os, ts)) WITHOUT ROWID;
+"""
+"""Tables of the shipped database. `ts` and `cut` are seconds since 1970 (UTC) of a commit in rosdistro.
+
+release: what a repository released from that moment on; version NULL: nothing any more.
+packages: names, space separated. home: where a package was ever released.
+sync: on `day` apt got the packages as released at `cut`.
+platforms: names such as `ubuntu jammy`, comma separated, main one first.
+manifest: one row where a package's declared dependencies changed with a version. dependencies.entries: one line for
+each, tab separated: name, kinds (letters of KINDS), condition, bounds (`version_gte=1.2 version_lt=2`).
+rule: the rosdep rule of a key for an operating system as JSON; NULL: dropped.
+"""
+
+FACT_SCHEMA = """
+CREATE TABLE library(platform TEXT, name TEXT, version TEXT, source TEXT, PRIMARY KEY(platform, name)) WITHOUT ROWID;
+CREATE TABLE source_note(id TEXT PRIMARY KEY, text TEXT) WITHOUT ROWID;
+CREATE TABLE distro_fact(name TEXT PRIMARY KEY, facts TEXT) WITHOUT ROWID;
+"""
+"""Tables filled from the reviewed fact files while unpacking. distro_fact.facts is JSON (see data/distros.yaml)."""
+
+KINDS = {
+    "b": "build",
+    "e": "build_export",
+    "t": "buildtool",
+    "o": "buildtool_export",
+    "x": "exec",
+    "s": "test",
+    "d": "doc",
+    "c": "conflict",
+    "r": "replace",
+    "g": "group",
+    "m": "member_of_group",
+}
+"""One letter for each kind of dependency, as stored in dependencies.entries."""
+
+DATA = Path(__file__).parent / "data"
+CACHE_VARIABLE = "ROSIMPACT_CACHE"
+_FORMAT = 1
+
+
+class SnapshotError(Exception):
+    """The shipped snapshot cannot be read; the message says what to do."""
+
+
+class SnapshotInfo(msgspec.Struct, frozen=True):
+    """What `snapshot.json` says: newest day of the data, SHA-256 of the unpacked database, and where it came from."""
+
+    date: str
+    sha256: str
+    sources: dict[str, str] = {}
+
+
+def cache_folder(environment: Mapping[str, str] = os.environ) -> Path:
+    """The user's cache folder; `ROSIMPACT_CACHE` overrides it. Nothing is created here."""
+    chosen = environment.get(CACHE_VARIABLE)
+    if chosen:
+        return Path(chosen)
+    import platformdirs
+
+    return Path(platformdirs.user_cache_dir("rosimpact", appauthor=False))
+
+
+def shipped_info(data: Path = DATA) -> SnapshotInfo:
+    """Date and content hash of the snapshot in a data folder.
+
+    Raises SnapshotError when it is missing or damaged.
+    """
+    try:
+        return msgspec.json.decode((data / "snapshot.json").read_bytes(), type=SnapshotInfo)
+    except (OSError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{data / 'snapshot.json'}: {error}; install rosimpact again") from None
+
+
+def unpack(data: Path = DATA) -> bytes:
+    """The database as bytes, decompressed and checked against its hash, before the fact files are added."""
+    import zstandard
+
+    packed = data / "distros.sqlite.zst"
+    try:
+        raw = zstandard.ZstdDecompressor().decompress(packed.read_bytes())
+    except (OSError, zstandard.ZstdError) as error:
+        raise SnapshotError(f"{packed}: {error}; install rosimpact again") from None
+    if hashlib.sha256(raw).hexdigest() != shipped_info(data).sha256:
+        raise SnapshotError(f"{packed}: does not match snapshot.json; install rosimpact again")
+    return raw
+
+
+def _fact_files(data: Path) -> tuple[bytes, bytes]:
+    try:
+        return (data / "platform_versions.yaml").read_bytes(), (data / "distros.yaml").read_bytes()
+    except OSError as error:
+        raise SnapshotError(f"{error}; install rosimpact again") from None
+
+
+def add_facts(connection: sqlite3.Connection, platforms: bytes, distros: bytes) -> None:
+    """Loads the two reviewed fact files (YAML) into the database."""
+    import yaml
+
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    table = yaml.load(platforms, Loader=loader)
+    connection.executescript(FACT_SCHEMA)
+    connection.executemany("INSERT INTO source_note VALUES(?, ?)", table["sources"].items())
+    connection.executemany(
+        "INSERT INTO library VALUES(?, ?, ?, ?)",
+        (
+            (platform, name, str(cell["version"]), cell["source"])
+            for platform, cells in table["platforms"].items()
+            for name, cell in cells.items()
+        ),
+    )
+    facts = yaml.load(distros, Loader=loader)
+    connection.executemany(
+        "INSERT INTO distro_fact VALUES(?, ?)",
+        ((name, msgspec.json.encode(value).decode()) for name, value in facts["distros"].items()),
+    )
+    connection.commit()
+
+
+class Snapshot:
+    """Read access to the database. Open one with `default()`, or `Snapshot(folder)` for another data folder.
+
+    The file is opened at the first query. A database that breaks while it is read is unpacked again once.
+    """
+
+    def __init__(self, data: Path = DATA, cache: Path | None = None):
+        self.data = data
+        self._cache = cache
+        self._connection: sqlite3.Connection | None = None
+        self._lock = threading.Lock()
+        self._info: SnapshotInfo | None = None
+
+    @property
+    def info(self) -> SnapshotInfo:
+        if self._info is None:
+            self._info = shipped_info(self.data)
+        return self._info
+
+    @property
+    def date(self) -> str:
+        """Newest day of the data (ISO)."""
+        return self.info.date
+
+    def rows(self, sql: str, parameters: Iterable[Any] = ()) -> list[tuple]:
+        """All rows of a query. Raises SnapshotError when the data cannot be read."""
+        arguments = tuple(parameters)
+        with self._lock:
+            if self._connection is None:
+                self._connection = self._open()
+            try:
+                return self._connection.execute(sql, arguments).fetchall()
+            except sqlite3.DatabaseError:
+                self._connection.close()
+                self._connection = self._open_again()
+                return self._connection.execute(sql, arguments).fetchall()
+
+    def row(self, sql: str, parameters: Iterable[Any] = ()) -> tuple | None:
+        """The first row of a query, None when there is none."""
+        found = self.rows(sql, parameters)
+        return found[0] if found else None
+
+    def path(self) -> Path:
+        """Where the unpacked file belongs in the cache."""
+        facts = hashlib.sha256(b"\0".join(_fact_files(self.data))).hexdigest()
+        folder = self._cache or cache_folder()
+        return folder / f"distros-{_FORMAT}-{self.info.sha256[:16]}-{facts[:16]}.sqlite"
+
+    def _open(self) -> sqlite3.Connection:
+        path = self.path()
+        if path.is_file():
+            with contextlib.suppress(sqlite3.DatabaseError):
+                return _connect(path)
+        return self._open_again()
+
+    def _open_again(self) -> sqlite3.Connection:
+        raw = unpack(self.data)
+        path = self.path()
+        try:
+            _write(raw, _fact_files(self.data), path)
+            return _connect(path)
+        except (OSError, sqlite3.DatabaseError):
+            return _in_memory(raw, _fact_files(self.data))
+
+
+def _connect(path: Path) -> sqlite3.Connection:
+    """Opens a finished file; raises sqlite3.DatabaseError when it is not whole."""
+    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True, check_same_thread=False)
+    try:
+        (pages,) = connection.execute("PRAGMA page_count").fetchone()
+        (size,) = connection.execute("PRAGMA page_size").fetchone()
+        connection.execute("SELECT facts FROM distro_fact LIMIT 1").fetchone()
+        if pages * size != path.stat().st_size:
+            raise sqlite3.DatabaseError("truncated")
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _write(raw: bytes, facts: tuple[bytes, bytes], path: Path) -> None:
+    """Makes the unpacked file under another name and renames it, so that nobody ever sees half of it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(prefix=".distros-", suffix=".part", dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(raw)
+        connection = sqlite3.connect(name)
+        try:
+            # A crash leaves only a .part file, so no journal is needed.
+            connection.execute("PRAGMA journal_mode=OFF")
+            add_facts(connection, *facts)
+        finally:
+            connection.close()
+        os.replace(name, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(name)
+        raise
+    _forget_old(path)
+
+
+def _forget_old(path: Path) -> None:
+    """Removes databases of earlier versions of the data; another run may still read one, which Unix allows."""
+    for old in path.parent.glob("distros-*.sqlite"):
+        if old.name != path.name:
+            with contextlib.suppress(OSError):
+                old.unlink()
+
+
+def _in_memory(raw: bytes, facts: tuple[bytes, bytes]) -> sqlite3.Connection:
+    connection = sqlite3.connect(":memory:", check_same_thread=False)
+    deserialize = getattr(connection, "deserialize", None)  # Python 3.11 and newer
+    if deserialize is not None:
+        deserialize(raw)
+    else:
+        try:
+            with tempfile.NamedTemporaryFile(suffix=".sqlite") as file:
+                file.write(raw)
+                file.flush()
+                with contextlib.closing(sqlite3.connect(file.name)) as disk:
+                    disk.backup(connection)
+        except OSError as error:
+            raise SnapshotError(f"no folder to unpack the distro data into ({error}); set {CACHE_VARIABLE}") from None
+    add_facts(connection, *facts)
+    return connection
+
+
+_default: Snapshot | None = None
+
+
+def default() -> Snapshot:
+    """The shipped snapshot, one for each process."""
+    global _default
+    if _default is None:
+        _default = Snapshot()
+    return _default
