@@ -1,5 +1,7 @@
 """CMake sources to commands, as cmake-language(7) defines them. Meaning is given by model/build.py."""
 
+import re
+
 import msgspec
 
 from .place import Problem
@@ -32,3 +34,228 @@ class CMakeFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     commands: tuple[Command, ...]
     problems: tuple[Problem, ...] = ()
+
+
+# One token per match, with the space and the line comments before it. Every alternative that can fail is followed by
+# one that cannot, so nothing is ever tried twice. The shapes are those of CMake's own lexer (cmListFileLexer.in.l).
+_TOKEN = re.compile(
+    r"""
+    (?:[ \t\r\n] | \#(?!\[=*\[)[^\n]*)*
+    (?:
+        (?P<unquoted>
+            (?!\[=*\[) (?:[^\ \t\r\n()\#"\\$\0]+ | \\[^\n\0] | \$(?:\([A-Za-z0-9_]*\))?)
+            (?:[^\ \t\r\n()\#"\\$\0]+ | \\[^\n\0] | \$(?:\([A-Za-z0-9_]*\))?
+             | "(?:[^\s()\#"\\$]|[ \t]|\\[^\n\0]|\$(?:\([A-Za-z0-9_]*\))?)*")*
+        )
+      | (?P<open>\()
+      | (?P<close>\))
+      | "(?P<quoted>[^"\\]*(?:\\.[^"\\]*)*)"
+      | (?P<bracket>\#?\[(?P<level>=*)\[\n?)
+      | (?P<other>.)
+      | (?P<end>\Z)
+    )
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+_COMMAND_LINE = re.compile(r"^[ \t]*([A-Za-z_][A-Za-z0-9_]*)[ \t]*\(", re.MULTILINE)
+_LOGICAL = frozenset({"and", "or", "not"})
+
+# A file that needs more repairs than this is not CMake; each repair reads the rest of the file again.
+_REPAIRS = 20
+
+
+def extract(data: bytes) -> CMakeFile:
+    """Reads one CMake file. Never raises: whatever cannot be read is a problem and the rest is still parsed.
+
+    Bytes that are not UTF-8 are replaced; a command or string that is never closed ends where the next line starts
+    that looks like a command.
+    """
+    problems: list[Problem] = []
+    text = _decode(data, problems)
+    commands: list[Command] = []
+    position = 0
+    line = 1
+    for _ in range(_REPAIRS):
+        resume = _scan(text, position, line, commands, problems)
+        if resume is None:
+            break
+        line += text.count("\n", position, resume)
+        position = resume
+    else:
+        problems.append(Problem(line, "too many unclosed commands, the rest was not read"))
+    return CMakeFile(tuple(commands), tuple(problems))
+
+
+def _decode(data: bytes, problems: list[Problem]) -> str:
+    if data.startswith(b"\xef\xbb\xbf"):
+        data = data[3:]
+    elif data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        problems.append(Problem(1, "the file is UTF-16, which CMake does not read"))
+        return data.decode("utf-16", errors="replace").replace("\r\n", "\n")
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        problems.append(Problem(data.count(b"\n", 0, error.start) + 1, "a byte that is not UTF-8"))
+        text = data.decode("utf-8", errors="replace")
+    return text.replace("\r\n", "\n") if "\r\n" in text else text
+
+
+def _scan(text: str, position: int, line: int, commands: list[Command], problems: list[Problem]) -> int | None:
+    """Reads commands from position on into `commands`. Returns where to go on after a repair, None when done."""
+    match = _TOKEN.match
+    counted = position  # the lines up to here are in `line`
+    line_start = text.rfind("\n", 0, position) + 1
+    depth = 0
+    name = ""
+    name_line = name_column = 0
+    arguments: list[Argument] = []
+    pending: tuple[str, int, int, int] | None = None  # an identifier that wants its parenthesis
+    last_command_line = 0
+    while True:
+        token = match(text, position)
+        if token is None:  # cannot happen: the last alternative matches everywhere
+            return None
+        position = token.end()
+        kind = token.lastgroup
+        start = token.start(kind)  # type: ignore[arg-type]
+        if kind == "quoted":
+            start -= 1
+        elif kind == "level":
+            kind = "bracket"
+            start = token.start("bracket")
+        newlines = text.count("\n", counted, start)
+        if newlines:
+            line += newlines
+            line_start = text.rfind("\n", 0, start) + 1
+        counted = start
+        column = start - line_start + 1
+
+        if depth == 0:
+            if pending is not None and kind != "open":
+                problems.append(Problem(pending[1], f"`{_short(pending[0])}` is no command: no parenthesis follows"))
+                pending = None
+            if kind == "unquoted":
+                word = token.group("unquoted")
+                if _NAME.match(word):
+                    if last_command_line == line:
+                        problems.append(Problem(line, f"`{_short(word)}` follows a command on the same line"))
+                    pending = (word, line, column, start)
+                else:
+                    problems.append(Problem(line, f"`{_short(word)}` is no command"))
+            elif kind == "open" and pending is not None:
+                name, name_line, name_column, _ = pending
+                name = name.lower()
+                pending = None
+                depth = 1
+                arguments = []
+            elif kind == "end":
+                return None
+            elif kind == "bracket" and token.group("bracket")[0] == "#":
+                position = _bracket_end(text, token, line, problems)[1]
+            else:
+                problems.append(Problem(line, f"`{_short(token.group(kind))}` where a command was expected"))  # type: ignore[arg-type]
+                end = text.find("\n", start)
+                if end < 0:
+                    return None
+                position = end
+            continue
+
+        if kind == "unquoted":
+            arguments.append(Argument(token.group("unquoted"), "", line, column))
+        elif kind == "quoted":
+            arguments.append(Argument(token.group("quoted"), '"', line, column))
+        elif kind == "close":
+            depth -= 1
+            if depth:
+                arguments.append(Argument(")", "", line, column))
+            else:
+                commands.append(Command(name, tuple(arguments), name_line, name_column, line))
+                last_command_line = line
+        elif kind == "open":
+            depth += 1
+            arguments.append(Argument("(", "", line, column))
+        elif kind == "bracket":
+            content, position = _bracket_end(text, token, line, problems)
+            if token.group("bracket")[0] != "#":
+                arguments.append(Argument(content, "[", line, column))
+        elif kind == "other" and token.group("other") != '"':
+            problems.append(Problem(line, f"`{_short(token.group('other'))}` in the arguments of {name}()"))
+        elif kind == "other":
+            problems.append(Problem(line, f"a string in {name}() is never closed"))
+            return _close_early(text, start, line, column, name, name_line, name_column, arguments, commands)
+        else:
+            problems.append(Problem(name_line, f"{name}() is never closed"))
+            opened = _offset_after(text, name_line, start)
+            return _cut(text, opened, start, name, name_line, name_column, arguments, commands)
+
+
+def _bracket_end(text: str, token: re.Match[str], line: int, problems: list[Problem]) -> tuple[str, int]:
+    """Content of a bracket argument or comment and where it ends. An unclosed one is its first line."""
+    closing = "]" + token.group("level") + "]"
+    begin = token.end()
+    end = text.find(closing, begin)
+    if end >= 0:
+        return text[begin:end], end + len(closing)
+    problems.append(Problem(line, f"`{token.group('bracket').strip()}` is never closed"))
+    stop = text.find("\n", begin)
+    stop = len(text) if stop < 0 else stop
+    return text[begin:stop], stop
+
+
+def _close_early(
+    text: str,
+    start: int,
+    line: int,
+    column: int,
+    name: str,
+    name_line: int,
+    name_column: int,
+    arguments: list[Argument],
+    commands: list[Command],
+) -> int:
+    """Ends a string that no quote closes at its line's end, and its command with it."""
+    end = text.find("\n", start)
+    end = len(text) if end < 0 else end
+    arguments.append(Argument(text[start + 1 : end].rstrip().rstrip(")"), '"', line, column))
+    commands.append(Command(name, tuple(arguments), name_line, name_column, line))
+    following = _COMMAND_LINE.search(text, end)
+    return following.start(1) if following else len(text)
+
+
+def _offset_after(text: str, line: int, end: int) -> int:
+    """Offset of the line that follows line number `line`, or `end` when there is none."""
+    position = -1
+    for _ in range(line):
+        position = text.find("\n", position + 1)
+        if position < 0:
+            return end
+    return position + 1
+
+
+def _cut(
+    text: str,
+    begin: int,
+    end: int,
+    name: str,
+    name_line: int,
+    name_column: int,
+    arguments: list[Argument],
+    commands: list[Command],
+) -> int:
+    """Ends a command that no parenthesis closes where the next line starts that looks like a command."""
+    for following in _COMMAND_LINE.finditer(text, begin, end):
+        if following.group(1).lower() in _LOGICAL:
+            continue
+        stop = following.start(1)
+        last = text.count("\n", 0, stop) + 1
+        kept = tuple(argument for argument in arguments if argument.line < last)
+        commands.append(Command(name, kept, name_line, name_column, last - 1))
+        return stop
+    commands.append(Command(name, tuple(arguments), name_line, name_column, text.count("\n", 0, end) + 1))
+    return end
+
+
+def _short(text: str) -> str:
+    printable = "".join(letter if letter.isprintable() else "?" for letter in text[:30])
+    return printable + ("…" if len(text) > 30 else "")
