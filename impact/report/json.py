@@ -1,0 +1,81 @@
+"""The JSON report: schema 1, described by findings.schema.json beside this file and in docs/findings.md."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from ..findings import printable
+from ..rules.rule import Finding
+from .report import Coverage, Report
+
+SCHEMA = 1
+
+
+def render(report: Report) -> str:
+    """The report as JSON text that ends in a line end. Valid, with `failure` set, for a run that failed too."""
+    data: dict[str, Any] = {
+        "schema": SCHEMA,
+        "tool": {"name": "rosimpact", "version": report.version, "data": report.data},
+        "targets": [
+            {"name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform}
+            | ({"reason": target.reason} if target.reason else {})
+            | ({"notes": list(target.notes)} if target.notes else {})
+            for target in report.targets
+        ],
+        "findings": [_finding(finding) for finding in report.findings],
+        "coverage": {
+            "packages": report.coverage.packages,
+            "files": report.coverage.files,
+            "parsed": report.coverage.parsed,
+            "unresolved": dict(sorted(report.coverage.unresolved.items())),
+        },
+    }
+    for key, value in (
+        ("suppressed", len(report.suppressed)),
+        ("known", len(report.known)),
+        ("base", report.base),
+        ("failure", report.failure),
+    ):
+        if value:
+            data[key] = value
+    return json.dumps(_printable(data), ensure_ascii=False, indent=1) + "\n"
+
+
+def failure(version: str, data: str, message: str) -> str:
+    """Valid JSON for a run that failed before it had anything to report."""
+    return render(Report(version, data, (), (), Coverage(), failure=message))
+
+
+def schema() -> str:
+    """The published JSON schema as text (draft 2020-12)."""
+    return Path(__file__).with_name("findings.schema.json").read_text(encoding="utf-8")
+
+
+def _finding(finding: Finding) -> dict[str, Any]:
+    return {
+        "rule": finding.rule,
+        "severity": finding.severity,
+        "package": finding.package,
+        "path": finding.path,
+        "line": finding.line,
+        "column": finding.column,
+        "subject": finding.subject,
+        "targets": list(finding.targets),
+        "message": finding.message,
+        "help": finding.help,
+        "new": finding.new,
+        "fingerprint": finding.fingerprint,
+    }
+
+
+def _printable(value: Any) -> Any:
+    """The value with bytes that are no UTF-8 (in paths) replaced, which JSON could not carry."""
+    if isinstance(value, str):
+        return printable(value)
+    if isinstance(value, dict):
+        return {key: _printable(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_printable(item) for item in value]
+    return value

@@ -1,0 +1,250 @@
+"""The report for a person at a terminal: targets, findings by package with code excerpts, matrix, one summary line."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections import Counter, defaultdict
+from collections.abc import Mapping
+from typing import NamedTuple, TextIO
+
+from ..rules.rule import Finding
+from .report import (
+    Report,
+    ReportedTarget,
+    Shown,
+    cells,
+    count_by_severity,
+    counted,
+    coverage_text,
+    focus,
+    fresh,
+    matrix,
+    one_line,
+    safe,
+)
+
+_TAB = "    "
+_COLOURS = {"error": "1;31", "warning": "1;33", "note": "1;36", "dim": "2", "bold": "1", "good": "32", "help": "36"}
+
+
+class Style(NamedTuple):
+    """How to write. symbols: error, warning, ok, arrow, dot of matrix and separators. colours: terminal codes by role,
+    empty for none. severities: those whose findings are written out; the rest is counted. width: columns.
+    excerpts: how many findings with one message are shown with their code; further ones are listed by place."""
+
+    symbols: tuple[str, str, str, str, str] = ("✗", "!", "·", "→", "·")
+    colours: Mapping[str, str] = {}
+    severities: tuple[str, ...] = ("error", "warning")
+    width: int = 120
+    excerpts: int = 3
+
+
+ASCII_SYMBOLS = ("x", "!", ".", "->", "-")
+PLAIN = Style()
+
+
+def style_for(stream: TextIO, *, severities: tuple[str, ...] = PLAIN.severities) -> Style:
+    """The style that suits a stream: colours on a terminal unless NO_COLOR is set or TERM is dumb (FORCE_COLOR asks for
+    them elsewhere), ASCII where the encoding is not Unicode, the terminal's width."""
+    encoding = (getattr(stream, "encoding", None) or "ascii").lower().replace("-", "")
+    terminal = bool(getattr(stream, "isatty", lambda: False)())
+    coloured = terminal and os.environ.get("TERM") != "dumb"
+    if os.environ.get("FORCE_COLOR"):
+        coloured = True
+    if os.environ.get("NO_COLOR"):
+        coloured = False
+    return Style(
+        symbols=PLAIN.symbols if encoding.startswith("utf") else ASCII_SYMBOLS,
+        colours=_COLOURS if coloured else {},
+        severities=severities,
+        width=max(40, shutil.get_terminal_size((120, 40)).columns) if terminal else PLAIN.width,
+    )
+
+
+def render(report: Report, style: Style = PLAIN) -> str:
+    """The report as text that ends in a line end."""
+    lines = _targets(report, style)
+    shown = [finding for finding in fresh(report) if finding.severity in style.severities]
+    lines += _packages(report, shown, style)
+    table = _matrix(report, style)
+    if table:
+        lines += ["", *table]
+    lines += ["", _summary(report, style)]
+    return "\n".join(lines) + "\n"
+
+
+def _paint(style: Style, role: str, text: str) -> str:
+    code = style.colours.get(role)
+    return f"\x1b[{code}m{text}\x1b[0m" if code else text
+
+
+def _targets(report: Report, style: Style) -> list[str]:
+    """The first line: which targets, and why these; then what was adjusted."""
+    if not report.targets:
+        return ["targets: none"]
+    by_reason: dict[str, list[ReportedTarget]] = {}
+    for target in report.targets:
+        by_reason.setdefault(target.reason, []).append(target)
+    groups = []
+    for reason, targets in by_reason.items():
+        names = ", ".join(_described(target) for target in targets)
+        groups.append(f"{names}: {one_line(reason)}" if reason else names)
+    base = f" (new against {one_line(report.base)})" if report.base else ""
+    lines = [_paint(style, "bold", "targets ") + "; ".join(groups) + base]
+    for target in report.targets:
+        lines += [f"  {one_line(target.name)}: {one_line(note)}" for note in target.notes]
+    return lines
+
+
+def _described(target: ReportedTarget) -> str:
+    parts = [target.distro if target.distro != target.name else "", target.date, target.platform]
+    detail = ", ".join(part for part in parts if part)
+    return one_line(f"{target.name} ({detail})" if detail else target.name)
+
+
+def _packages(report: Report, findings: list[Finding], style: Style) -> list[str]:
+    """Findings grouped by package, packages in their first finding's order, errors before warnings in each."""
+    folders = {package.name: package.path for package in report.packages}
+    by_package: dict[str, list[Finding]] = defaultdict(list)
+    for finding in findings:
+        by_package[finding.package].append(finding)
+    rank = {name: index for index, name in enumerate(("error", "warning", "note"))}
+    lines: list[str] = []
+    shown: Counter[tuple[str, str]] = Counter()
+    for name, group in by_package.items():
+        title = _paint(style, "bold", one_line(name or "workspace"))
+        if folders.get(name, "") not in ("", ".", name):
+            title += _paint(style, "dim", f" {style.symbols[4]} {one_line(folders[name])}")
+        lines += ["", title]
+        more: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
+        for finding in sorted(group, key=lambda finding: rank.get(finding.severity, 3)):
+            key = (finding.rule, finding.message)
+            if shown[key] < style.excerpts:
+                shown[key] += 1
+                lines += ["", *_finding(report, finding, style)]
+            else:
+                more.setdefault((*key, finding.severity, finding.targets), []).append(finding)
+        for group in more.values():
+            lines += ["", *_repeated(report, group, style)]
+    return lines
+
+
+def _head(report: Report, finding: Finding, style: Style) -> str:
+    names = [target.name for target in report.targets]
+    where = f" {', '.join(finding.targets)}" if len(names) > 1 and finding.targets else ""
+    if where and len(finding.targets) == len(names):
+        where = " all targets"
+    label = _paint(style, finding.severity, f"{finding.severity}[{finding.rule}]")
+    return f"{label}{one_line(where)}: {one_line(finding.message)}"
+
+
+def _finding(report: Report, finding: Finding, style: Style) -> list[str]:
+    place = one_line(finding.path)
+    if finding.line:
+        place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")
+    lines = [_head(report, finding, style), f"  {_paint(style, 'dim', style.symbols[3])} {place}"]
+    excerpt = report.excerpt(finding.path, finding.line) if finding.line else []
+    _, shown = focus(finding, excerpt)
+    margin = len(str(finding.line))
+    if shown is not None and shown.text.strip():
+        text, offset, width = _clipped(shown, style.width - margin - 5)
+        lines.append(f"  {_paint(style, 'dim', f'{finding.line} |')} {text}")
+        if width:
+            caret = _paint(style, finding.severity, "^" * width)
+            lines.append(f"  {' ' * margin} {_paint(style, 'dim', '|')} {' ' * offset}{caret}")
+    if finding.help:
+        lines.append(f"  {_paint(style, 'help', 'help:')} {one_line(finding.help)}")
+    return lines
+
+
+def _clipped(shown: Shown, room: int) -> tuple[str, int, int]:
+    """(text that fits into room columns, caret offset and width in columns). Leading space goes first, then the far
+    ends of the line."""
+    before = safe(shown.text[: shown.start]).replace("\t", _TAB)
+    under = safe(shown.text[shown.start : shown.start + shown.width]).replace("\t", _TAB)
+    after = safe(shown.text[shown.start + shown.width :]).replace("\t", _TAB).rstrip()
+    if cells(before) + cells(under) + cells(after) > room:
+        before = before.lstrip()
+        under = under[:room]
+        left = max(0, room - cells(under))
+        if cells(before) > left // 2 and cells(before) + cells(after) > left:
+            keep = max(left // 2, left - cells(after)) - 3
+            before = "..." + (before[-keep:] if keep > 0 else "")
+        left = max(0, left - cells(before))
+        if cells(after) > left:
+            after = (after[: left - 3] + "...") if left > 3 else ""
+    return before + under + after, cells(before), cells(under)
+
+
+def _repeated(report: Report, findings: list[Finding], style: Style) -> list[str]:
+    """Findings whose message was shown often enough already: their places only."""
+    places = [f"{one_line(finding.path)}:{finding.line}" for finding in findings]
+    limit = max(3, style.excerpts)
+    lines = [_head(report, findings[0], style), *(f"  {style.symbols[3]} {place}" for place in places[:limit])]
+    if len(places) > limit:
+        lines.append(f"  and {counted(len(places) - limit, 'more place')}")
+    return lines
+
+
+def _matrix(report: Report, style: Style) -> list[str]:
+    """Packages by targets: how many errors and warnings. Packages without either share the last row."""
+    bad, doubtful, fine = style.symbols[:3]
+    names = [target.name for target in report.targets]
+    table = matrix(report)
+    rows: list[tuple[str, list[tuple[str, str]]]] = []
+    good = 0
+    for package, row in table.items():
+        row_cells = []
+        for name in names:
+            cell = row.get(name, {})
+            errors, warnings = cell.get("error", 0), cell.get("warning", 0)
+            if errors:
+                row_cells.append((f"{bad} {errors}", "error"))
+            elif warnings:
+                row_cells.append((f"{doubtful} {warnings}", "warning"))
+            else:
+                row_cells.append((fine, "good"))
+        if any(role != "good" for _, role in row_cells):
+            rows.append((one_line(package or "workspace"), row_cells))
+        elif package:
+            good += 1
+    if not rows or not names:
+        return []
+    if good:
+        others = "other package" if good == 1 else "other packages"
+        rows.append((f"{good:,} {others}", [(fine, "good")] * len(names)))
+    first = max(cells(label) for label, _ in rows)
+    heads = [one_line(name) for name in names]
+    lines = [" " * first + "".join(f"  {head}" for head in heads)]
+    for label, row_cells in rows:
+        line = label + " " * (first - cells(label))
+        for head, (text, role) in zip(heads, row_cells, strict=True):
+            line += "  " + _paint(style, role, text) + " " * max(0, cells(head) - cells(text))
+        lines.append(line.rstrip())
+    return lines
+
+
+def _summary(report: Report, style: Style) -> str:
+    """One line: what was found, what is hidden, what was covered, how long it took."""
+    findings = fresh(report)
+    counts = count_by_severity(findings)
+    found = [
+        _paint(style, severity, counted(number, severity))
+        + ("" if severity in style.severities else f" (shown with --{severity}s)")
+        for severity, number in counts.items()
+        if number
+    ]
+    if report.failure:
+        text = _paint(style, "error", "failed") + f": {one_line(report.failure)}"
+    elif not report.coverage.parsed and not findings:
+        text = _paint(style, "error", "nothing was analysed")
+    else:
+        text = ", ".join(found) if found else _paint(style, "good", "nothing found")
+    if report.base:
+        old = len(report.findings) - len(findings)
+        text += f", {old:,} older" if old else ""
+    hidden = [f"{len(report.suppressed):,} suppressed"] if report.suppressed else []
+    hidden += [f"{len(report.known):,} in the baseline"] if report.known else []
+    parts = [text, *hidden, coverage_text(report.coverage), f"{report.seconds:.2f} s"]
+    return f" {style.symbols[4]} ".join(parts)
