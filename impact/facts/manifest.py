@@ -1,7 +1,12 @@
-"""package.xml to facts, through catkin_pkg."""
+"""package.xml to facts: places from our own scan, the verdict on what is out of the ordinary from catkin_pkg."""
+
+from __future__ import annotations
+
+import re
 
 import msgspec
 
+from .markup import Document, Element, decode, scan
 from .place import Problem
 
 
@@ -32,7 +37,12 @@ class Export(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Manifest(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A package.xml. `build_types` holds (type, condition) pairs as in the export section; none means catkin."""
+    """A package.xml. `build_types` holds (type, condition) pairs as in the export section; none means catkin.
+
+    problems: why catkin_pkg, and with it every build tool, refuses the file. warnings: what it accepts but advises
+    against. unknown_tags: (tag, text, line) of children of <package> that the format does not know; each is a problem
+    too. member_of_group and group_depend are dependencies of the kinds `member_of_group` and `group`.
+    """
 
     name: str
     version: str
@@ -44,3 +54,281 @@ class Manifest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     metapackage: bool = False
     deprecated: bool = False
     problems: tuple[Problem, ...] = ()
+    unknown_tags: tuple[tuple[str, str, int], ...] = ()
+    warnings: tuple[Problem, ...] = ()
+
+
+# What a tag means, by REP 127 (format 1), REP 140 (format 2) and REP 149 (format 3).
+FORMAT_1 = {
+    "build_depend": ("build",),
+    "buildtool_depend": ("buildtool",),
+    "run_depend": ("build_export", "exec"),
+    "test_depend": ("test",),
+    "conflict": ("conflict",),
+    "replace": ("replace",),
+}
+FORMAT_2 = {
+    "depend": ("build", "build_export", "exec"),
+    "build_depend": ("build",),
+    "build_export_depend": ("build_export",),
+    "buildtool_depend": ("buildtool",),
+    "buildtool_export_depend": ("buildtool_export",),
+    "exec_depend": ("exec",),
+    "test_depend": ("test",),
+    "doc_depend": ("doc",),
+    "conflict": ("conflict",),
+    "replace": ("replace",),
+}
+FORMAT_3 = {**FORMAT_2, "group_depend": ("group",), "member_of_group": ("member_of_group",)}
+TAGS = {1: FORMAT_1, 2: FORMAT_2, 3: FORMAT_3}
+ANY_FORMAT = {**FORMAT_1, **FORMAT_3}
+GROUPS = frozenset({"group_depend", "member_of_group"})
+TEXT_TAGS = frozenset({"name", "version", "description", "maintainer", "license", "url", "author", "export"})
+
+BOUNDS = ("version_lt", "version_lte", "version_eq", "version_gte", "version_gt")
+DEPENDENCY_ATTRIBUTES = frozenset({*BOUNDS, "condition"})
+CONDITION_ONLY = frozenset({"condition"})
+BOUNDS_ONLY = frozenset(BOUNDS)
+TEXT_ATTRIBUTES = {
+    "version": frozenset({"compatibility"}),
+    "maintainer": frozenset({"email"}),
+    "author": frozenset({"email"}),
+    "url": frozenset({"type"}),
+    "license": frozenset({"file"}),
+}
+NO_ATTRIBUTES: frozenset[str] = frozenset()
+
+NAME = re.compile(r"[a-z][a-z0-9_-]*\Z")
+VERSION = re.compile(r"(?:0|[1-9][0-9]*)\.(?:0|[1-9][0-9]*)\.(?:0|[1-9][0-9]*)\Z")
+EMAIL = re.compile(r"[\w%+-]+(?:\.[\w%+-]+)*@[a-zA-Z0-9%-]+(?:\.[a-zA-Z0-9%-]+)*\.[a-zA-Z]{2,}\Z", re.ASCII)
+
+
+def extract(data: bytes) -> Manifest:
+    """Facts of a package.xml of format 1, 2 or 3; never raises.
+
+    Where catkin_pkg would refuse the file, `problems` says why, with lines, and the rest of the facts hold what the
+    text still tells. Conditions stay as written: whether they hold depends on the target.
+    """
+    document = scan(data)
+    root = next((i for i, e in enumerate(document.elements) if e.name == "package"), -1)
+    if root == -1:
+        problems = document.problems or (Problem(1, "has no `<package>` element"),)
+        return Manifest("", "", 1, 1, problems=problems)
+    children, exported = _children(document, root)
+    format_text = document.elements[root].get("format", "1").strip()
+    format_ = int(format_text) if format_text in ("1", "2", "3") else 0
+    tags = TAGS.get(format_, FORMAT_3)
+
+    name = _first(children, "name")
+    version = _first(children, "version")
+    dependencies: list[Dependency] = []
+    unknown: list[tuple[str, str, int]] = []
+    found: list[Problem] = []
+    empty: list[Problem] = []
+    for child in children:
+        tag = child.name
+        kinds = tags.get(tag)
+        if kinds is None:
+            if tag in TEXT_TAGS:
+                continue
+            line = document.place(child.offset)[0]
+            unknown.append((tag, child.text, line))
+            found.append(Problem(line, _unknown_tag(tag, format_, tags)))
+            kinds = ANY_FORMAT.get(tag.replace("-", "_").lower())
+            if kinds is None:
+                continue
+        line, column = document.place(child.text_offset)
+        if not child.text:
+            empty.append(Problem(line, f"`<{tag}>` names nothing"))
+            continue
+        bounds: tuple[tuple[str, str], ...] = ()
+        condition = ""
+        for attribute in child.attributes:
+            if attribute.name == "condition":
+                condition = attribute.value
+            elif attribute.name in BOUNDS:
+                bounds = (*bounds, (attribute.name, attribute.value))
+        for kind in kinds:
+            dependencies.append(Dependency(child.text, kind, tag, line, column, condition, bounds))
+
+    exports = tuple(
+        Export(e.name, {a.name: a.value for a in e.attributes}, e.text, document.place(e.offset)[0]) for e in exported
+    )
+    warnings: tuple[Problem, ...] = ()
+    if document.problems:
+        problems = document.problems + tuple(found)
+    elif not unknown and _is_plain(document.elements[root], format_, children, exported, dependencies):
+        problems = ()
+    else:
+        problems, warnings = _verdict(data, document, children, found)
+    return Manifest(
+        name.text if name is not None else "",
+        version.text if version is not None else "",
+        format_ or 3,
+        document.place(name.text_offset)[0] if name is not None else document.place(document.elements[root].offset)[0],
+        tuple(dependencies),
+        tuple((e.text, e.attributes.get("condition", "")) for e in exports if e.tag == "build_type" and e.text),
+        exports,
+        any(e.tag == "metapackage" for e in exports),
+        any(e.tag == "deprecated" for e in exports),
+        problems,
+        tuple(unknown),
+        warnings + tuple(empty),
+    )
+
+
+def _children(document: Document, root: int) -> tuple[list[Element], list[Element]]:
+    """Children of <package>, and those of its <export>. In a file that is not well-formed, where a closing tag may be
+    missing, a dependency counts at any depth."""
+    children: list[Element] = []
+    exported: list[Element] = []
+    elements = document.elements
+    broken = bool(document.problems)
+    export = -1
+    for index in range(root + 1, len(elements)):
+        element = elements[index]
+        if element.parent == root:
+            children.append(element)
+            if element.name == "export":
+                export = index
+        elif element.parent == export and export != -1:
+            exported.append(element)
+        elif broken and element.name in ANY_FORMAT:
+            children.append(element)
+    return children, exported
+
+
+def _first(children: list[Element], tag: str) -> Element | None:
+    return next((child for child in children if child.name == tag), None)
+
+
+def _unknown_tag(tag: str, format_: int, tags: dict[str, tuple[str, ...]]) -> str:
+    said = f"`<{tag}>` is no tag of manifest format {format_ or 3}"
+    if tag == "run_depend":
+        return f"{said}, which calls it `<exec_depend>`"
+    plain = tag.replace("-", "_").lower()
+    if plain in ANY_FORMAT and plain not in tags:
+        needed = 2 if plain in FORMAT_2 else 3
+        return f"{said}, it needs format {needed}"
+    if plain in tags or plain in TEXT_TAGS:
+        return f"{said}; `<{plain}>` is"
+    from difflib import get_close_matches
+
+    close = get_close_matches(plain, [*tags, *TEXT_TAGS], 1, 0.8)
+    return f"{said}; `<{close[0]}>` is" if close else said
+
+
+def _is_plain(
+    root: Element, format_: int, children: list[Element], exported: list[Element], dependencies: list[Dependency]
+) -> bool:
+    """True when a manifest is so ordinary that catkin_pkg accepts it without a word.
+
+    Importing catkin_pkg costs as much as reading hundreds of manifests here, so it is asked about the others alone.
+    """
+    if not format_ or any(a.name != "format" for a in root.attributes):
+        return False
+    count = {"name": 0, "version": 0, "description": 0, "maintainer": 0, "license": 0, "export": 0}
+    dependency_attributes = DEPENDENCY_ATTRIBUTES if format_ > 2 else BOUNDS_ONLY
+    own = ""
+    for child in children:
+        tag = child.name
+        if tag in count:
+            count[tag] += 1
+        if tag not in TEXT_TAGS:
+            allowed = CONDITION_ONLY if tag in GROUPS else dependency_attributes
+            if not child.text or any(a.name not in allowed for a in child.attributes):
+                return False
+            continue
+        if child.attributes:
+            allowed = TEXT_ATTRIBUTES.get(tag, NO_ATTRIBUTES)
+            if any(a.name not in allowed or (a.name == "file" and format_ < 3) for a in child.attributes):
+                return False
+        if tag == "name":
+            own = child.text
+            if not NAME.match(own):
+                return False
+        elif tag == "version":
+            compatibility = child.get("compatibility", "0.0.0")
+            if not VERSION.match(child.text) or not VERSION.match(compatibility):
+                return False
+        elif tag in ("maintainer", "author"):
+            email = child.get("email", "none")
+            if not child.text or (email == "none" and tag == "maintainer"):
+                return False
+            if email != "none" and not EMAIL.match(email):
+                return False
+        elif tag in ("description", "license") and not child.text:
+            return False
+    one = count["name"] == count["version"] == count["description"] == 1
+    if not one or not count["maintainer"] or not count["license"] or count["export"] > 1:
+        return False
+    if any(e.name == "metapackage" for e in exported) and (
+        {d.name for d in dependencies if d.kind == "buildtool"} != {"catkin"}
+        or any(d.kind in ("build", "test") for d in dependencies)
+    ):
+        return False
+    seen: dict[tuple[str, str], str] = {}
+    for dependency in dependencies:
+        if dependency.name == own:
+            return False
+        if seen.setdefault((dependency.name, dependency.kind), dependency.tag) != dependency.tag:
+            return False
+    if format_ == 1:
+        tested = {d.name for d in dependencies if d.kind == "test"}
+        return not any(d.name in tested for d in dependencies if d.kind in ("build", "exec"))
+    return not (
+        {d.name for d in dependencies if d.kind == "group"}
+        & {d.name for d in dependencies if d.kind == "member_of_group"}
+    )
+
+
+def _verdict(
+    data: bytes, document: Document, children: list[Element], found: list[Problem]
+) -> tuple[tuple[Problem, ...], tuple[Problem, ...]]:
+    """What catkin_pkg says about a manifest: problems and warnings, each with the line it most likely speaks of."""
+    from catkin_pkg.package import InvalidPackage, parse_package_string
+
+    warnings: list[str] = []
+    problems = list(found)
+    try:
+        parse_package_string(decode(data).lstrip("\ufeff").encode(), warnings=warnings)
+    except InvalidPackage as error:
+        for message in error.msg.splitlines():
+            message = message.strip().removeprefix("- ")
+            if message and message != "Error(s):" and not SAID_BEFORE.search(message):
+                problems.append(Problem(_line_of(message, document, children), _clause(message)))
+        if not problems:
+            problems.append(Problem(1, "catkin_pkg refuses it"))
+    except AssertionError:
+        given = document.elements[0].get("format")
+        problems.append(Problem(1, f"manifest format `{given}` is none of 1, 2 and 3"))
+    except Exception as error:  # whatever else a hostile file makes it raise is a fact about that file
+        problems.append(Problem(1, f"catkin_pkg cannot read it: {type(error).__name__}: {error}"[:200]))
+    noted = tuple(Problem(_line_of(w, document, children), _clause(w)) for w in warnings)
+    return tuple(sorted(problems, key=lambda p: p.line)), noted
+
+
+# Unknown tags have a problem each, with its line.
+SAID_BEFORE = re.compile(r"must not contain the following tags|^Please replace <|^Either update to a newer format")
+
+
+def _clause(message: str) -> str:
+    """catkin_pkg's sentence as a clause with names in backticks."""
+    message = re.sub(r"(?<!\w)[\"']([^\"']*)[\"'](?!\w)", r"`\1`", message).strip().rstrip(".")
+    return message[:1].lower() + message[1:] if message[1:2].islower() else message
+
+
+QUOTED = re.compile(r"[\"'`]([^\"'`]+)[\"'`]")
+
+
+def _line_of(message: str, document: Document, children: list[Element]) -> int:
+    """The line of the child whose text or tag a message quotes, else that of the manifest's start."""
+    for quoted in QUOTED.findall(message):
+        for child in children:
+            if child.name != "name" and (child.text == quoted or child.get("email") == quoted):
+                return document.place(child.text_offset)[0]
+    for quoted in (*QUOTED.findall(message), *message.lower().split()):
+        for child in children:
+            if child.name == quoted or child.name + "s" == quoted:
+                return document.place(child.text_offset)[0]
+    return document.place(document.elements[0].offset)[0] if document.elements else 1

@@ -1,0 +1,36 @@
+"""The comments that silence a rule: `rosimpact: allow(rule, rule)` in the comment syntax of any file type."""
+
+from __future__ import annotations
+
+import re
+
+from .place import Allow
+
+MARK = b"rosimpact:"
+# `#` and `//` open a comment that the line's end closes; `<!--` and `/*` are closed by what follows the parenthesis.
+COMMENT = re.compile(
+    rb"^(?P<before>.*?)(?:#|//|<!--|/\*|%|;|--)\s*rosimpact:\s*allow\(\s*(?P<rules>[A-Za-z0-9_\-*,\s]*?)\s*\)"
+)
+NAME = re.compile(rb"[A-Za-z0-9_*-]+")
+
+
+def allows(data: bytes) -> tuple[Allow, ...]:
+    """All such comments of a file, in order. own_line is True where nothing but the comment stands on the line."""
+    at = data.find(MARK)
+    if at == -1:
+        return ()
+    found: list[Allow] = []
+    line, counted = 1, 0
+    while at != -1:
+        start = data.rfind(b"\n", 0, at) + 1
+        end = data.find(b"\n", at)
+        end = len(data) if end == -1 else end
+        line += data.count(b"\n", counted, start)
+        counted = start
+        comment = COMMENT.match(data[start:end])
+        if comment is not None:
+            rules = tuple(name.decode("ascii") for name in NAME.findall(comment["rules"]))
+            if rules:
+                found.append(Allow(line, rules, not comment["before"].strip()))
+        at = data.find(MARK, end)
+    return tuple(found)

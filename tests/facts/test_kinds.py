@@ -1,0 +1,127 @@
+"""File names to kinds, and facts to bytes and back."""
+
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rosimpact.impact.facts.kinds import EXTRACTORS, FileFacts, decode, encode, extract, kind_of, version_of
+
+NAMES = [
+    ("package.xml", "manifest"),
+    ("src/a/package.xml", "manifest"),
+    ("src/a/package_ROS2.xml", "manifest_variant"),
+    ("src/a/package.ros1.xml", "manifest_variant"),
+    ("src/a/package.xml.ros2", "manifest_variant"),
+    ("src/a/manifest.xml", "xml"),
+    ("CMakeLists.txt", "cmake"),
+    ("cmake/FindX.cmake", "cmake"),
+    ("cmake/a-extras.cmake.in", "cmake"),
+    ("notes.txt", None),
+    ("msg/Pose.msg", "msg"),
+    ("srv/Set.srv", "srv"),
+    ("action/Dock.action", "action"),
+    ("msg/Pose.idl", "idl"),
+    ("a.h", "cpp"),
+    ("a.hpp", "cpp"),
+    ("a.tpp", "cpp"),
+    ("a.cu", "cpp"),
+    ("config.h.in", "cpp"),
+    ("config.txt.in", None),
+    ("Main.CPP", "cpp"),
+    ("a.py", "python"),
+    ("setup.py", "setup_py"),
+    ("setup.cfg", "setup_cfg"),
+    ("pyproject.toml", "pyproject"),
+    ("cfg/Tune.cfg", "script"),
+    ("scripts/run", "script"),
+    ("LICENSE", None),
+    (".gitignore", None),
+    ("launch/a.launch", "launch_xml"),
+    ("launch/a.launch.xml", "launch_xml"),
+    ("launch/a_launch.xml", "launch_xml"),
+    ("launch/a.launch.py", "python"),
+    ("launch/a.launch.yaml", "launch_yaml"),
+    ("test/a.test", "launch_xml"),
+    ("config/a.yaml", "params"),
+    ("urdf/a.urdf.xacro", "xacro"),
+    ("worlds/a.world", "xacro"),
+    ("my_plugins.xml", "plugin_xml"),
+    ("nodelet_plugins.xml", "plugin_xml"),
+    ("nodelets.xml", "plugin_xml"),
+    ("trees/a.xml", "xml"),
+    ("run.sh", "shell"),
+    ("a.rviz", None),
+    ("mesh.dae", None),
+    ("", None),
+    ("folder/", None),
+]
+
+
+@pytest.mark.parametrize(("path", "kind"), NAMES)
+def test_name_gives_kind(path, kind):
+    assert kind_of(path) == kind
+
+
+SCRIPTS = [
+    (b"#!/usr/bin/env python3\nimport os\n", "python"),
+    (b"#!/bin/bash\nrosrun a b\n", "shell"),
+    (b"#! /bin/sh -e\n", "shell"),
+    (b"gen = ParameterGenerator()\n", "python"),
+    (b"#!/usr/bin/perl\n", "script"),
+    (b"plain words", "script"),
+    (b"", "script"),
+]
+
+
+@pytest.mark.parametrize(("data", "kind"), SCRIPTS)
+def test_first_line_tells_scripts_apart(data, kind):
+    facts = extract("script", data)
+    assert facts.kind == kind
+    assert (facts.facts is None) == (kind == "script")
+    assert decode("script", encode(facts)) == facts
+
+
+@pytest.mark.parametrize("kind", sorted(set(EXTRACTORS) - {"script"}))
+def test_what_is_too_large_is_named_and_not_read(kind):
+    facts = extract(kind, b"#" * (8 * 1024 * 1024 + 1))
+    assert [p.message for p in facts.facts.problems] == ["larger than 8 MB"]
+    assert decode(kind, encode(facts)) == facts
+
+
+@pytest.mark.parametrize("kind", sorted(EXTRACTORS))
+@given(data=st.binary(max_size=300))
+def test_any_bytes_give_facts_that_survive_the_store(kind, data):
+    facts = extract(kind, data)
+    assert isinstance(facts, FileFacts)
+    assert decode(kind, encode(facts)) == facts
+
+
+@pytest.mark.parametrize("kind", ["manifest", "script"])
+@given(data=st.binary(max_size=60))
+def test_bytes_that_are_no_facts_are_refused(kind, data):
+    try:
+        facts = decode(kind, data)
+    except msgspec.DecodeError:
+        return
+    assert encode(facts)
+
+
+def test_a_failing_extractor_is_contained(monkeypatch):
+    from rosimpact.impact.facts import manifest
+
+    def fails(data):
+        raise RuntimeError("broken on purpose")
+
+    monkeypatch.setattr(manifest, "extract", fails)
+    facts = extract("manifest", b"<package/>").facts
+    assert facts.name == ""
+    assert [p.message for p in facts.problems] == ["cannot be read: RuntimeError: broken on purpose"]
+
+
+def test_allow_comments_come_with_the_facts():
+    found = extract("msg", b"int32 x  # rosimpact: allow(removed-field)\n").allows
+    assert [(a.line, a.rules, a.own_line) for a in found] == [(1, ("removed-field",), False)]
+
+
+def test_versions_differ_between_kinds():
+    assert len({version_of(kind) for kind in EXTRACTORS}) == len(EXTRACTORS)
