@@ -11,7 +11,7 @@ from hashlib import blake2b
 from typing import TYPE_CHECKING, NamedTuple
 
 from .facts.place import Allow
-from .rules.rule import SEVERITIES, Edit, Finding, Hit, Rule
+from .rules.rule import SEVERITIES, Finding, Hit, Rule
 
 if TYPE_CHECKING:
     from .config import PathSetting
@@ -429,15 +429,6 @@ def fails(findings: Iterable[Finding], fail_on: str = "error") -> bool:
         return False
     least = _RANK[fail_on]
     return any(finding.new and _RANK.get(finding.severity, 0) >= least for finding in findings)
-
-
-def edits(findings: Iterable[Finding]) -> dict[str, list[Edit]]:
-    """The edits of all fixes by path, each once, in the findings' order."""
-    by_path: dict[str, dict[Edit, None]] = {}
-    for finding in findings:
-        for edit in finding.fix:
-            by_path.setdefault(edit.path, {})[edit] = None
-    return {path: list(once) for path, once in by_path.items()}
 
 
 def printable(text: str) -> str:
