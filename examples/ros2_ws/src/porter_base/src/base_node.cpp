@@ -43,8 +43,9 @@ public:
     loader_("porter_base", "porter_base::MotorBoard"),
     broadcaster_(*this)
   {
-    board_ = loader_.createSharedInstance(declare_parameter("board", "porter_base/SimulatedBoard"));
-    const std::string device = declare_parameter("device", "/dev/ttyUSB0");
+    board_ = loader_.createSharedInstance(
+      declare_parameter<std::string>("board", "porter_base/SimulatedBoard"));
+    const auto device = declare_parameter<std::string>("device", "/dev/ttyUSB0");
     if (!board_->open(device)) {
       RCLCPP_ERROR(get_logger(), "no motor board answers on %s", device.c_str());
     }
