@@ -41,7 +41,7 @@ _INDEX_FORMAT = 1
 
 class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A file. path: relative to the tree's root, with slashes, bytes that are no UTF-8 as surrogate escapes. size: in
-    bytes."""
+    bytes, 0 where a partial clone does not hold the file."""
 
     path: str
     size: int
@@ -61,16 +61,19 @@ class TreeError(Exception):
 class Tree(Protocol):
     """What WorkingTree, GitTree and JoinedTree have in common.
 
-    label: what this tree is, for people. problems: what could not be read. skipped: folders left out on purpose.
-    aliases: folders reached through a link, with the path they lead to. repositories: folders that are the root of a
-    git repository, relative to the tree, with an absolute path for each.
+    label: what this tree is, for people. name: what its root folder is called. problems: what could not be read.
+    skipped: folders left out on purpose. aliases: folders reached through a link, with the path they lead to.
+    repositories: folders that are the root of a git repository, relative to the tree, with an absolute path for each.
     """
 
     label: str
+    name: str
     problems: list[PathProblem]
     skipped: list[PathProblem]
     aliases: dict[str, str]
-    repositories: dict[str, str]
+
+    @property
+    def repositories(self) -> dict[str, str]: ...
 
     def entries(self) -> list[Entry]:
         """Every file, sorted by path."""
@@ -167,7 +170,8 @@ class WorkingTree:
         if not os.path.isdir(self.root):
             what = "is a file, not a folder" if os.path.exists(self.root) else "does not exist"
             raise TreeError(f"`{shown(self.root)}` {what}; give the folder of a workspace or a package")
-        self.label = shown(os.path.basename(self.root) or self.root)
+        self.name = os.path.basename(self.root)
+        self.label = shown(self.name or self.root)
         self.problems: list[PathProblem] = []
         self.skipped: list[PathProblem] = []
         self.aliases: dict[str, str] = {}
@@ -525,6 +529,8 @@ class GitTree:
         self.skipped: list[PathProblem] = []
         self.aliases: dict[str, str] = {}
         self.folder = inside(folder) or ""
+        place = self.repositories[""].removesuffix("/.git")
+        self.name = posixpath.basename(self.folder or place).removesuffix(".git")
         self._top = tree.id
         self._root_path = self.folder
         self._entries: list[Entry] | None = None
@@ -640,8 +646,7 @@ class GitTree:
         try:
             size = _size(self._repo, oid)
         except (KeyError, ValueError):
-            self.problems.append(PathProblem(path, "the file's object is missing from this repository"))
-            return
+            size = 0  # a partial clone; whoever needs the bytes is told when reading
         self._blobs[path] = oid
         found.append(Entry(path, size))
 

@@ -1,0 +1,414 @@
+"""Which folders of a tree are packages, as colcon finds them, and which package a file belongs to.
+
+Source: colcon-core 0.21, colcon-recursive-crawl 0.2.3, colcon-ros 0.5, colcon-cmake 0.2.30, colcon-metadata 0.3.1,
+colcon-python-setup-py 0.2.9, colcon-defaults 0.2.9, colcon-package-selection 0.2.10. Ignore markers are the tree's
+business: what they hide is in no tree.
+
+Two differences, so that no manifest is overlooked. Colcon does not look below a plain CMake or Python package; catkin
+does, and so do we, and `hidden_by` says where colcon would stop. A folder that holds only package_ROS1.xml and
+package_ROS2.xml, to be copied by a script before the build, is a package.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import re
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import msgspec
+
+from ..facts.manifest import Manifest
+from ..tree import PathProblem, Tree, inside
+
+_FILES = frozenset(
+    ("package.xml", "CMakeLists.txt", "setup.py", "setup.cfg", "pyproject.toml", "colcon.pkg", "manifest.xml")
+)
+# Where workspaces that bring their own settings let COLCON_HOME and COLCON_DEFAULTS_FILE point, and colcon's own name.
+_DEFAULTS = (".colcon/defaults.yaml", "defaults.yaml", "colcon_defaults.yaml")
+_VARIANT = re.compile(
+    r"package[._-]?(?:[\w-]*[._-])?(?:ros|v)?[._-]?([12])\.xml$|package\.xml[._-](?:ros|v)?[._-]?([12])$", re.I
+)
+_PROJECT = re.compile(r'project\s*\(\s*("?)([a-zA-Z0-9_-]+)\1(?:\s[^)]*)?\)', re.I)
+_SETUP_NAME = re.compile(r"""(?:^|[\s,(])name\s*=\s*(?:["']([\w.-]+)["']|([A-Za-z_]\w*))""")
+_CFG_NAME = re.compile(r"(?ms)^\[metadata\][^\[]*?^name\s*[=:]\s*([\w.-]+)")
+_TOML_NAME = re.compile(r"""(?ms)^\[project\](?:(?!^\[).)*?^name\s*=\s*["']([\w.-]+)["']""")
+_SETUP_CALL = re.compile(r"\bsetup\s*\(")
+_DEPENDENCY_KEYS = ("dependencies", "build-dependencies", "run-dependencies", "test-dependencies")
+
+
+class PackagePlace(msgspec.Struct, frozen=True, gc=False):
+    """A package's folder.
+
+    path: relative to the tree, `` for its root. manifest_path: its package.xml, or the variant that stands in for it
+    (the one for ROS 2 where there is one), empty for a package without manifest.
+    name: as colcon calls it; the folder's name where nothing tells. kind: `ros`, or `cmake` and `python` for packages
+    without manifest, or the type that colcon.pkg or colcon.meta sets.
+    variants: (ROS generation, path) of package_ROS1.xml and the like beside the manifest. nested: manifests below,
+    which are no packages. repository: the git repository the folder lies in, relative to the tree, None without one.
+    hidden_by: name of the package without manifest around it, below which colcon, unlike catkin, does not look.
+    extra_dependencies: names that colcon.pkg or colcon.meta adds. ignored: why colcon leaves the package out, or empty.
+    """
+
+    path: str
+    manifest_path: str
+    name: str
+    kind: str = "ros"
+    variants: tuple[tuple[int, str], ...] = ()
+    nested: tuple[str, ...] = ()
+    repository: str | None = None
+    hidden_by: str = ""
+    extra_dependencies: tuple[str, ...] = ()
+    ignored: str = ""
+
+
+class Discovery:
+    """What was found.
+
+    packages: with a manifest, sorted by path. foreign: without. ignored: found, and left out as colcon is told to.
+    duplicates: (name, path, path) of packages of one name, which colcon refuses to build. problems: configuration files
+    that could not be read.
+    """
+
+    def __init__(self, places: Iterable[PackagePlace], problems: Iterable[PathProblem] = ()):
+        every = sorted(places, key=lambda place: place.path)
+        self.packages = tuple(place for place in every if place.manifest_path and not place.ignored)
+        self.foreign = tuple(place for place in every if not place.manifest_path and not place.ignored)
+        self.ignored = tuple(place for place in every if place.ignored)
+        self.problems = tuple(problems)
+        first: dict[str, str] = {}
+        duplicates = []
+        for place in (*self.packages, *self.foreign):
+            if place.name in first:
+                duplicates.append((place.name, first[place.name], place.path))
+            first.setdefault(place.name, place.path)
+        self.duplicates = tuple(duplicates)
+        self._owners: dict[str, PackagePlace | None] = {"": None}
+        self._owners.update((place.path, place) for place in every)
+
+    @property
+    def repositories(self) -> dict[str, str | None]:
+        """The git repository of each package, by the package's path; both relative to the tree."""
+        return {place.path: place.repository for place in (*self.packages, *self.foreign)}
+
+    def owner(self, path: str) -> PackagePlace | None:
+        """The innermost package a file or folder lies in, ignored ones included; None outside of every package."""
+        owners = self._owners
+        if path in owners:
+            return owners[path]
+        folder = path
+        passed = []
+        while True:
+            folder = folder.rpartition("/")[0]
+            if folder in owners:
+                break
+            passed.append(folder)
+        owner = owners[folder]
+        for known in passed:
+            owners[known] = owner
+        return owner
+
+
+def discover(tree: Tree, manifest_of: Callable[[str], Manifest | None]) -> Discovery:
+    """Finds the packages of a tree.
+
+    manifest_of: gives the facts of a manifest by its path, None when the file could not be read. A manifest without a
+    usable name still makes a package, so that what is wrong with it can be reported.
+    """
+    return _Search(tree, manifest_of).run()
+
+
+class _Search:
+    def __init__(self, tree: Tree, manifest_of: Callable[[str], Manifest | None]):
+        self.tree = tree
+        self.manifest_of = manifest_of
+        self.problems: list[PathProblem] = []
+        self.files: dict[str, set[str]] = {}
+        for entry in tree.entries():
+            folder, _, name = entry.path.rpartition("/")
+            if name in _FILES or (name[:7].lower() == "package" and _VARIANT.match(name)):
+                self.files.setdefault(folder, set()).add(name)
+        self.repositories = tree.repositories
+        self.defaults = self._defaults()
+        self.meta = self._meta()
+
+    def run(self) -> Discovery:
+        bases, only = self._bases()
+        places: dict[str, PackagePlace] = {}
+        foreign: dict[str, PackagePlace] = {}
+        nested: dict[str, list[str]] = {}
+        real_paths: set[str] = set()
+        blocked: set[str] = set()
+        # parents sort before their children; folders reached through a link come last, the real place has precedence
+        order = sorted(self.files, key=lambda folder: (self._alias(folder) is not None, folder))
+        for folder in order:
+            names = self.files[folder]
+            above = self._above(folder, places)
+            if above is not None:
+                if "package.xml" in names:
+                    nested.setdefault(above, []).append(_join(folder, "package.xml"))
+                continue
+            if not (_crawled(folder, bases) or folder in only):
+                continue
+            real = self._alias(folder) or folder
+            if real in real_paths:
+                continue
+            stop = self._above(folder, foreign)
+            place = self._with_manifest(folder, names, "" if stop is None else foreign[stop].name)
+            if place is not None:
+                places[folder] = place
+                real_paths.add(real)
+            elif stop is None and self._above(folder, blocked) is None:
+                if "manifest.xml" in names:
+                    blocked.add(folder)  # rosbuild's; colcon leaves such a folder alone
+                    continue
+                place = self._without_manifest(folder, names)
+                if place is not None:
+                    foreign[folder] = place
+                    real_paths.add(real)
+        found = []
+        for place in (*places.values(), *foreign.values()):
+            found.append(
+                msgspec.structs.replace(
+                    place,
+                    nested=tuple(nested.get(place.path, ())),
+                    repository=self._repository(place.path),
+                    ignored=self._ignored(place.name),
+                )
+            )
+        return Discovery(found, self.problems)
+
+    def _above(self, folder: str, places: Iterable[str]) -> str | None:
+        """The nearest of the places above the folder."""
+        if not places:
+            return None
+        while folder:
+            folder = folder.rpartition("/")[0]
+            if folder in places:
+                return folder
+        return None
+
+    def _alias(self, folder: str) -> str | None:
+        """The real path of a folder that was reached through a link."""
+        for link, target in self.tree.aliases.items():
+            if folder == link:
+                return target
+            if folder.startswith(link + "/"):
+                return target + folder[len(link) :]
+        return None
+
+    def _repository(self, folder: str) -> str | None:
+        if folder in self.repositories:
+            return folder
+        return self._above(folder, self.repositories)
+
+    def _with_manifest(self, folder: str, names: set[str], hidden_by: str) -> PackagePlace | None:
+        variants = sorted(
+            (int(match[1] or match[2]), _join(folder, name)) for name in names if (match := _VARIANT.match(name))
+        )
+        if "package.xml" in names:
+            path = _join(folder, "package.xml")
+            manifest = self.manifest_of(path)
+            if manifest is None and not self.tree.exists(path):
+                return None
+        elif variants:
+            path = variants[-1][1]
+            manifest = self.manifest_of(path)
+            if manifest is None or not manifest.name:
+                return None
+        else:
+            return None
+        given = self._given(folder, names)
+        name = _text(given.get("name")) or (manifest.name if manifest else "") or _folder_name(folder, self.tree)
+        given = {**self._named(name), **given}
+        return PackagePlace(
+            path=folder,
+            manifest_path=path,
+            name=name,
+            kind=_text(given.get("type")) or "ros",
+            variants=tuple(variants),
+            hidden_by=hidden_by,
+            extra_dependencies=_extra(given),
+        )
+
+    def _without_manifest(self, folder: str, names: set[str]) -> PackagePlace | None:
+        given = self._given(folder, names)
+        kind = _text(given.get("type"))
+        name = _text(given.get("name"))
+        if kind in ("", "cmake") and "CMakeLists.txt" in names:
+            found = self._project_name(folder)
+            if found is None:
+                return None
+            kind, name = "cmake", name or found
+        elif kind in ("", "python") and "setup.py" in names:
+            found = self._python_name(folder, names)
+            if not (name or found):
+                return None
+            kind, name = "python", name or found
+        if not (kind and name):
+            return None
+        given = {**self._named(name), **given}
+        return PackagePlace(folder, "", name, kind, extra_dependencies=_extra(given))
+
+    def _project_name(self, folder: str) -> str | None:
+        """The name in project(), else the folder's; None for the file that catkin puts above all packages."""
+        text = re.sub(r"(?m)#.*$", "", self._text(_join(folder, "CMakeLists.txt")))
+        match = _PROJECT.search(text)
+        name = match[2] if match else _folder_name(folder, self.tree)
+        if name == "Project" and "catkin_workspace()" in text:
+            return None
+        return name
+
+    def _python_name(self, folder: str, names: set[str]) -> str:
+        if "setup.cfg" in names and (match := _CFG_NAME.search(self._text(_join(folder, "setup.cfg")))):
+            return match[1]
+        text = self._text(_join(folder, "setup.py"))
+        call = _SETUP_CALL.search(text)
+        if call and (match := _SETUP_NAME.search(text, call.end() - 1)):
+            if match[1]:
+                return match[1]
+            value = re.search(rf"""(?m)^{match[2]}\s*=\s*["']([\w.-]+)["']""", text)
+            if value:
+                return value[1]
+        if "pyproject.toml" in names and (match := _TOML_NAME.search(self._text(_join(folder, "pyproject.toml")))):
+            return match[1]
+        return ""
+
+    def _text(self, path: str) -> str:
+        try:
+            return self.tree.read(path).decode("utf-8", "replace")
+        except OSError as error:
+            self.problems.append(PathProblem(path, f"cannot be read: {(error.strerror or '').lower()}"))
+            return ""
+
+    def _yaml(self, path: str) -> dict[str, Any]:
+        import yaml
+
+        text = self._text(path)
+        try:
+            data = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        except (yaml.YAMLError, ValueError, RecursionError) as error:
+            reason = " ".join(str(getattr(error, "problem", None) or error).split())
+            self.problems.append(PathProblem(path, f"is no YAML ({reason}), so colcon's settings in it are not known"))
+            return {}
+        return data if isinstance(data, dict) else {}
+
+    def _defaults(self) -> dict[str, Any]:
+        """Colcon's default arguments for building, from the files a workspace keeps them in."""
+        merged: dict[str, Any] = {}
+        for path in _DEFAULTS:
+            if not self.tree.exists(path):
+                continue
+            data = self._yaml(path)
+            for verb in ("", "build"):
+                section = data.get(verb)
+                if isinstance(section, dict):
+                    merged.update((str(key), (value, path)) for key, value in section.items())
+        return merged
+
+    def _meta(self) -> tuple[dict[str, dict], dict[str, dict]]:
+        """(by package name, by path) of the workspace's colcon.meta files."""
+        by_name: dict[str, dict] = {}
+        by_path: dict[str, dict] = {}
+        wanted = [*_strings(self.defaults.get("metas", (None, ""))[0])] or ["colcon.meta"]
+        for name in wanted:
+            path = inside(name)
+            if path is None or not self.tree.exists(path):
+                continue
+            if self.tree.is_dir(path):
+                path = _join(path, "colcon.meta")
+                if not self.tree.exists(path):
+                    continue
+            data = self._yaml(path)
+            for key, into in (("names", by_name), ("paths", by_path)):
+                section = data.get(key)
+                for subject, values in section.items() if isinstance(section, dict) else ():
+                    place = str(subject) if key == "names" else inside(str(subject))
+                    if place is not None and isinstance(values, dict):
+                        into.setdefault(place, {}).update(values)
+        return by_name, by_path
+
+    def _given(self, folder: str, names: set[str]) -> dict[str, Any]:
+        """What colcon.pkg and colcon.meta say of a folder; the latter weighs more."""
+        given = self._yaml(_join(folder, "colcon.pkg")) if "colcon.pkg" in names else {}
+        return {**given, **self.meta[1].get(folder, {})}
+
+    def _named(self, name: str) -> dict[str, Any]:
+        return self.meta[0].get(name, {})
+
+    def _bases(self) -> tuple[list[str], set[str]]:
+        """(folders that are searched, folders that are only looked at themselves)."""
+        bases, path = self.defaults.get("base-paths", (None, ""))
+        only, _ = self.defaults.get("paths", (None, ""))
+        found_bases = self._folders(bases, path)
+        found_only = set(self._folders(only, path))
+        if not found_bases and not found_only:
+            return [""], set()
+        return found_bases, found_only
+
+    def _folders(self, patterns: Any, path: str) -> list[str]:
+        found = []
+        for pattern in _strings(patterns):
+            clean = inside(pattern)
+            if clean is None:
+                self.problems.append(PathProblem(path, f"`{pattern}` lies outside of the workspace and is not read"))
+            elif re.search(r"[*?\[]", clean):
+                levels = clean.count("/")
+                found += sorted({
+                    folder
+                    for each in self.files
+                    for folder in ("/".join(each.split("/")[: levels + 1]),)
+                    if folder.count("/") == levels and fnmatch.fnmatchcase(folder, clean)
+                })  # fmt: skip
+            else:
+                found.append(clean)
+        return found
+
+    def _ignored(self, name: str) -> str:
+        for key in ("packages-ignore", "packages-skip"):
+            names, path = self.defaults.get(key, (None, ""))
+            if name in _strings(names):
+                return f"{key} in {path}"
+            patterns, path = self.defaults.get(key + "-regex", (None, ""))
+            for pattern in _strings(patterns):
+                try:
+                    matches = re.match(pattern, name)
+                except re.error:
+                    matches = None
+                if matches:
+                    return f"{key}-regex in {path}"
+        return ""
+
+
+def _crawled(folder: str, bases: list[str]) -> bool:
+    """True when colcon gets to a folder from one of the base paths: it enters no hidden folder."""
+    for base in bases:
+        if folder == base:
+            return True
+        if not base or folder.startswith(base + "/"):
+            rest = folder[len(base) + 1 :] if base else folder
+            if not any(part.startswith(".") for part in rest.split("/")):
+                return True
+    return False
+
+
+def _join(folder: str, name: str) -> str:
+    return f"{folder}/{name}" if folder else name
+
+
+def _folder_name(folder: str, tree: Tree) -> str:
+    return folder.rpartition("/")[2] or tree.name
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else ""
+
+
+def _strings(value: Any) -> list[str]:
+    if isinstance(value, str):
+        return value.split()
+    return [str(item) for item in value] if isinstance(value, (list, tuple)) else []
+
+
+def _extra(given: dict[str, Any]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name for key in _DEPENDENCY_KEYS for name in _strings(given.get(key))))
