@@ -1,0 +1,23 @@
+"""The checker and its sisters: what a change breaks, and for whom."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .check import Options, check, check_workspace
+    from .report.report import Report
+    from .rules.rule import Finding
+
+__all__ = ["Finding", "Options", "Report", "check", "check_workspace"]
+
+_WHERE = {"check": "check", "check_workspace": "check", "Options": "check", "Report": "report.report", "Finding": "rules.rule"}
+
+
+def __getattr__(name: str):
+    # Imported when asked for, so that `rosimpact --help` loads nothing of this.
+    if name in _WHERE:
+        from importlib import import_module
+
+        return getattr(import_module(f".{_WHERE[name]}", __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

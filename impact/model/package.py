@@ -1,0 +1,444 @@
+"""One package, joined from the facts of its files: what it builds, what each file needs, under which condition.
+
+The join is a pure function of facts, so its outcome is remembered by the content ids it read (see workspace.py).
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from collections.abc import Callable, Iterable
+
+import msgspec
+
+from ..facts.condition import Condition
+from ..facts.cpp import CppFile
+from ..facts.interface import Interface
+from ..facts.manifest import Manifest
+from ..facts.launch import PluginClass
+from ..facts.place import Allow, Reference
+from ..facts.python import PythonFile
+from ..facts.setup import SetupFile
+from .build import At, Build
+
+# Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
+ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutorial", "tutorials", "sample", "samples"})
+TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration_tests", "benchmark", "benchmarks"})
+
+
+class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """An include that no file of the package answers. role: build, test or aside; public: stands in an installed header.
+    targets: CMake targets that compile it."""
+
+    path: str
+    at: At
+    role: str
+    public: bool
+    conditions: tuple[Condition, ...] = ()
+    targets: tuple[str, ...] = ()
+
+
+class ImportUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A Python import that no module of the package answers. role: run, test, build (setup.py) or aside."""
+
+    module: str
+    names: tuple[str, ...]
+    at: At
+    role: str
+    conditions: tuple[Condition, ...] = ()
+    lazy: bool = False
+
+
+class ReferenceUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A mention of another package in a launch file, script, URDF ... role: run, test or aside."""
+
+    reference: Reference
+    at: At
+    role: str
+
+
+class NameUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A use of a name that some rule watches. reach: everything the file includes, through files of the package."""
+
+    text: str
+    at: At
+    role: str
+    public: bool
+    language: str
+    conditions: tuple[Condition, ...] = ()
+    targets: tuple[str, ...] = ()
+
+
+class NeededHeader(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A name whose header the file does not include, itself or through files of the package.
+    only_standard: every other include that reaches the file is a standard header."""
+
+    name: str
+    at: At
+    role: str
+    reach: tuple[str, ...]
+    conditions: tuple[Condition, ...] = ()
+
+
+class InterfaceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A message, service or action definition of the package."""
+
+    name: str
+    path: str
+    definition: Interface
+
+
+class SyntaxUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Python syntax that some version refuses. needs: 2 for Python 2 only, else the minor version of Python 3."""
+
+    needs: int
+    what: str
+    at: At
+    role: str
+
+
+class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """All that rules ask of one package."""
+
+    name: str
+    path: str
+    manifest_path: str
+    manifest: Manifest
+    build_type: str
+    build: Build
+    includes: tuple[IncludeUse, ...] = ()
+    imports: tuple[ImportUse, ...] = ()
+    references: tuple[ReferenceUse, ...] = ()
+    names: tuple[NameUse, ...] = ()
+    needed_headers: tuple[NeededHeader, ...] = ()
+    interfaces: tuple[InterfaceFile, ...] = ()
+    syntax: tuple[SyntaxUse, ...] = ()
+    headers: tuple[str, ...] = ()
+    public_headers: tuple[str, ...] = ()
+    modules: tuple[str, ...] = ()
+    plugins: tuple[tuple[str, PluginClass], ...] = ()
+    registered: tuple[str, ...] = ()
+    setup: tuple[tuple[str, SetupFile], ...] = ()
+    allows: tuple[tuple[str, tuple[Allow, ...]], ...] = ()
+    problems: tuple[tuple[str, int, str], ...] = ()
+    files: tuple[str, ...] = ()
+    mains: tuple[str, ...] = ()
+    scripts: tuple[str, ...] = ()
+    source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
+
+
+def build_type_of(manifest: Manifest, ros: int) -> str:
+    """The build type that holds for a ROS generation: `catkin`, `ament_cmake`, `ament_python`, `cmake` ..."""
+    fallback = ""
+    for kind, condition in manifest.build_types:
+        text = condition.replace(" ", "").replace('"', "").replace("'", "")
+        if not text or f"$ROS_VERSION=={ros}" in text:
+            return kind
+        fallback = fallback or kind
+    if fallback:
+        return fallback
+    tools = {d.name for d in manifest.dependencies if d.kind == "buildtool"}
+    for kind in ("ament_cmake_auto", "ament_cmake", "ament_python", "catkin"):
+        if kind in tools:
+            return kind.removesuffix("_auto")
+    return "catkin" if manifest.format < 3 or "catkin" in tools else "cmake"
+
+
+def role_of_folder(path: str) -> str | None:
+    """`test` or `aside` when a folder of the path says so, else None. path is relative to the package."""
+    parts = path.lower().split("/")[:-1]
+    if any(part in TESTS or part.startswith("test_") or part.endswith("_test") for part in parts):
+        return "test"
+    name = path.rsplit("/", 1)[-1].lower()
+    if re.match(r"(test_.*|.*_test|conftest)\.\w+$", name) or name.startswith("test_"):
+        return "test"
+    if any(part in ASIDE for part in parts):
+        return "aside"
+    return None
+
+
+class Watched(msgspec.Struct, frozen=True):
+    """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
+    of the standard library the headers that offer them."""
+
+    words: frozenset[str] = frozenset()
+    qualified: frozenset[str] = frozenset()
+    python: frozenset[str] = frozenset()
+    headers_of: dict[str, tuple[str, ...]] = {}
+    version: str = ""
+
+
+def digest_of(
+    name: str,
+    path: str,
+    manifest_path: str,
+    manifest: Manifest,
+    build: Build,
+    build_type: str,
+    kinds: dict[str, str],
+    files: Iterable[str],
+    facts: Callable[[str], object],
+    read: Callable[[str], bytes],
+    watched: Watched,
+) -> Digest:
+    """Joins the facts of the package's files. files: all its paths; kinds: extractor kind by path; facts: path to
+    FileFacts; read: path to bytes, used only to find the place of a watched bare word."""
+    return _Join(name, path, manifest_path, manifest, build, build_type, kinds, tuple(files), facts, read, watched).digest()
+
+
+class _Join:
+    def __init__(self, name, path, manifest_path, manifest, build, build_type, kinds, files, facts, read, watched):
+        self.name, self.path, self.manifest_path, self.manifest = name, path, manifest_path, manifest
+        self.build, self.build_type, self.kinds, self.files = build, build_type, kinds, files
+        self.facts, self.read, self.watched = facts, read, watched
+        self.prefix = path + "/" if path else ""
+        self.cpp: dict[str, CppFile] = {}
+        self.by_name: dict[str, list[str]] = {}
+        self.resolved: dict[str, list[tuple[str, object]]] = {}
+
+    def inside(self, path: str) -> str:
+        return path[len(self.prefix) :]
+
+    def digest(self) -> Digest:
+        allows, problems = [], []
+        python: dict[str, PythonFile] = {}
+        references, plugins, registered, setup, interfaces = [], [], [], [], []
+        for path in self.files:
+            kind = self.kinds.get(path)
+            if kind is None:
+                continue
+            file = self.facts(path)
+            if file is None:
+                continue
+            if file.allows:
+                allows.append((path, file.allows))
+            facts = file.facts
+            if facts is None:
+                continue
+            problems.extend((path, problem.line, problem.message) for problem in facts.problems)
+            if isinstance(facts, CppFile):
+                self.cpp[path] = facts
+                registered.extend(getattr(facts, "exports", ()))
+                references.extend((path, r) for r in getattr(facts, "references", ()))
+            elif isinstance(facts, PythonFile):
+                python[path] = facts
+                references.extend((path, r) for r in facts.references)
+            elif isinstance(facts, Interface):
+                name = facts.name or posixpath.basename(path).rsplit(".", 1)[0]
+                interfaces.append(InterfaceFile(name, path, facts))
+            elif isinstance(facts, SetupFile):
+                setup.append((path, facts))
+            else:
+                references.extend((path, r) for r in getattr(facts, "references", ()))
+                plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
+        roles = self.roles()
+        includes, names, needed = self.sources(roles)
+        imports, python_names, syntax, modules = self.python(python)
+        return Digest(
+            self.name, self.path, self.manifest_path, self.manifest, self.build_type, self.build,
+            includes=tuple(includes), imports=tuple(imports),
+            references=tuple(
+                ReferenceUse(r, At(p, r.line, r.column), role_of_folder(self.inside(p)) or "run") for p, r in references
+            ),
+            names=tuple(names + python_names), needed_headers=tuple(needed), interfaces=tuple(interfaces),
+            syntax=tuple(syntax), headers=tuple(p for p in self.cpp if is_header(p)),
+            public_headers=tuple(p for p, r in roles.items() if r[1] and is_header(p)),
+            modules=tuple(sorted(modules)), plugins=tuple(plugins), registered=tuple(registered), setup=tuple(setup),
+            allows=tuple(allows), problems=tuple(problems), files=self.files,
+            mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
+            scripts=tuple(p for p, f in python.items() if f.interpreter),
+            source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
+        )  # fmt: skip
+
+    # -- which file is compiled by what ------------------------------------------------------------------------------
+
+    def answers(self, include: str, includer: str) -> str | None:
+        """The file of the package that an include names, or None."""
+        if include.startswith("."):
+            wanted = posixpath.normpath(posixpath.join(posixpath.dirname(includer), include))
+            return wanted if wanted in self.cpp else None
+        candidates = self.by_name.get(include.rsplit("/", 1)[-1], ())
+        if not candidates:
+            return None
+        beside = posixpath.join(posixpath.dirname(includer), include)
+        if beside in self.cpp:
+            return beside
+        ending = "/" + include
+        for path in candidates:
+            if path.endswith(ending) or path == include:
+                return path
+        return None
+
+    def roles(self) -> dict[str, tuple[str, bool, tuple[str, ...], tuple[Condition, ...]]]:
+        """For every C++ file that something reaches: role, public, the targets that compile it, their conditions."""
+        for path in self.cpp:
+            self.by_name.setdefault(path.rsplit("/", 1)[-1].removesuffix(".in"), []).append(path)
+        for path, facts in self.cpp.items():
+            self.resolved[path] = [(self.answers(i.path, path), i) for i in facts.includes]
+        roots: dict[str, list] = {}
+        for target in self.build.targets:
+            for source in target.sources:
+                if source in self.cpp:
+                    roots.setdefault(source, []).append(target)
+        reached: dict[str, tuple[str, bool, set[str], list]] = {}
+
+        def walk(path: str, role: str, public: bool, names: tuple[str, ...], conditions) -> None:
+            stack = [path]
+            seen = set()
+            while stack:
+                at = stack.pop()
+                if at in seen:
+                    continue
+                seen.add(at)
+                known = reached.get(at)
+                if known is None:
+                    reached[at] = (role, public, set(names), list(conditions))
+                else:
+                    # built by several: it is as unconditional as the least conditional of them
+                    merged = role if known[0] == role else "build"
+                    kept = [c for c in known[3] if c in conditions]
+                    reached[at] = (merged, known[1] or public, known[2] | set(names), kept)
+                stack.extend(to for to, _ in self.resolved.get(at, ()) if to is not None)
+
+        for source, targets in roots.items():
+            inside = role_of_folder(self.inside(source))
+            for target in targets:
+                role = "test" if target.kind == "test" or inside == "test" else "build"
+                if role == "build" and any("BUILD_TESTING" in c.text or "ENABLE_TESTING" in c.text for c in target.conditions):
+                    role = "test"
+                walk(source, role, False, (target.name,), target.conditions)
+        for header in self.installed_headers():
+            walk(header, "build", True, (), ())
+        return {p: (r[0], r[1], tuple(sorted(r[2])), tuple(r[3])) for p, r in reached.items()}
+
+    def installed_headers(self) -> list[str]:
+        folders, single = [], set()
+        for rule in self.build.installs:
+            if rule.kind == "directory" and "include" in rule.destination.lower():
+                folders.extend(item.rstrip("/") for item in rule.items)
+            elif rule.kind == "files":
+                single.update(rule.items)
+        found = []
+        for path in self.cpp:
+            if is_header(path) and (
+                path in single or any(path.startswith(f + "/") if f else True for f in folders)
+            ):
+                found.append(path)
+        return found
+
+    # -- what C++ files need ---------------------------------------------------------------------------------------
+
+    def sources(self, roles):
+        includes: list[IncludeUse] = []
+        names: list[NameUse] = []
+        needed: list[NeededHeader] = []
+        watched = self.watched
+        for path, (role, public, targets, conditions) in roles.items():
+            facts = self.cpp.get(path)
+            if facts is None:
+                continue
+            for to, include in self.resolved[path]:
+                if to is None:
+                    includes.append(
+                        IncludeUse(include.path, At(path, include.line, include.column), role, public,
+                                   conditions + include.conditions, targets)
+                    )  # fmt: skip
+            reach = None
+            for name in facts.qualified:
+                text = name.text.removeprefix("::")
+                if text in watched.qualified or text in watched.words or text.rsplit("::", 1)[-1] in watched.words:
+                    names.append(NameUse(text, At(path, name.line, name.column), role, public, "cpp",
+                                         conditions + name.conditions, targets))  # fmt: skip
+                headers = watched.headers_of.get(text)
+                if headers is not None:
+                    reach = self.reach(path) if reach is None else reach
+                    if not any(h in reach for h in headers):
+                        needed.append(NeededHeader(text, At(path, name.line, name.column), role, tuple(sorted(reach)),
+                                                   conditions + name.conditions))  # fmt: skip
+            if facts.words:
+                words = facts.words.split(" ")
+                for word in watched.words.intersection(words):
+                    names.append(self.bare(word, path, role, public, targets, conditions))
+                for word in watched.headers_of.keys() & set(words):
+                    reach = self.reach(path) if reach is None else reach
+                    if not any(h in reach for h in watched.headers_of[word]):
+                        at = self.bare(word, path, role, public, targets, conditions).at
+                        needed.append(NeededHeader(word, at, role, tuple(sorted(reach)), conditions))
+        return includes, names, needed
+
+    def bare(self, word, path, role, public, targets, conditions) -> NameUse:
+        """Where a bare word stands first, outside comments, with the preprocessor conditions around it."""
+        line, column, around = place_of_word(self.read(path), word)
+        return NameUse(word, At(path, line, column), role, public, "cpp", conditions + around, targets)
+
+    def reach(self, path: str) -> set[str]:
+        """All include paths that reach a file, through files of the package."""
+        found: set[str] = set()
+        stack, seen = [path], set()
+        while stack:
+            at = stack.pop()
+            if at in seen:
+                continue
+            seen.add(at)
+            for to, include in self.resolved.get(at, ()):
+                found.add(include.path)
+                if to is not None:
+                    stack.append(to)
+        return found
+
+    # -- what Python files need ------------------------------------------------------------------------------------
+
+    def python(self, files: dict[str, PythonFile]):
+        modules: set[str] = set()
+        for path in self.files:
+            inside = self.inside(path)
+            if inside.endswith(".py"):
+                parts = inside[:-3].split("/")
+                if parts[-1] == "__init__":
+                    modules.update(parts[-2:-1])
+                modules.add(parts[-1])
+                modules.update(parts[:-1][-3:])
+            elif inside.endswith((".so", ".pyx", ".pyi")):
+                modules.add(posixpath.basename(inside).split(".")[0])
+        modules.update(t.name for t in self.build.targets if t.kind in ("module", "library"))
+        modules.update(t.output_name for t in self.build.targets if t.output_name)
+        imports: list[ImportUse] = []
+        names: list[NameUse] = []
+        syntax: list[SyntaxUse] = []
+        for path, facts in files.items():
+            role = self.python_role(path)
+            for item in facts.imports:
+                head = item.module.split(".")[0]
+                if item.level or not head or head == self.name or head in modules:
+                    continue
+                imports.append(ImportUse(item.module, item.names, At(path, item.line, item.column), role, item.conditions, item.lazy))
+            for attribute in facts.attributes:
+                if attribute.text in self.watched.python:
+                    names.append(NameUse(attribute.text, At(path, attribute.line, attribute.column), role, False, "python",
+                                         attribute.conditions))  # fmt: skip
+            for item in facts.imports:
+                for text in (item.module, *(f"{item.module}.{n}" for n in item.names)):
+                    if text in self.watched.python:
+                        names.append(NameUse(text, At(path, item.line, item.column), role, False, "python", item.conditions))
+            syntax.extend(SyntaxUse(2, p.message, At(path, p.line), role) for p in facts.python2_only)
+            if facts.needs is not None:
+                syntax.append(SyntaxUse(facts.needs[0], facts.needs[2], At(path, facts.needs[1]), role))
+        return imports, names, syntax, modules
+
+    def python_role(self, path: str) -> str:
+        inside = self.inside(path)
+        if inside in ("setup.py", "conanfile.py"):
+            return "build"
+        return role_of_folder(inside) or "run"
+
+
+def is_header(path: str) -> bool:
+    """True for C and C++ header names."""
+    return path.endswith((".h", ".hpp", ".hh", ".hxx", ".h++", ".ipp", ".tpp", ".inl", ".cuh", ".h.in", ".hpp.in"))
+
+
+def place_of_word(data: bytes, word: str) -> tuple[int, int, tuple[Condition, ...]]:
+    """Line, column and preprocessor conditions of the first use of a bare word, (1, 0, ()) when it is only in comments."""
+    from ..facts.cpp import places_of
+
+    return next(iter(places_of(data, word)), (1, 0, ()))

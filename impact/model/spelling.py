@@ -1,0 +1,62 @@
+"""Names that differ by a slip of the keyboard."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+
+def folded(name: str) -> str:
+    """A name without what people mix up: case, dashes, underscores, a trailing digit, a python or lib prefix."""
+    name = re.sub(r"[-_.\s]", "", name.lower())
+    return re.sub(r"^(?:python3?|lib|ros)(?=\w{3})|(?:dev|\d)$", "", name)
+
+
+def one_edit(a: str, b: str) -> bool:
+    """True when one insertion, deletion, replacement or swap of neighbours turns a into b."""
+    if a == b or abs(len(a) - len(b)) > 1:
+        return False
+    if len(a) > len(b):
+        a, b = b, a
+    start = 0
+    while start < len(a) and a[start] == b[start]:
+        start += 1
+    if len(a) == len(b):
+        return a[start + 1 :] == b[start + 1 :] or (
+            a[start : start + 2] == b[start : start + 2][::-1] and a[start + 2 :] == b[start + 2 :]
+        )
+    return a[start:] == b[start + 1 :]
+
+
+class Names:
+    """An index of known names that answers which of them a misspelt one means."""
+
+    def __init__(self, names: Iterable[str]):
+        self.names = frozenset(names)
+        self._folded: dict[str, list[str]] | None = None
+        self._by_length: dict[tuple[int, str], list[str]] = {}
+
+    def _index(self) -> dict[str, list[str]]:
+        if self._folded is None:
+            self._folded = {}
+            for name in sorted(self.names):
+                self._folded.setdefault(folded(name), []).append(name)
+                self._by_length.setdefault((len(name), name[:1].lower()), []).append(name)
+        return self._folded
+
+    def nearest(self, name: str) -> str | None:
+        """The known name that differs only in case, separators or prefix, else the only one a single edit away."""
+        same = self._index().get(folded(name), [])
+        if same:
+            return min(same, key=lambda n: (abs(len(n) - len(name)), n))
+        if len(name) < 5:
+            return None
+        near = [
+            n for size in (-1, 0, 1) for n in self._by_length.get((len(name) + size, name[:1].lower()), ()) if one_edit(name, n)
+        ]
+        return near[0] if len(near) == 1 else None
+
+
+def nearest(name: str, names: Names) -> str | None:
+    """See Names.nearest."""
+    return names.nearest(name)

@@ -1,0 +1,342 @@
+"""A workspace as one target sees it: what holds there, what is declared there, who provides what is used.
+
+This is the join that most rules ask: model × target. Nothing here reads files.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+from ..facts.condition import Condition
+from ..targets.target import Change, Provider, Target
+from .build import At
+from .conditions import Environment, all_hold
+from .package import role_of_folder
+from .spelling import Names
+from .workspace import Package, Workspace, is_interface_header
+
+# Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's Depends).
+_INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
+# Kinds that are on the machine that builds the package from source.
+_BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test", "doc"})
+# On every machine that builds ROS packages (ros_buildfarm's base image and the dependencies of catkin and ament).
+_ALWAYS = frozenset({"build-essential", "cmake", "pkg-config", "python", "python3", "python-dev", "python3-dev", "git", "g++-static", "libc6-dev"})
+
+
+class Need(NamedTuple):
+    """Something a package uses of somebody else.
+
+    how: find_package, component, include, import, launch, plugin or shell. subject: as written. providers: who could give
+    it, best first. role: build, test, run or aside. certain: stands under no condition that is unknown on the target.
+    required: its absence stops the configuration (find_package) or the program.
+    """
+
+    how: str
+    subject: str
+    providers: tuple[Provider, ...]
+    at: At
+    role: str
+    certain: bool
+    required: bool = True
+    public: bool = False
+    targets: tuple[str, ...] = ()
+
+
+class View:
+    """One workspace on one target. providers answers for everything outside the workspace."""
+
+    def __init__(self, workspace: Workspace, target: Target, providers):
+        self.workspace, self.target, self.providers = workspace, target, providers
+        self._closures: dict[tuple[str, frozenset[str]], dict[str, str]] = {}
+        self._needs: dict[str, tuple[Need, ...]] = {}
+        self._headers: dict[str, tuple[Provider, ...]] = {}
+        self._cmake: dict[str, tuple[Provider, ...]] = {}
+        self._modules: dict[str, tuple[Provider, ...]] = {}
+        self._debian: dict[str, frozenset[str]] = {}
+        self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
+
+    def __iter__(self) -> Iterator[Package]:
+        """Packages of the workspace that are built on this target."""
+        for package in self.workspace:
+            if package.build_type.startswith("ament") and self.target.ros == 1:
+                continue
+            if package.build_type == "catkin" and self.target.ros == 2:
+                continue
+            yield package
+
+    # -- conditions --------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def environment(self) -> Environment:
+        """What conditions are evaluated against."""
+        target = self.target
+
+        def version(name: str) -> str | None:
+            return target.version(name) or target.library(name.lower())
+
+        return Environment(
+            ros_distro=target.distro, ros_version=str(target.ros), python=(3, target.python) if target.python else (2, 7),
+            codename=target.platform.split(" ")[-1], versions=version, headers=lambda path: None, testing=True,
+        )  # fmt: skip
+
+    def active(self, conditions: Iterable[Condition]) -> bool:
+        """False only when a statement under these conditions surely does not count on the target."""
+        conditions = tuple(conditions)
+        return not conditions or all_hold(conditions, self.environment) is not False
+
+    def certain(self, conditions: Iterable[Condition]) -> bool:
+        """True only when a statement under these conditions surely counts on the target."""
+        conditions = tuple(conditions)
+        return not conditions or all_hold(conditions, self.environment) is True
+
+    def active_manifest(self, condition: str) -> bool:
+        """False only when the condition attribute of a dependency surely does not hold on the target."""
+        return self.active((Condition("manifest", condition),))
+
+    def manifest_place(self, package: Package, dependency) -> At:
+        """Where a dependency is declared."""
+        return At(package.digest.manifest_path, dependency.line, dependency.column)
+
+    # -- what is known of the target -------------------------------------------------------------------------------
+
+    @cached_property
+    def known_names(self) -> Names:
+        """Every name a manifest may declare here: packages of the workspace, released ones, rosdep keys."""
+        return Names({*self.workspace.packages, *self.target.released_names(), *self.target.key_names()})
+
+    def available(self, name: str) -> bool:
+        """True when a package of this name is in the workspace, released on the target, or a rosdep key there."""
+        target = self.target
+        return name in self.workspace.packages or target.version(name) is not None or target.resolve(name) is not None
+
+    @cached_property
+    def _changes(self) -> dict[str, list[Change]]:
+        found: dict[str, list[Change]] = {}
+        for change in self.target.changes():
+            found.setdefault(change.kind, []).append(change)
+        return found
+
+    def changes(self, *kinds: str) -> list[Change]:
+        """Known upstream changes of these kinds that are in force on the target."""
+        return [c for kind in kinds for c in self._changes.get(kind, ())]
+
+    def concerned(self, package: Package, change: Change, path: str) -> bool:
+        """True when a file can mean the changed package by a name: the package declares or includes something of it."""
+        head = change.package
+        if path.endswith(".py") or change.kind.startswith("python"):
+            return True
+        names = self.closure(package)
+        if head in names or any(head in (p.name, p.package) for p in self.cmake(head)) and head in names:
+            return True
+        roots = self.providers.include_roots(head)
+        return any(i.path.startswith(roots) for i in package.digest.includes) if roots else head in names
+
+    # -- declared dependencies -----------------------------------------------------------------------------------------
+
+    def declared(self, package: Package) -> dict[str, set[str]]:
+        """Names the package declares on this target, with the kinds they are declared as."""
+        found: dict[str, set[str]] = {}
+        for dependency in package.manifest.dependencies:
+            if dependency.kind in ("conflict", "replace", "group", "member_of_group"):
+                continue
+            if dependency.condition and not self.active([Condition("manifest", dependency.condition)]):
+                continue
+            found.setdefault(dependency.name, set()).add(dependency.kind)
+        return found
+
+    def installed_with(self, name: str) -> Iterable[str]:
+        """Direct dependencies that come with a package or key when it is installed."""
+        package = self.workspace.packages.get(name)
+        if package is not None:
+            return [n for n, kinds in self.declared(package).items() if kinds & _INSTALLED_WITH]
+        released = self.target.dependencies(name)
+        if released is None:
+            return ()
+        return [d.name for d in released if d.kind in _INSTALLED_WITH]
+
+    def closure(self, package: Package, kinds: frozenset[str] = _BUILT_WITH) -> dict[str, str]:
+        """Everything on a machine that has just what the package declares: name to the declared name that brings it."""
+        key = (package.name, kinds)
+        known = self._closures.get(key)
+        if known is None:
+            start = [n for n, k in self.declared(package).items() if k & kinds]
+            known = dict.fromkeys(_ALWAYS, "")
+            known[package.name] = package.name
+            known.update(self.spread(start))
+            self._closures[key] = known
+        return known
+
+    def spread(self, names: Iterable[str]) -> dict[str, str]:
+        """Transitive closure of installed_with over names, each with the start it was reached from."""
+        found = {n: n for n in names}
+        queue = deque(found)
+        while queue:
+            name = queue.popleft()
+            for other in self._installed_with(name):
+                if other not in found:
+                    found[other] = found[name]
+                    queue.append(other)
+        return found
+
+    @cached_property
+    def _direct(self) -> dict[str, tuple[str, ...]]:
+        return {}
+
+    def _installed_with(self, name: str) -> tuple[str, ...]:
+        known = self._direct.get(name)
+        if known is None:
+            known = self._direct[name] = tuple(self.installed_with(name))
+        return known
+
+    def blind(self, package: Package) -> list[str]:
+        """Declared packages whose own dependencies are not known here, so that the closure may lack something."""
+        return [
+            n for n in self.closure(package)
+            if n not in self.workspace.packages and self.target.dependencies(n) is None
+            and self.target.resolve(n) is None and n not in _ALWAYS
+        ]  # fmt: skip
+
+    def debian(self, name: str) -> frozenset[str]:
+        """What a rosdep key installs here."""
+        known = self._debian.get(name)
+        if known is None:
+            resolution = self.target.resolve(name)
+            known = self._debian[name] = frozenset(resolution.packages if resolution else ())
+        return known
+
+    def answered(self, providers: Iterable[Provider], names: dict[str, str] | set[str]) -> bool:
+        """True when one of the providers is among the names, as itself or as a key that installs the same package."""
+        providers = tuple(providers)
+        for provider in providers:
+            if not provider.name or provider.name in names:
+                return True
+        wanted = {p.package for p in providers if p.package}
+        for provider in providers:
+            wanted |= self.debian(provider.name)
+        return bool(wanted) and any(
+            wanted & self.debian(n) for n in names if n not in self.workspace.packages
+        )
+
+    # -- who provides --------------------------------------------------------------------------------------------------
+
+    def header(self, path: str) -> tuple[Provider, ...]:
+        """Who could answer an include path; empty when nobody is known to, a provider without name when the compiler does."""
+        known = self._headers.get(path)
+        if known is None:
+            known = self._headers[path] = tuple(self._header(path))
+        return known
+
+    def _header(self, path: str) -> list[Provider]:
+        own = self.workspace.provides_header(path)
+        if own:
+            return [Provider("ros", name) for name in own]
+        found = list(self.providers.header(path))
+        head = path.split("/", 1)[0]
+        if "/" in path and not any(p.name == head for p in found) and self._is_package(head):
+            convention = Provider("ros", head, "", False)
+            if self.target.version(head) is not None or not found:
+                found.insert(0, convention)
+            else:
+                found.append(convention)
+        return found
+
+    def _is_package(self, name: str) -> bool:
+        return name in self.workspace.packages or self.target.ever_released(name)
+
+    def cmake(self, name: str) -> tuple[Provider, ...]:
+        """Who could answer find_package(name)."""
+        known = self._cmake.get(name)
+        if known is None:
+            own = self.workspace.provides_cmake.get(name)
+            found = [Provider("ros", own)] if own else []
+            if not own:
+                if self.target.version(name) is not None:
+                    found.append(Provider("ros", name))
+                found.extend(p for p in self.providers.cmake(name) if p.name != name or p.kind != "ros")
+                if not found and self.target.ever_released(name):
+                    found.append(Provider("ros", name, "", False))
+            known = self._cmake[name] = tuple(found)
+        return known
+
+    def module(self, module: str) -> tuple[Provider, ...]:
+        """Who could answer `import module`."""
+        head = module.split(".")[0]
+        known = self._modules.get(module)
+        if known is None:
+            owners = self.workspace.modules.get(head, ())
+            if head in owners:
+                owners = [head]
+            found = [Provider("ros", o) for o in owners]
+            if not found:
+                found = list(self.providers.module(module))
+                if not any(p.name == head for p in found) and self._is_package(head):
+                    found.insert(0, Provider("ros", head, "", False))
+            known = self._modules[module] = tuple(found)
+        return known
+
+    # -- what is used --------------------------------------------------------------------------------------------------
+
+    def needs(self, package: Package) -> tuple[Need, ...]:
+        """Everything a package uses of others on this target."""
+        known = self._needs.get(package.name)
+        if known is None:
+            known = self._needs[package.name] = tuple(self._collect(package))
+        return known
+
+    def _collect(self, package: Package) -> Iterator[Need]:
+        digest = package.digest
+        for found in package.build.found:
+            if found.how not in ("find_package", "catkin") or not self.active(found.conditions):
+                continue
+            if found.name in ("catkin", package.name):
+                continue
+            providers = self.cmake(found.name)
+            if not providers:
+                self.unresolved["cmake"].add(found.name)
+                continue
+            testing = any("TESTING" in c.text for c in found.conditions)
+            certain = self.certain(found.conditions)
+            yield Need("find_package" if found.how == "find_package" else "component", found.name, providers, found.at,
+                       "test" if testing or role_of_folder(found.at.path[len(package.path):].lstrip("/")) == "test" else "build",
+                       certain, found.required or found.how == "catkin")  # fmt: skip
+        for include in digest.includes:
+            if not self.active(include.conditions):
+                continue
+            providers = self.header(include.path)
+            if not providers:
+                self.unresolved["include"].add(include.path)
+                continue
+            if any(not p.name for p in providers):
+                continue
+            yield Need("include", include.path, providers, include.at, include.role, self.certain(include.conditions),
+                       True, include.public, include.targets)  # fmt: skip
+        for item in digest.imports:
+            if not self.active(item.conditions):
+                continue
+            providers = self.module(item.module)
+            if not providers:
+                self.unresolved["import"].add(item.module)
+                continue
+            if any(not p.name for p in providers):
+                continue
+            certain = self.certain(item.conditions)
+            yield Need("import", item.module, providers, item.at, item.role, certain, certain and not item.lazy)
+        for use in digest.references:
+            reference = use.reference
+            name = reference.package
+            if not name or name == package.name or "$" in name or not self._is_package(name):
+                continue
+            how = {"plugin": "plugin", "command": "shell"}.get(reference.kind, "launch")
+            yield Need(how, name, (Provider("ros", name),), use.at, use.role, not reference.conditional, not reference.conditional)
+
+
+def interface_of(view: View, include: str) -> str | None:
+    """The package whose interface an include path names by its form (`p/msg/x.hpp`, `p/X.h`), None for other headers."""
+    head, _, rest = include.partition("/")
+    package = view.workspace.packages.get(head)
+    if package is not None and package.is_interface_package and is_interface_header(rest, view.workspace.interface_names.get(head, ())):
+        return head
+    return None

@@ -1,0 +1,38 @@
+"""The names that rules look out for, gathered from the tables of known changes."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from functools import cache
+
+from ..targets.changes import TransitiveInclude, all_rows, transitive_includes
+from .package import Watched
+
+_KINDS = frozenset({"api-removed", "api-renamed", "api-changed", "python-removed", "python-api"})
+_WORD = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*\Z")
+_DOTTED = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\Z")
+
+
+@cache
+def watched() -> Watched:
+    """All names that some known change is about, with a version that changes when the tables do."""
+    words, qualified, python, headers = set(), set(), set(), {}
+    for row in all_rows():
+        if row.kind not in _KINDS or not row.old:
+            continue
+        if row.kind.startswith("python"):
+            if _DOTTED.match(row.old):
+                python.add(row.old)
+        elif _WORD.match(row.old):
+            if "::" in row.old:
+                qualified.add(row.old)
+            elif not getattr(row, "ambiguous", False) and len(row.old) > 3:
+                words.add(row.old)
+    for include in transitive_includes():
+        headers[include.name] = tuple(include.headers)
+    version = hashlib.sha1(repr((sorted(words), sorted(qualified), sorted(python), sorted(headers.items()))).encode()).hexdigest()
+    return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, version)
+
+
+__all__ = ["TransitiveInclude", "watched"]

@@ -1,0 +1,318 @@
+"""The linked workspace: every package's digest, and who in the workspace offers what.
+
+A digest is remembered by the content of everything it was joined from: the names of the package's files, their content
+ids, and those of CMake files of other packages that its CMake reads. Time plays no part in it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import posixpath
+import re
+from collections.abc import Callable, Iterable
+from functools import cached_property
+
+import msgspec
+
+from ..facts.manifest import Manifest
+from ..gather import Gathered
+from .build import Build, interpret
+from .discovery import Discovered, discover
+from .package import Digest, Watched, build_type_of, digest_of
+
+DIGEST_VERSION = "1"
+
+
+class Package:
+    """A package of the workspace: its digest, with indices made when first asked for."""
+
+    def __init__(self, digest: Digest):
+        self.digest = digest
+        self.name, self.path = digest.name, digest.path
+        self.manifest, self.build, self.build_type = digest.manifest, digest.build, digest.build_type
+
+    def __repr__(self) -> str:
+        return f"Package({self.name})"
+
+    @cached_property
+    def declared(self) -> dict[str, set[str]]:
+        """Dependency name to the kinds it is declared as, conditions ignored."""
+        found: dict[str, set[str]] = {}
+        for dependency in self.manifest.dependencies:
+            if dependency.kind not in ("conflict", "replace"):
+                found.setdefault(dependency.name, set()).add(dependency.kind)
+        return found
+
+    @cached_property
+    def is_interface_package(self) -> bool:
+        """True when it generates messages, services or actions."""
+        return bool(self.digest.interfaces) or any(g.how in ("rosidl", "catkin") for g in self.build.generated)
+
+    @cached_property
+    def files(self) -> frozenset[str]:
+        return frozenset(self.digest.files)
+
+    @cached_property
+    def folders(self) -> frozenset[str]:
+        found = set()
+        for path in self.digest.files:
+            while "/" in path:
+                path = path.rsplit("/", 1)[0]
+                if path in found:
+                    break
+                found.add(path)
+        return frozenset(found)
+
+    def has_files(self, folder: str) -> bool:
+        """True when a file lies in the folder (relative to the package)."""
+        return (f"{self.path}/{folder}" if self.path else folder) in self.folders
+
+    @property
+    def tests_enabled(self) -> bool:
+        return any(t.kind == "test" for t in self.build.targets)
+
+
+class Workspace:
+    """All packages of a tree, linked. `packages` is by name; `watched` is what digests were asked to look out for."""
+
+    def __init__(self, packages: Iterable[Digest], discovered: Discovered, ros: int, gathered: Gathered, read: Callable[[str], bytes]):
+        self.packages: dict[str, Package] = {d.name: Package(d) for d in packages}
+        self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
+
+    def __iter__(self):
+        return iter(self.packages.values())
+
+    @cached_property
+    def headers(self) -> dict[str, list[str]]:
+        """Include path to the packages whose files answer it, for every suffix of every header's path."""
+        found: dict[str, list[str]] = {}
+        for package in self:
+            for path in package.digest.headers:
+                path = path.removesuffix(".in")
+                while True:
+                    owners = found.setdefault(path, [])
+                    if package.name not in owners:
+                        owners.append(package.name)
+                    if "/" not in path:
+                        break
+                    path = path.split("/", 1)[1]
+        return found
+
+    @cached_property
+    def generated_headers(self) -> dict[str, str]:
+        """Basename of headers made while building (parameters, protobuf, Qt forms, configure_file) to the package."""
+        found = {}
+        for package in self:
+            for item in package.build.generated:
+                if item.how == "parameters":
+                    found[f"{item.target}.hpp"] = package.name
+                elif item.how == "protobuf":
+                    for file in item.files:
+                        found[posixpath.basename(file).replace(".proto", ".pb.h")] = package.name
+            for path in package.digest.files:
+                name = posixpath.basename(path)
+                if name.endswith(".ui"):
+                    found["ui_" + name[:-3] + ".h"] = package.name
+                elif name.endswith((".h.in", ".hpp.in", ".hh.in")):
+                    found[name[:-3]] = package.name
+                elif name.endswith(".proto"):
+                    found[name.replace(".proto", ".pb.h")] = package.name
+                elif name.endswith((".yaml", ".yml")):
+                    pass
+        return found
+
+    @cached_property
+    def interface_names(self) -> dict[str, set[str]]:
+        """Package to the names of its interfaces."""
+        return {p.name: {i.name for i in p.digest.interfaces} for p in self if p.digest.interfaces}
+
+    @cached_property
+    def modules(self) -> dict[str, list[str]]:
+        """Python module name to the packages of the workspace that have one of that name."""
+        found: dict[str, list[str]] = {}
+        for package in self:
+            for module in {package.name, *package.digest.modules}:
+                found.setdefault(module, []).append(package.name)
+        return found
+
+    @cached_property
+    def provides_cmake(self) -> dict[str, str]:
+        """Names that find_package may use for something the tree itself makes (projects, FetchContent, exports)."""
+        found = {}
+        for package in self:
+            found[package.name] = package.name
+            if package.build.project:
+                found.setdefault(package.build.project, package.name)
+            for path in package.digest.files:
+                name = posixpath.basename(path)
+                match = re.match(r"(?:Find(.+)\.cmake|(.+?)-?[Cc]onfig\.cmake(?:\.in)?)$", name)
+                if match:
+                    found.setdefault(match.group(1) or match.group(2), package.name)
+        return found
+
+    def provides_header(self, include: str) -> list[str]:
+        """Packages of the workspace whose files, or whose generated files, answer an include path."""
+        owners = self.headers.get(include)
+        if owners:
+            return owners
+        head, _, rest = include.partition("/")
+        package = self.packages.get(head)
+        if package is not None and rest and self._generates(package, rest):
+            return [head]
+        maker = self.generated_headers.get(include.rsplit("/", 1)[-1])
+        return [maker] if maker else []
+
+    def _generates(self, package: Package, rest: str) -> bool:
+        if rest.endswith("Config.h") and any(g.how == "reconfigure" for g in package.build.generated):
+            return True
+        if rest.rsplit("/", 1)[-1] in ("visibility_control.h", "visibility_control.hpp", "version.h", "version.hpp", "export.h"):
+            return True
+        return package.is_interface_package and is_interface_header(rest, self.interface_names.get(package.name, ()))
+
+
+_ROS1_SUFFIXES = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback", "Request", "Response", "")
+
+
+def snake(name: str) -> str:
+    """A message name as rosidl spells it in header names (`TransformStamped` gives `transform_stamped`).
+
+    Source: rosidl_cmake's string_camel_case_to_lower_case_underscore."""
+    name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
+
+
+def is_interface_header(rest: str, names: Iterable[str]) -> bool:
+    """True when `rest` (an include path after `package/`) is generated from one of the named interfaces."""
+    parts = rest.split("/")
+    if parts[0] in ("msg", "srv", "action") and len(parts) > 1:
+        stem = re.split(r"__|\.", parts[-1])[0]
+        return any(snake(n) == stem or snake(n) + "_" == stem[: len(snake(n)) + 1] for n in names)
+    stem = parts[-1].removesuffix(".h")
+    return len(parts) == 1 and any(stem == n + s for n in names for s in _ROS1_SUFFIXES)
+
+
+def link(tree, gathered: Gathered, store, ros: int | None, watched: Watched) -> Workspace:
+    """Joins the facts of a tree into a workspace. ros: 1 or 2, None to tell it from the manifests. store remembers
+    digests; None joins everything anew."""
+    discovered = discover(tree, gathered)
+    ros = ros or generation(discovered, gathered)
+    linker = _Linker(tree, gathered, discovered, ros, watched)
+    return Workspace(linker.digests(store), discovered, ros, gathered, tree.read)
+
+
+def generation(discovered: Discovered, gathered: Gathered) -> int:
+    """1 or 2: which ROS generation most packages of the tree are written for."""
+    two = 0
+    total = 0
+    for place in discovered.packages:
+        manifest = gathered.facts(place.manifest_path).facts
+        if manifest is None:
+            continue
+        total += 1
+        tools = {d.name for d in manifest.dependencies if d.kind in ("buildtool", "build")}
+        types = {t for t, _ in manifest.build_types}
+        if any(t.startswith("ament") or t == "ros2" for t in tools | types):
+            two += 1
+    return 2 if two * 2 >= total and two else 1
+
+
+class _Linker:
+    def __init__(self, tree, gathered: Gathered, discovered: Discovered, ros: int, watched: Watched):
+        self.tree, self.gathered, self.discovered, self.ros, self.watched = tree, gathered, discovered, ros, watched
+        self.paths_of: dict[str, list[str]] = {p.path: [] for p in discovered.packages}
+        for entry in tree.entries():
+            owner = discovered.owner(entry.path)
+            if owner is not None:
+                self.paths_of[owner.path].append(entry.path)
+        self.all_paths = frozenset(e.path for e in tree.entries())
+        self.by_name = {p.name: p for p in discovered.packages}
+
+    def digests(self, store) -> list[Digest]:
+        found: dict[str, Digest] = {}
+        places = [p for p in self.discovered.packages if p.name]
+        keys = {p.path: self.key(p) for p in places}
+        decoder = msgspec.msgpack.Decoder(Digest)
+        remembered = store.memos("digest", list(keys.values())) if store is not None else {}
+        fresh: list[tuple[bytes, bytes]] = []
+        encoder = msgspec.msgpack.Encoder()
+        for place in places:
+            blob = remembered.get(keys[place.path])
+            if blob is not None:
+                size = int.from_bytes(blob[:4], "big")
+                read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
+                if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items()):
+                    found[place.path] = decoder.decode(memoryview(blob)[4 + size :])
+                    continue
+            digest, read = self.join(place)
+            found[place.path] = digest
+            head = encoder.encode(read)
+            fresh.append((keys[place.path], len(head).to_bytes(4, "big") + head + encoder.encode(digest)))
+        if store is not None and fresh:
+            store.remember("digest", fresh)
+        return [found[p.path] for p in places]
+
+    def key(self, place) -> bytes:
+        """Everything of the package itself that its digest is made from."""
+        ids = self.gathered.ids
+        digest = hashlib.sha1(f"{DIGEST_VERSION} {self.watched.version} {self.ros} {place.path}\n".encode())
+        digest.update(
+            "\n".join([f"{path} {ids.get(path, '')}" for path in self.paths_of[place.path]]).encode("utf-8", "surrogateescape")
+        )
+        return digest.digest()
+
+    def join(self, place) -> tuple[Digest, dict[str, str]]:
+        gathered = self.gathered
+        manifest: Manifest = gathered.facts(place.manifest_path).facts
+        files = self.paths_of[place.path]
+        gathered.preload(files)
+        read: dict[str, str] = {}
+
+        def cmake(path: str):
+            path = posixpath.normpath(path)
+            if gathered.kinds.get(path) != "cmake":
+                if path in self.all_paths and path.endswith((".cmake.in", ".cmake.em")):
+                    pass
+                return None
+            if not (path.startswith(place.path + "/") or not place.path):
+                read[path] = gathered.ids.get(path, "")
+            file = gathered.facts(path)
+            return file.facts if file is not None else None
+
+        build = interpret(
+            place.path, cmake, self.all_paths.__contains__, self.glob(place, files), package=manifest.name,
+            dependencies=tuple(dict.fromkeys(d.name for d in manifest.dependencies if d.kind in ("build", "buildtool", "build_export", "test"))),
+            extras=self.extras,
+        ) if (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths else Build()  # fmt: skip
+        digest = digest_of(
+            manifest.name, place.path, place.manifest_path, manifest, build, build_type_of(manifest, self.ros),
+            gathered.kinds, files, gathered.facts, self.tree.read, self.watched,
+        )  # fmt: skip
+        return digest, read
+
+    def glob(self, place, files: list[str]):
+        import fnmatch
+
+        def find(pattern: str, recurse: bool = False) -> list[str]:
+            folder, _, name = pattern.rpartition("/")
+            matcher = re.compile(fnmatch.translate(name)).match
+            base = re.compile(fnmatch.translate(folder)).match if re.search(r"[*?\[]", folder) else None
+            found = []
+            for path in files:
+                at, _, leaf = path.rpartition("/")
+                inside = base(at) if base else (at == folder or (recurse and (not folder or at.startswith(folder + "/"))))
+                if inside and matcher(leaf):
+                    found.append(path)
+            return sorted(found)
+
+        return find
+
+    def extras(self, package: str) -> tuple[str, ...]:
+        """CMake files that a package of the workspace gives its dependants."""
+        place = self.by_name.get(package)
+        if place is None:
+            return ()
+        start = place.path + "/cmake/" if place.path else "cmake/"
+        return tuple(
+            p for p in self.paths_of[place.path]
+            if p.endswith((".cmake", ".cmake.in", ".cmake.em")) and (p.startswith(start) or p.endswith(("-extras.cmake", "-extras.cmake.in", "-extras.cmake.em")))
+        )  # fmt: skip

@@ -1,0 +1,37 @@
+"""deprecated-name: a name that is used will go.
+
+What it does
+    Reports classes, functions, constants and CMake names that the target still has and has marked as deprecated.
+
+Why it matters
+    The version that drops the name may be on a colleague's machine already.
+
+Severity
+    note.
+
+Example
+    rclcpp::executor::FutureReturnCode          // deprecated since Foxy
+
+Use instead
+    rclcpp::FutureReturnCode
+"""
+
+from ...model.view import View
+from ..rule import Hit, rule
+
+
+@rule(severity="note")
+def deprecated_name(view: View):
+    old = {c.old: c for c in view.changes("api-removed", "api-renamed", "python-removed", "cmake-removed", "cmake-renamed")
+           if c.state == "deprecated" and c.old}  # fmt: skip
+    if not old:
+        return
+    for package in view:
+        uses = [(u.text, u.at, u.conditions) for u in package.digest.names]
+        uses += [(u.name, u.at, u.conditions) for u in package.build.uses]
+        for text, at, conditions in uses:
+            change = old.get(text)
+            if change is None or not view.active(conditions) or not view.concerned(package, change, at.path):
+                continue
+            yield Hit(at, text, f"`{text}` is deprecated in {change.package} {change.version}".strip(),
+                      f"use `{change.new}`" if change.new else "", package.name)  # fmt: skip

@@ -1,0 +1,33 @@
+"""moved-header: an included header has a new name, and the old one will go.
+
+What it does
+    Reports includes of headers that the target still installs as a deprecated forwarder.
+
+Why it matters
+    The next version, which another developer may have already, is without the old name.
+
+Severity
+    warning when another target asked for no longer has the old name; note otherwise.
+
+Example
+    #include <cv_bridge/cv_bridge.h>            // deprecated since cv_bridge 3.3
+
+Use instead
+    #include <cv_bridge/cv_bridge.hpp>
+"""
+
+from ...model.view import View
+from ..rule import Hit, rule
+
+
+@rule(severity="note")
+def moved_header(view: View):
+    moved = {c.old: c for c in view.changes("header-removed", "header-renamed", "header-moved") if c.state == "deprecated" and c.old}
+    for package in view:
+        for include in package.digest.includes:
+            change = moved.get(include.path)
+            if change is None or not view.active(include.conditions) or view.workspace.provides_header(include.path):
+                continue
+            yield Hit(include.at, include.path, f"`{include.path}` is deprecated in {change.package} {change.version}".strip(),
+                      f"include `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
+                      package.name)  # fmt: skip

@@ -1,0 +1,54 @@
+"""removed-header: an included header is gone, or not there yet, on a target.
+
+What it does
+    Reports `#include` lines whose header the target's version of the providing package does not install: removed,
+    renamed, or only added in a later version; and ROS 1 spellings of generated headers on a ROS 2 target.
+
+Why it breaks
+    The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
+
+Severity
+    error for built code that is not guarded; warning where a test or an unknown condition surrounds it.
+
+Example
+    #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
+
+Use instead
+    #include <tf2_geometry_msgs/tf2_geometry_msgs.hpp>   // there since 0.25
+
+Not reported
+    Includes under `#if __has_include(...)` or a version test that excludes the target; headers of the workspace itself.
+"""
+
+from ...model.view import View
+from ..rule import Hit, rule
+
+
+@rule(severity="error")
+def removed_header(view: View):
+    gone = {c.old: c for c in view.changes("header-removed", "header-renamed", "header-moved") if c.state == "removed" and c.old}
+    early = {c.new: c for c in view.changes("header-renamed", "header-moved") if c.state == "absent" and c.new}
+    for package in view:
+        for include in package.digest.includes:
+            path = include.path
+            if not view.active(include.conditions) or view.workspace.provides_header(path):
+                continue
+            severity = "note" if include.role == "aside" else (
+                "error" if include.role == "build" and view.certain(include.conditions) else "warning"
+            )
+            change = gone.get(path)
+            if change is not None:
+                where = f"{change.package} {change.version}".strip()
+                yield Hit(include.at, path, f"`{path}` is gone in {where}",
+                          f"include `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
+                          package.name, severity=severity)  # fmt: skip
+                continue
+            change = early.get(path)
+            if change is not None:
+                where = f"{change.package} {change.version}".strip()
+                yield Hit(include.at, path, f"`{path}` is not there yet in {where}",
+                          f"include `{change.old}`, or choose with __has_include", package.name, severity=severity)  # fmt: skip
+                continue
+            wrong = view.misnamed_interface(path)
+            if wrong:
+                yield Hit(include.at, path, wrong.message, wrong.help, package.name, severity=severity)

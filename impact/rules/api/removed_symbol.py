@@ -1,0 +1,43 @@
+"""removed-symbol: a class, function, constant or macro that is used is gone on a target.
+
+What it does
+    Reports names that the known-changes table says the target's version of a package or library no longer has, in files
+    that include a header of that package or library.
+
+Why it breaks
+    The compiler stops: "was not declared in this scope".
+
+Severity
+    error for unguarded names that belong to nobody else; warning where the name alone does not settle it.
+
+Example
+    cv::imread(path, CV_LOAD_IMAGE_ANYDEPTH)    // gone in OpenCV 4
+
+Use instead
+    cv::imread(path, cv::IMREAD_ANYDEPTH)       // there since OpenCV 3
+"""
+
+from ...model.view import View
+from ..rule import Hit, rule
+
+_KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
+
+
+@rule(severity="error")
+def removed_symbol(view: View):
+    cpp, python = {}, {}
+    for change in view.changes(*_KINDS):
+        if change.state == "removed" and change.old:
+            (python if change.kind.startswith("python") else cpp).setdefault(change.old, change)
+    for package in view:
+        for use in package.digest.names:
+            change = (python if use.language == "python" else cpp).get(use.text)
+            if change is None and use.language == "cpp" and "::" in use.text:
+                change = cpp.get(use.text.rsplit("::", 1)[-1])
+            if change is None or not view.active(use.conditions) or not view.concerned(package, change, use.at.path):
+                continue
+            sure = use.role in ("build", "run") and view.certain(use.conditions) and change.kind != "api-changed"
+            verb = "changed" if change.kind == "api-changed" else "is gone"
+            yield Hit(use.at, use.text, f"`{use.text}` {verb} in {change.package} {change.version}".strip(),
+                      f"use `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
+                      package.name, severity="note" if use.role == "aside" else "error" if sure else "warning")  # fmt: skip

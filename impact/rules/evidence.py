@@ -1,0 +1,26 @@
+"""Weighing of needs: which is the strongest, and by what name a person would declare what it asks for."""
+
+from __future__ import annotations
+
+from ..model.view import Need, View
+
+_HOW = {"find_package": 0, "component": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5}
+_ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
+
+
+def weight(need: Need) -> tuple:
+    """Sort key: what is surest to break comes first."""
+    return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at)
+
+
+def present(view: View, name: str) -> bool:
+    """True when a dependency of this name can be had on the target: in the workspace, released, or a rosdep key."""
+    return name in view.workspace.packages or view.target.version(name) is not None or view.target.resolve(name) is not None
+
+
+def name_to_declare(view: View, need: Need) -> str | None:
+    """The name a person would put into the manifest for a need: the first provider that can be had on the target."""
+    for provider in need.providers:
+        if provider.name and present(view, provider.name):
+            return provider.name
+    return None

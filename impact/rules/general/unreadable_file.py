@@ -1,0 +1,29 @@
+"""unreadable-file: a file could not be read or parsed in full.
+
+What it does
+    Names every file whose facts are incomplete, and why.
+
+Why it matters
+    What stands in such a file was not checked; silence about it means nothing.
+
+Severity
+    warning for CMake that the build itself reads; note otherwise, and for generated or very large files.
+"""
+
+from ...model.build import At
+from ...model.workspace import Workspace
+from ..rule import Hit, rule
+
+
+@rule(severity="note", per_target=False)
+def unreadable_file(workspace: Workspace):
+    for problem in workspace.gathered.problems:
+        owner = workspace.discovered.owner(problem.path)
+        yield Hit(At(problem.path, 1), problem.path, problem.message, "", owner.name if owner else "")
+    for package in workspace:
+        told = set()
+        for path, line, message in package.digest.problems:
+            if path in told or path == package.digest.manifest_path:
+                continue
+            told.add(path)
+            yield Hit(At(path, max(1, line)), path.rsplit("/", 1)[-1], message, "", package.name)

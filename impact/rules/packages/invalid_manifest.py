@@ -1,0 +1,36 @@
+"""invalid-manifest: package.xml cannot be read as its format says.
+
+What it does
+    Reports manifests that are not XML, lack a required element, carry tags that no format knows (a misspelt
+    `build-depend` is silently no dependency at all), or tags of another format than the one they declare.
+
+Why it breaks
+    catkin, colcon, rosdep and bloom refuse the package, or overlook the dependency.
+
+Severity
+    error when catkin_pkg refuses the manifest; warning for unknown tags.
+
+Example
+    <build-depend>rviz</build-depend>
+
+Use instead
+    <build_depend>rviz</build_depend>
+"""
+
+from ...model.build import At
+from ...model.workspace import Workspace
+from ..rule import Hit, rule
+
+
+@rule(severity="error", per_target=False)
+def invalid_manifest(workspace: Workspace):
+    for package in workspace:
+        manifest, path = package.manifest, package.digest.manifest_path
+        for tag, text, line in getattr(manifest, "unknown_tags", ()):
+            words = tag.replace("-", "_").replace("depends", "depend")
+            if "depend" not in words:
+                continue
+            yield Hit(At(path, line), tag, f"`<{tag}>{text}</{tag}>` is no tag of format {manifest.format}, so `{text}` is not declared",
+                      f"write `<{words}>`" if words != tag else "use a tag of this format", package.name, severity="warning")  # fmt: skip
+        for problem in manifest.problems:
+            yield Hit(At(path, problem.line), package.name or path, problem.message, "correct the manifest", package.name)

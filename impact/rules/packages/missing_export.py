@@ -1,0 +1,108 @@
+"""missing-export: dependants of the package will miss something that it promises or that its headers need.
+
+What it does
+    Compares what a package exports with what is there: include directories and libraries that do not exist, system
+    libraries exported under a name whose variables nobody sets, and packages that installed headers include and that are
+    not exported.
+
+Why it breaks
+    The package builds, and every package that depends on it fails: the header's own includes are not found, or the
+    exported configuration names a library that was never built.
+
+Severity
+    error where the package's own configuration stops (an include directory that does not exist); warning otherwise.
+
+Example
+    ament_export_dependencies(rclcpp)           # and include/p/p.hpp includes angles/angles.h
+
+Use instead
+    ament_export_dependencies(rclcpp angles)
+"""
+
+import posixpath
+
+from ...model.view import View
+from ..evidence import weight
+from ..rule import Hit, rule
+from .missing_find_package import found_names
+
+
+@rule(severity="warning")
+def missing_export(view: View):
+    for package in view:
+        if not package.build.files:
+            continue
+        yield from _directories(view, package)
+        if package.build.catkin_package is not None:
+            yield from _catkin(view, package)
+        if package.build.ament_package is not None:
+            yield from _ament(view, package)
+
+
+def _directories(view: View, package):
+    made = {posixpath.normpath(i.destination) for i in package.build.installs}
+    for export in package.build.exports:
+        if export.how != "include_dirs" or "$" in export.item or not view.certain(export.conditions):
+            continue
+        if package.build.catkin_package is None or export.item.startswith("/") or export.item in made:
+            continue
+        item = posixpath.normpath(export.item)
+        inside = item[len(package.path) :].lstrip("/") if package.path and item.startswith(package.path + "/") else item
+        if inside in (".", "") or package.has_files(inside) or inside.startswith(".."):
+            continue
+        yield Hit(export.at, inside, f"the exported include directory `{inside}` does not exist, so catkin stops",
+                  "create it, or drop INCLUDE_DIRS", package.name, severity="error")  # fmt: skip
+
+
+def _catkin(view: View, package):
+    targets = {t.name for t in package.build.targets} | {t.output_name for t in package.build.targets}
+    found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
+    for export in package.build.exports:
+        if not view.active(export.conditions) or "$" in export.item:
+            continue
+        if export.how == "libraries" and export.item not in targets and not package.build.unresolved:
+            if "/" in export.item or export.item.startswith("-") or export.item.endswith((".so", ".a")) or view.cmake(export.item):
+                continue
+            yield Hit(export.at, export.item, f"the exported library `{export.item}` is no target of `{package.name}`",
+                      "export the library's target name", package.name)  # fmt: skip
+        elif export.how == "system_depends" and export.item not in found:
+            near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
+            yield Hit(export.at, export.item, f"nothing sets `{export.item}_INCLUDE_DIRS` or `{export.item}_LIBRARIES`, so DEPENDS exports nothing",
+                      f"write `{near.upper() if near == 'Eigen3' else near}`" if near else f"find `{export.item}` first",
+                      package.name, severity="warning" if near else "note")  # fmt: skip
+
+
+def _ament(view: View, package):
+    exports = [e for e in package.build.exports if view.active(e.conditions)]
+    hows = {e.how for e in exports}
+    if not hows & {"ament_export_targets", "ament_export_libraries", "ament_export_include_directories", "ament_export_dependencies"}:
+        if package.digest.public_headers and not any(f.how == "ament_auto" for f in package.build.found):
+            libraries = [t for t in package.build.targets if t.kind in ("library", "interface") and t.name in _installed(package)]
+            if libraries and any("/include/" in f"/{h}" for h in package.digest.public_headers):
+                first = package.build.ament_package
+                yield Hit(first, "ament_export_include_directories", f"`{package.name}` installs headers and exports neither them nor a target",
+                          "call ament_export_targets or ament_export_include_directories", package.name)  # fmt: skip
+        return
+    if any(f.how == "ament_auto" for f in package.build.found) or any("$" in e.item for e in exports if e.how == "ament_export_dependencies"):
+        return
+    exported = set()
+    for export in exports:
+        if export.how == "ament_export_dependencies":
+            exported.add(export.item)
+            exported.update(p.name for p in view.cmake(export.item))
+    reach = view.spread(exported)
+    found = found_names(view, package) or set()
+    told = set()
+    for need in sorted(view.needs(package), key=weight):
+        if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, reach):
+            continue
+        name = next((p.name for p in need.providers if p.name in found), None)
+        if name is None or name in told or name == package.name or need.providers[0].kind != "ros":
+            continue
+        told.add(name)
+        yield Hit(need.at, name, f"an installed header includes `{need.subject}` and `{name}` is not exported",
+                  f"add `{name}` to ament_export_dependencies", package.name)  # fmt: skip
+
+
+def _installed(package) -> set[str]:
+    return {item for rule_ in package.build.installs if rule_.kind == "targets" for item in rule_.items}

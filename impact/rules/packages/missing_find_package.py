@@ -1,0 +1,97 @@
+"""missing-find-package: built code uses a package that CMake never looks for.
+
+What it does
+    Reports packages whose headers compiled code includes, or whose CMake variables and targets are used, when no
+    find_package (or catkin component, pkg_check_modules, ament_auto) of the package asks for them and none that is asked
+    for brings them.
+
+Why it breaks
+    The compiler misses the include path, or the linker the library, unless another package happens to add them.
+
+Severity
+    error where a target is linked or an include path used under a name that only the missing find_package defines;
+    warning for includes, since an include path may come along by accident.
+
+Example
+    ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
+
+Use instead
+    find_package(angles REQUIRED)
+
+Not reported
+    Packages that come with another one that is found; headers of the C and C++ libraries.
+"""
+
+from ...model.view import View
+from ..evidence import weight
+from ..rule import Hit, rule
+
+_SYSTEM_BY_DEFAULT = ("boost/", "yaml-cpp/", "tinyxml", "SDL/", "libusb", "GL/", "zlib", "curl/", "gtest/", "gmock/", "openssl/")
+
+
+@rule(severity="warning")
+def missing_find_package(view: View):
+    for package in view:
+        build = package.build
+        if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+            continue
+        found = found_names(view, package)
+        if found is None:
+            continue
+        reachable = view.spread(found)
+        closure = view.closure(package)
+        told = set()
+        for at, name in _given_to_targets(view, package):
+            if name in found or name in told or name in package.digest.modules:
+                continue
+            told.add(name)
+            yield Hit(at, name, f"`{name}` is given to a target and find_package(`{name}`) is never called",
+                      f"add find_package({name} REQUIRED)", package.name, severity="error")  # fmt: skip
+        for need in sorted(view.needs(package), key=weight):
+            if need.how != "include" or need.role != "build" or not need.certain:
+                continue
+            if view.answered(need.providers, reachable) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
+                continue
+            name = next((p.name for p in need.providers if p.name in closure), None)
+            if name is None or name in told or name == package.name:
+                continue
+            ros = need.providers[0].kind == "ros"
+            if not ros and any(_cmake_of(view, f) & {p.name for p in need.providers} for f in found):
+                continue
+            told.add(name)
+            direct = name in view.declared(package)
+            yield Hit(need.at, name, f"`{need.subject}` is included and CMake never looks for `{name}`",
+                      f"add find_package({name} REQUIRED) and give it to the target", package.name,
+                      severity="warning" if direct and need.providers[0].sure or direct and ros else "note")  # fmt: skip
+
+
+def _cmake_of(view: View, name: str) -> set[str]:
+    return {p.name for p in view.cmake(name)}
+
+
+def found_names(view: View, package) -> set[str] | None:
+    """Every package CMake looks for, under the names others know them by; None when CMake finds by names unknown."""
+    names: set[str] = set()
+    for found in package.build.found:
+        if found.how == "ament_auto":
+            names.update(n for n, kinds in view.declared(package).items() if kinds & {"build", "buildtool"})
+        names.add(found.name)
+        names.update(p.name for p in view.cmake(found.name))
+    for export in package.build.exports:
+        if export.how == "ament_export_dependencies":
+            names.add(export.item)
+    if any("${" in f.name for f in package.build.found):
+        return None
+    names.update(dependency for generated in package.build.generated for dependency, _ in generated.dependencies)
+    return names
+
+
+def _given_to_targets(view: View, package):
+    """Names in ament_target_dependencies and `pkg::target` links that only find_package(pkg) can define."""
+    own = {t.name for t in package.build.targets}
+    for target in package.build.targets:
+        for link in target.links:
+            if not view.certain((*target.conditions, *link.conditions)) or "$" in link.item or link.item in own:
+                continue
+            if link.how == "ament" and view._is_package(link.item):
+                yield link.at, link.item

@@ -1,0 +1,184 @@
+"""missing-install: a file or target that is used or exported is not installed.
+
+What it does
+    Compares install rules (CMake, setup.py, setup.cfg) with what the package offers: executables and libraries, plugin
+    libraries and their descriptions, launch files and scripts that something starts, folders that `$(find pkg)` reaches;
+    and finds install rules whose file or folder does not exist.
+
+Why it breaks
+    Everything works from the build tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
+
+Severity
+    error for an install rule of something that does not exist, and for ament_python data files that match nothing;
+    warning otherwise.
+
+Example
+    add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
+
+Use instead
+    install(TARGETS tcp_socket_node udp_socket_node ...)
+"""
+
+import posixpath
+import re
+
+from ...model.build import At
+from ...model.view import View
+from ..rule import Hit, rule
+
+
+@rule(severity="warning")
+def missing_install(view: View):
+    referred = _referred(view)
+    for package in view:
+        if not package.build.files:
+            continue
+        if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+            continue
+        if any(f.how == "ament_auto" for f in package.build.found) and package.build.ament_package is None:
+            continue
+        installs = [i for i in package.build.installs if view.active(i.conditions)]
+        yield from _absent(view, package, installs)
+        if not installs and package.build_type == "catkin" and not package.build.targets:
+            continue
+        yield from _targets(view, package, installs, referred)
+        yield from _descriptions(view, package, installs)
+        yield from _folders(view, package, installs, referred)
+
+
+def _referred(view: View) -> dict[str, dict[str, set[str]]]:
+    """Package to what the workspace's launch files and scripts start or open in it: kind to names."""
+    found: dict[str, dict[str, set[str]]] = {}
+    for package in view.workspace:
+        for use in package.digest.references:
+            r = use.reference
+            if r.package and r.name and use.role == "run":
+                found.setdefault(r.package, {}).setdefault(r.kind, set()).add(r.name)
+    return found
+
+
+def _absent(view: View, package, installs):
+    for install in installs:
+        if install.kind not in ("files", "programs", "directory") or not view.certain(install.conditions):
+            continue
+        for item in install.items:
+            path = posixpath.normpath(item)
+            if "$" in item or item.startswith("/") or path in package.files or path in package.folders or path in (".", package.path):
+                continue
+            if package.path and not path.startswith(package.path + "/"):
+                continue
+            if any(path.startswith(p) for p in ("build", "devel")) or re.search(r"[*?<>]", item):
+                continue
+            if path + ".in" in package.files or install.kind == "files" and "." in path and _made(package, path):
+                continue
+            inside = path[len(package.path) :].lstrip("/")
+            yield Hit(install.at, inside, f"`{inside}` is installed and does not exist", "create it, or drop it from the rule",
+                      package.name, severity="error")  # fmt: skip
+
+
+def _made(package, path: str) -> bool:
+    """True for files that the build itself writes (configured, generated): their name is mentioned by another command."""
+    return not any(path.endswith(e) for e in (".launch", ".xml", ".yaml", ".py", ".h", ".hpp", ".md", ".rviz"))
+
+
+def _targets(view: View, package, installs, referred):
+    installed = {item for i in installs if i.kind == "targets" for item in i.items}
+    if any("$" in item for item in installed) or any(i.kind == "export" for i in installs) and not installed:
+        return
+    exported = {e.item for e in package.build.exports if e.how == "libraries"}
+    started = referred.get(package.name, {}).get("executable", set())
+    plugins = {posixpath.basename(c.library).removeprefix("lib").removesuffix(".so") for _, c in package.digest.plugins}
+    linked = {link.item for t in package.build.targets if t.name in installed for link in t.links if link.how == "link"}
+    for target in package.build.targets:
+        if target.name in installed or target.kind not in ("executable", "library", "module") or not view.certain(target.conditions):
+            continue
+        if _aside(package, target):
+            continue
+        name = target.output_name or target.name
+        why = None
+        if target.kind == "executable" and name in started:
+            why = "a launch file starts it"
+        elif target.kind != "executable" and (target.name in exported or name in exported):
+            why = "it is exported"
+        elif target.kind != "executable" and (target.name in plugins or name in plugins):
+            why = "a plugin description names it"
+        elif target.kind == "library" and target.name in linked and not _static(target):
+            why = "an installed target links it"
+        elif target.kind == "executable" and any(t.name in installed for t in package.build.targets if t.kind == "executable"):
+            why = "other executables are"
+        if why:
+            yield Hit(target.at, target.name, f"`{target.name}` is not installed, although {why}",
+                      f"add it to install(TARGETS ...)", package.name,
+                      severity="note" if why == "other executables are" and package.build_type == "catkin" and False else "")  # fmt: skip
+
+
+def _static(target) -> bool:
+    return "STATIC" in target.definitions or "OBJECT" in target.definitions
+
+
+def _aside(package, target) -> bool:
+    from ...model.package import role_of_folder
+
+    inside = lambda p: p[len(package.path) :].lstrip("/")  # noqa: E731
+    if role_of_folder(inside(target.at.path)) or re.search(r"(^|_)(test|tests|example|demo|benchmark)(_|$)", target.name):
+        return True
+    return bool(target.sources) and all(role_of_folder(inside(s)) for s in target.sources)
+
+
+def _covered(package, installs, path: str) -> bool:
+    """True when an install rule takes the file."""
+    for install in installs:
+        for item in install.items:
+            if "$" in item:
+                return True
+            item = posixpath.normpath(item.rstrip("/")) if item.rstrip("/") else ""
+            if path == item:
+                return True
+            if install.kind == "directory" and (item in ("", ".", package.path) or path.startswith(item + "/")):
+                return True
+            if install.kind == "python" and (path.startswith(item + "/") or not item):
+                return True
+    return False
+
+
+def _descriptions(view: View, package, installs):
+    """Plugin descriptions that the manifest exports (catkin)."""
+    for export in package.manifest.exports:
+        value = export.attributes.get("plugin", "")
+        if not value.startswith("${prefix}"):
+            continue
+        path = posixpath.normpath(posixpath.join(package.path, value[len("${prefix}/") :]))
+        if path not in package.files:
+            if path + ".in" in package.files or _covered(package, installs, path):
+                continue
+            yield Hit(At(package.digest.manifest_path, export.line), value[len("${prefix}/") :],
+                      f"the exported plugin description `{value[len('${prefix}/'):]}` does not exist", "correct the path",
+                      package.name)  # fmt: skip
+        elif package.build_type == "catkin" and not _covered(package, installs, path):
+            yield Hit(At(package.digest.manifest_path, export.line), posixpath.basename(path),
+                      f"the exported plugin description `{posixpath.basename(path)}` is not installed",
+                      f"install(FILES {value[len('${prefix}/'):]} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})", package.name)  # fmt: skip
+
+
+def _folders(view: View, package, installs, referred):
+    """Launch files and data that something of the workspace opens and no rule installs."""
+    opened = referred.get(package.name, {}).get("file", set())
+    missing: dict[str, str] = {}
+    for name in sorted(opened):
+        path = posixpath.normpath(posixpath.join(package.path, name)) if "$" not in name else ""
+        if path in package.files and not _covered(package, installs, path):
+            folder = name.split("/")[0] if "/" in name else name
+            missing.setdefault(folder, name)
+    for folder, name in missing.items():
+        at = package.build.catkin_package or package.build.ament_package or At(package.build.files[0], 1)
+        yield Hit(at, folder, f"`{name}` is opened through the package's share folder and not installed",
+                  f"install(DIRECTORY {folder} DESTINATION "
+                  + ("${CATKIN_PACKAGE_SHARE_DESTINATION})" if package.build_type == "catkin" else "share/${PROJECT_NAME})"),
+                  package.name)  # fmt: skip
+    scripts = referred.get(package.name, {}).get("executable", set())
+    for path in package.digest.scripts:
+        name = posixpath.basename(path)
+        if name in scripts and not _covered(package, installs, path):
+            yield Hit(At(path, 1), name, f"`{name}` is started by a launch file and not installed",
+                      "catkin_install_python(PROGRAMS ...)" if package.build_type == "catkin" else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})",
+                      package.name)  # fmt: skip

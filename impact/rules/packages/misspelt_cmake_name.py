@@ -1,0 +1,93 @@
+"""misspelt-cmake-name: a name given to CMake is a slip away from the one that was meant.
+
+What it does
+    Reports names in find_package, catkin COMPONENTS, ament_export_dependencies, ament_target_dependencies and
+    catkin_package that nobody provides and that are two known names run together, or one edit or a different case away
+    from a name the package declares or finds; and variables such as `Eigen3_INCLUDE_DIR` that no find module sets, one
+    edit or case away from one that is.
+
+Why it breaks
+    CMake takes an unknown variable as empty and says nothing; an unknown package stops this build or a dependant's.
+
+Severity
+    error where configuration of the package itself stops; warning otherwise.
+
+Example
+    ament_export_dependencies(nav2_costmap_2dnav2_util)
+
+Use instead
+    ament_export_dependencies(nav2_costmap_2d nav2_util)
+"""
+
+from ...model.spelling import Names
+from ...model.view import View
+from ..rule import Hit, rule
+
+_SUFFIXES = ("_INCLUDE_DIRS", "_INCLUDE_DIR", "_LIBRARIES", "_LIBRARY", "_LIBS", "_EXPORTED_TARGETS", "_DEFINITIONS", "_VERSION")
+
+
+@rule(severity="warning")
+def misspelt_cmake_name(view: View):
+    for package in view:
+        declared = view.declared(package)
+        found = {f.name for f in package.build.found}
+        near = Names(set(declared) | found | set(view.workspace.packages))
+        for at, name, required, conditions in _named(package):
+            if not view.active(conditions) or view.cmake(name) or name in declared or name in found:
+                continue
+            halves = _run_together(name, near.names)
+            if halves:
+                yield Hit(at, name, f"`{name}` is `{halves[0]}` and `{halves[1]}` run together", f"write `{halves[0]} {halves[1]}`",
+                          package.name, severity="error" if required else "warning")  # fmt: skip
+                continue
+            meant = near.nearest(name)
+            if meant is not None and meant != name and view.target.ever_released(name) is False:
+                yield Hit(at, name, f"nobody provides `{name}`; `{meant}` is declared", f"write `{meant}`", package.name,
+                          severity="error" if required and view.certain(conditions) else "warning")  # fmt: skip
+        yield from _variables(view, package, found)
+
+
+def _named(package):
+    for f in package.build.found:
+        if f.how in ("find_package", "catkin") and f.name != "catkin":
+            yield f.at, f.name, f.required or f.how == "catkin", f.conditions
+    for e in package.build.exports:
+        if e.how in ("ament_export_dependencies", "catkin_depends"):
+            yield e.at, e.item, False, e.conditions
+    for target in package.build.targets:
+        for link in target.links:
+            if link.how == "ament" and "$" not in link.item:
+                yield link.at, link.item, False, link.conditions
+
+
+def _run_together(name: str, names) -> tuple[str, str] | None:
+    for cut in range(3, len(name) - 2):
+        if name[:cut] in names and name[cut:] in names:
+            return name[:cut], name[cut:]
+    return None
+
+
+def _variables(view: View, package, found):
+    """Variables that only differ in case from what a find_package of the package sets."""
+    folded = {name.lower(): name for name in found}
+    for use in package.build.uses:
+        if use.kind != "variable" or not view.active(use.conditions):
+            continue
+        for suffix in _SUFFIXES:
+            if use.name.endswith(suffix):
+                stem = use.name[: -len(suffix)]
+                break
+        else:
+            continue
+        if stem in found or stem.lower() not in folded:
+            continue
+        meant = folded[stem.lower()]
+        sets = view.providers.variables(meant)
+        if sets is None or use.name in sets:
+            continue
+        right = next((v for v in sets if v.endswith(suffix)), None)
+        if right is None:
+            right = next((v for v in sets if v.lower() == use.name.lower() or v.lower() == use.name.lower() + "s"), None)
+        if right is not None:
+            yield Hit(use.at, use.name, f"find_package({meant}) sets `{right}`, so `{use.name}` is empty", f"write `${{{right}}}`",
+                      package.name)  # fmt: skip

@@ -1,0 +1,58 @@
+"""unreleased-package: a declared package exists in ROS, and not on a target.
+
+What it does
+    Reports dependencies on packages that some distro has released and the target's distro, at its date, has not, when
+    the workspace does not bring them either.
+
+Why it breaks
+    Nothing can install the package there: `rosdep install` fails, find_package fails, the node does not start.
+
+Severity
+    error when CMake or sources use the package without a condition; warning otherwise, since people also build
+    dependencies from source in an underlay (name it in `[workspace] underlays`, `repos` or `private`).
+
+Example
+    <depend>moveit_plugins</depend>             # on a distro where MoveIt is not released
+
+Use instead
+    The package's successor there, a `.repos` file that brings the source, or
+    <depend condition="$ROS_DISTRO != kilted">moveit_plugins</depend>
+"""
+
+from ...model.view import View
+from ..rule import Hit, rule
+
+
+@rule(severity="warning")
+def unreleased_package(view: View):
+    target = view.target
+    for package in view:
+        seen = set()
+        for dependency in package.manifest.dependencies:
+            name = dependency.name
+            if name in seen or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
+                continue
+            if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
+                continue
+            if not target.ever_released(name) or not target.knows_releases:
+                continue
+            if dependency.condition and not view.active_manifest(dependency.condition):
+                continue
+            seen.add(name)
+            used = any(
+                need.certain and need.required and need.role == "build" and any(p.name == name for p in need.providers)
+                for need in view.needs(package)
+            )
+            yield Hit(
+                view.manifest_place(package, dependency),
+                name,
+                f"`{name}` is not released in {target.distro}{_when(view, name)}",
+                view.successor(name) or "bring its source into the workspace, or put a condition on the dependency",
+                package.name,
+                severity="error" if used and not view.underlaid else "warning",
+            )
+
+
+def _when(view: View, name: str) -> str:
+    last = view.last_distro(name)
+    return f" (last seen in {last})" if last else ""

@@ -1,0 +1,61 @@
+"""unresolvable-key: a declared dependency is neither a package nor a rosdep key on a target.
+
+What it does
+    Reports dependencies of a manifest that are not in the workspace, not released on the target, and that rosdep cannot
+    turn into something installable on the target's platform, although the name is known elsewhere or is one edit away
+    from a known one.
+
+Why it breaks
+    `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package.
+
+Example
+    <depend>Eigen3</depend>
+
+Use instead
+    <depend>eigen</depend>
+
+Not reported
+    Names never seen in public: they may belong to a private repository, so they are a note. Dependencies under a
+    condition that does not hold on the target, and names listed in `[workspace] private`.
+"""
+
+from ...model.view import View
+from ...model.spelling import nearest
+from ..rule import Hit, rule
+
+
+@rule(severity="error")
+def unresolvable_key(view: View):
+    target = view.target
+    for package in view:
+        seen = set()
+        for dependency in package.manifest.dependencies:
+            name = dependency.name
+            if name in seen or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
+                continue
+            if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
+                continue
+            if dependency.condition and not view.active_manifest(dependency.condition):
+                continue
+            seen.add(name)
+            if target.ever_released(name):
+                continue  # unreleased-package says it
+            guess = nearest(name, view.known_names)
+            known = target.known_key(name)
+            at = view.manifest_place(package, dependency)
+            if known:
+                yield Hit(
+                    at, name, f"rosdep has no rule for `{name}` on {target.platform}", _cure(guess, name), package.name,
+                    severity="error" if target.knows_keys else "warning",
+                )  # fmt: skip
+            elif guess:
+                yield Hit(at, name, f"`{name}` is neither a package nor a rosdep key", _cure(guess, name), package.name)
+            else:
+                yield Hit(
+                    at, name, f"`{name}` is no package or rosdep key known in public",
+                    "name it in `[workspace] private` of rosimpact.toml if it is your own", package.name, severity="note",
+                )  # fmt: skip
+
+
+def _cure(guess: str | None, name: str) -> str:
+    return f"declare `{guess}`" if guess and guess != name else "declare a key that exists there, or put a condition on it"

@@ -1,0 +1,53 @@
+"""language-standard: the C++ standard is too low for a dependency's headers.
+
+What it does
+    Compares the standard the package compiles with (-std= flags, CMAKE_CXX_STANDARD, else the target compiler's default)
+    with what the headers it includes need in the target's version.
+
+Why it breaks
+    The compiler stops inside somebody else's header with errors about missing features.
+
+Severity
+    error for a -std= flag or a fixed CMAKE_CXX_STANDARD below what is needed, or none where the compiler's default is
+    below; warning where the version is not known exactly.
+
+Example
+    add_compile_options(-std=c++11)             # and pcl 1.12 needs C++14
+
+Use instead
+    set(CMAKE_CXX_STANDARD 17)
+"""
+
+from ...model.view import View
+from ...targets.library import default_standard, needed_standard
+from ..rule import Hit, rule
+
+
+@rule(severity="error")
+def language_standard(view: View):
+    default = default_standard(view.target)
+    for package in view:
+        if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto") or not package.digest.includes:
+            continue
+        fixed = package.build.standard
+        have = _order(fixed[0]) if fixed else default
+        if have is None or fixed and package.build.standard_default_only and have >= (default or 0):
+            continue
+        for include in package.digest.includes:
+            if include.role != "build" or not view.certain(include.conditions):
+                continue
+            need = needed_standard(view.target, include.path)
+            if need is None or _order(need.standard) <= have:
+                continue
+            at = fixed[1] if fixed else include.at
+            written = f"C++{fixed[0] % 100:02d} is set" if fixed else f"no C++ standard is set and {view.target.platform}'s compiler takes C++{have % 100:02d}"
+            yield Hit(at, f"-std=c++{fixed[0] % 100:02d}" if fixed else include.path,
+                      f"{written}, and `{include.path}` of {need.package} {need.version} needs C++{need.standard}",
+                      f"set(CMAKE_CXX_STANDARD {need.standard})", package.name,
+                      severity="error" if need.sure else "warning")  # fmt: skip
+            break
+
+
+def _order(standard: int) -> int:
+    """98 and 3 come before 11."""
+    return 1998 if standard in (98, 3) else 2000 + standard % 100

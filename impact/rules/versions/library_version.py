@@ -1,0 +1,48 @@
+"""library-version: a version asked of a library is not what the platform has.
+
+What it does
+    Compares the version in find_package(X n) and pkg_check_modules(... x>=n) with the platform's version of the library,
+    by the rule the library's own configuration uses (same major for OpenCV, at least for Boost ...).
+
+Why it breaks
+    CMake stops: "Could not find a configuration file that is compatible with requested version".
+
+Severity
+    error for an unconditional REQUIRED request; warning otherwise.
+
+Example
+    find_package(OpenCV 3 REQUIRED)             # Ubuntu focal and newer have 4
+
+Use instead
+    find_package(OpenCV REQUIRED)               # and code for both, by CV_VERSION_MAJOR
+"""
+
+from ...model.view import View
+from ...targets.library import satisfies
+from ..rule import Hit, rule
+
+
+@rule(severity="error")
+def library_version(view: View):
+    for package in view:
+        for found in package.build.found:
+            if not found.version or not view.active(found.conditions) or found.name in view.workspace.packages:
+                continue
+            answer = satisfies(view.target, found.name, found.version, found.exact)
+            if answer is None or answer.holds:
+                continue
+            # A second, weaker request beside it (`find_package(OpenCV 4 QUIET)` then 3) means that both are handled.
+            others = [f for f in package.build.found if f.name == found.name and f is not found]
+            if any(_holds(view, o) for o in others):
+                continue
+            sure = found.required and view.certain(found.conditions)
+            yield Hit(found.at, found.name, f"{found.name} is {answer.version}, and CMake asks for {found.version}",
+                      "ask for a version that every target has, or for none", package.name,
+                      severity="error" if sure else "warning" if found.required else "note")  # fmt: skip
+
+
+def _holds(view: View, found) -> bool:
+    if not found.version:
+        return True
+    answer = satisfies(view.target, found.name, found.version, found.exact)
+    return answer is None or answer.holds

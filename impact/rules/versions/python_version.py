@@ -1,0 +1,50 @@
+"""python-version: a Python file does not parse, or imports a removed module, on a target's Python.
+
+What it does
+    Reports syntax that only Python 2 takes where the target has Python 3, syntax newer than the target's Python, and
+    modules and names of the standard library that the target's Python no longer has.
+
+Why it breaks
+    The node stops at its first line: SyntaxError or ModuleNotFoundError.
+
+Severity
+    error for files that are nodes, scripts or modules of the package; warning for tests; note for examples.
+
+Example
+    except urllib2.URLError, e:
+
+Use instead
+    except urllib.error.URLError as e:
+
+Not reported
+    Imports with an except branch, and code under a test of the Python version.
+"""
+
+from ...model.view import View
+from ..rule import Hit, rule
+
+_SEVERITY = {"run": "error", "build": "error", "test": "warning", "aside": "note"}
+
+
+@rule(severity="error")
+def python_version(view: View):
+    minor = view.target.python
+    for package in view:
+        told = set()
+        for use in package.digest.syntax:
+            severity = _SEVERITY.get(use.role, "note")
+            if use.needs == 2 and minor and use.at.path not in told:
+                told.add(use.at.path)
+                yield Hit(use.at, use.what, f"Python 3.{minor} refuses {use.what}", "write it so that Python 3 takes it", package.name,
+                          severity=severity)  # fmt: skip
+            elif use.needs > 2 and minor and use.needs > minor:
+                yield Hit(use.at, use.what, f"{use.what} needs Python 3.{use.needs}, and the target has 3.{minor}",
+                          "write it so that every target's Python takes it", package.name, severity=severity)  # fmt: skip
+        for item in package.digest.imports:
+            if not minor or not view.certain(item.conditions):
+                continue
+            gone = view.providers.stdlib_removed(item.module, minor)
+            if gone and item.module not in view.workspace.modules:
+                severity = _SEVERITY.get(item.role, "note")
+                yield Hit(item.at, item.module, f"module `{item.module}` is gone in Python 3.{minor}", gone, package.name,
+                          severity="warning" if item.lazy and severity == "error" else severity)  # fmt: skip

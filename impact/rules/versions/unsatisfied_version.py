@@ -1,0 +1,49 @@
+"""unsatisfied-version: a version bound of the manifest does not hold on a target.
+
+What it does
+    Compares `version_gte`, `version_gt`, `version_lt`, `version_lte` and `version_eq` of every dependency with the version
+    that the workspace or the target has.
+
+Why it breaks
+    catkin and bloom write the bound into the Debian package, so installing fails; rosdep ignores the bound, so a source
+    build goes on and fails later, in the compiler or at run time.
+
+Example
+    <depend version_gte="2.9.0">moveit_core</depend>     # the robot, humble, has 2.5.9
+
+Use instead
+    A bound that holds on every target, or code for both versions.
+"""
+
+from ...model.view import View
+from ...targets.version import compare
+from ..rule import Hit, rule
+
+_HOLDS = {
+    "version_lt": lambda c: c < 0, "version_lte": lambda c: c <= 0, "version_eq": lambda c: c == 0,
+    "version_gte": lambda c: c >= 0, "version_gt": lambda c: c > 0,
+}  # fmt: skip
+_SIGN = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
+
+
+@rule(severity="error")
+def unsatisfied_version(view: View):
+    for package in view:
+        seen = set()
+        for dependency in package.manifest.dependencies:
+            if not dependency.bounds or dependency.kind in ("conflict", "replace", "group") or dependency.name in seen:
+                continue
+            if dependency.condition and not view.active_manifest(dependency.condition):
+                continue
+            here = view.workspace.packages.get(dependency.name)
+            version = here.manifest.version if here else view.target.version(dependency.name) or view.target.library(dependency.name)
+            if not version:
+                continue
+            for name, bound in dependency.bounds:
+                if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
+                    seen.add(dependency.name)
+                    yield Hit(view.manifest_place(package, dependency), dependency.name,
+                              f"`{dependency.name}` is {version}, and the manifest asks for {_SIGN[name]} {bound}",
+                              "relax the bound, or update that target", package.name,
+                              severity="" if not here else "warning")  # fmt: skip
+                    break

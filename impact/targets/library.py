@@ -1,0 +1,169 @@
+"""Components of platform libraries: which are compiled, and which are gone in which version."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .target import Target
+from .version import at_least, parts
+
+# Boost libraries that are linked against. Source: Boost's "Getting Started", section "Header-Only Libraries".
+BOOST_COMPILED = frozenset(
+    "atomic chrono container context contract coroutine date_time exception fiber filesystem graph iostreams json locale log "
+    "math mpi nowide program_options python random regex serialization signals stacktrace system test thread timer "
+    "type_erasure unit_test_framework url wave".split()
+)
+
+
+class Gone(NamedTuple):
+    """A component that a library's version lacks, and what to do."""
+
+    version: str
+    help: str
+
+
+class _Row(NamedTuple):
+    package: str
+    component: str
+    library: str
+    gone_in: str
+    help: str
+    source: str
+
+
+_GONE = (
+    _Row(
+        "Boost",
+        "signals",
+        "boost",
+        "1.69",
+        "drop the component and use boost/signals2 (header-only)",
+        "Boost 1.69 release notes",
+    ),
+    _Row(
+        "Boost",
+        "exception",
+        "boost",
+        "1.83",
+        "drop the component: Boost.Exception is header-only",
+        "Boost 1.69 CMake configuration",
+    ),
+    _Row("Boost", "coroutine2", "boost", "1.60", "use `coroutine` or `context`", "Boost.Coroutine2 is header-only"),
+    _Row(
+        "Boost",
+        "system",
+        "boost",
+        "1.89",
+        "drop the component: Boost.System is header-only since 1.69",
+        "Boost 1.89 release notes",
+    ),
+    _Row("OpenCV", "nonfree", "opencv", "3.0", "use `xfeatures2d` of opencv_contrib", "OpenCV 3.0 transition guide"),
+    _Row("OpenCV", "legacy", "opencv", "3.0", "the module was removed", "OpenCV 3.0 transition guide"),
+    _Row("OpenCV", "contrib", "opencv", "3.0", "name the modules of opencv_contrib", "OpenCV 3.0 transition guide"),
+    _Row("OpenCV", "gpu", "opencv", "3.0", "use the `cuda*` modules", "OpenCV 3.0 transition guide"),
+    _Row("OpenCV", "ocl", "opencv", "3.0", "use UMat", "OpenCV 3.0 transition guide"),
+    _Row("OpenCV", "viz", "opencv", "5.0", "", "OpenCV 5 change log"),
+)
+
+
+def gone_component(target: Target, package: str, component: str) -> Gone | None:
+    """Whether a component of a CMake package is gone on a target, None when it is there or not known."""
+    for row in _GONE:
+        if row.package == package and row.component == component:
+            version = target.library(row.library)
+            if version and at_least(version, row.gone_in):
+                return Gone(version, row.help)
+    return None
+
+
+class Answer(NamedTuple):
+    """Whether a version request holds, and the version that is there."""
+
+    holds: bool
+    version: str
+
+
+# CMake package name to the library's name in platform_versions.yaml. Others are looked up in lower case.
+_LIBRARY_OF = {"OpenCV": "opencv", "Boost": "boost", "Eigen3": "eigen3", "PCL": "pcl", "Qt5": "qt5", "Qt6": "qt6", "Ceres": "ceres",
+               "yaml-cpp": "yaml-cpp", "VTK": "vtk", "Protobuf": "protobuf", "fmt": "fmt", "Bullet": "bullet", "assimp": "assimp",
+               "spdlog": "spdlog", "nlohmann_json": "nlohmann-json", "CMake": "cmake"}  # fmt: skip
+# Packages whose version file accepts only the same major version (SameMajorVersion). Others accept anything newer.
+# Sources: OpenCVConfig-version.cmake.in, Eigen3ConfigVersion.cmake, PCLConfigVersion.cmake (newer or equal), BoostConfig.
+_SAME_MAJOR = frozenset({"OpenCV", "Eigen3", "Qt5", "Qt6", "VTK", "Protobuf"})
+
+
+def satisfies(target: Target, package: str, request: str, exact: bool) -> Answer | None:
+    """Whether find_package(package request [EXACT]) holds by the platform's version; None when that is not known."""
+    name = _LIBRARY_OF.get(package)
+    if name is None:
+        return None
+    version = target.library(name)
+    if not version:
+        return None
+    if package == "OpenCV" and target.ros == 1 and target.distro == "kinetic":
+        return None  # ROS kinetic brings OpenCV 3 beside the platform's 2
+    low, _, high = request.partition("...")
+    if exact:
+        return Answer(parts(version)[: len(parts(low))] == parts(low), version)
+    holds = at_least(version, low)
+    if holds and high:
+        bound = high.lstrip("<")
+        holds = not at_least(version, bound) if high.startswith("<") else not at_least(version, bound) or parts(version)[: len(parts(bound))] == parts(bound)
+    elif holds and package in _SAME_MAJOR:
+        holds = parts(version)[:1] == parts(low)[:1]
+    return Answer(holds, version)
+
+
+class NeededStandard(NamedTuple):
+    """A C++ standard that a header needs: 11, 14, 17 ...; of which package, in which version; sure when all users do."""
+
+    standard: int
+    package: str
+    version: str
+    sure: bool
+
+
+class _StandardRow(NamedTuple):
+    prefix: str
+    package: str
+    library: bool
+    since: str
+    standard: int
+    source: str
+
+
+# Headers that do not compile below a standard, by the start of their path. Newest first.
+_STANDARDS = (
+    _StandardRow("rclcpp/", "rclcpp", False, "16.0.0", 17, "REP-2000: Humble targets C++17"),
+    _StandardRow("rclcpp/", "rclcpp", False, "0.5.0", 14, "REP-2000: Crystal and newer target C++14"),
+    _StandardRow("pcl/", "pcl", True, "1.10", 14, "PCL 1.10 change log: C++14 is required"),
+    _StandardRow("pcl/", "pcl", True, "1.9", 11, "PCL 1.9 change log"),
+    _StandardRow("opencv2/", "opencv", True, "4.0", 11, "OpenCV 4.0 change log: a C++11 library"),
+    _StandardRow("gazebo/", "gazebo-classic", True, "11.0", 17, "gazebo 11 migration guide"),
+    _StandardRow("gazebo/", "gazebo-classic", True, "6.0", 11, "gazebo 6 migration guide"),
+    _StandardRow("moveit/", "moveit_core", False, "0.9.0", 11, "MoveIt change log, kinetic"),
+    _StandardRow("gtest/", "gtest", True, "1.17", 17, "GoogleTest 1.17 release notes"),
+    _StandardRow("gtest/", "gtest", True, "1.13", 14, "GoogleTest 1.13 release notes"),
+    _StandardRow("gtest/", "gtest", True, "1.8.1", 11, "GoogleTest 1.10 release notes"),
+)
+
+
+def needed_standard(target: Target, include: str) -> NeededStandard | None:
+    """The C++ standard that an include path needs on a target, None when nothing is known."""
+    for row in _STANDARDS:
+        if include.startswith(row.prefix):
+            version = target.library(row.package) if row.library else target.version(row.package)
+            if version and at_least(version, row.since):
+                return NeededStandard(row.standard, row.package, version, True)
+    return None
+
+
+def default_standard(target: Target) -> int | None:
+    """Year of the C++ standard that the target's compiler takes by default (1998, 2014, 2017), None when not known.
+
+    Source: GCC's documentation of -std: gnu++98 before 6, gnu++14 from 6, gnu++17 from 11.
+    """
+    gcc = target.library("gcc")
+    if not gcc:
+        return None
+    return 2017 if at_least(gcc, "11") else 2014 if at_least(gcc, "6") else 1998

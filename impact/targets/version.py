@@ -1,0 +1,27 @@
+"""Versions as dotted numbers, compared as Debian and CMake compare plain ones."""
+
+from __future__ import annotations
+
+import re
+
+_NUMBER = re.compile(r"\d+")
+
+
+def parts(version: str) -> tuple[int, ...]:
+    """`4.5.4+dfsg-9ubuntu4` gives (4, 5, 4): epoch, revision and packaging suffixes are left out."""
+    text = version.split(":", 1)[-1]
+    text = re.split(r"[-+~]", text, maxsplit=1)[0]
+    return tuple(int(n) for n in _NUMBER.findall(text)[:4])
+
+
+def compare(a: str, b: str) -> int:
+    """-1, 0 or 1. Missing parts count as 0, as in CMake's VERSION_LESS."""
+    left, right = parts(a), parts(b)
+    size = max(len(left), len(right))
+    left, right = left + (0,) * (size - len(left)), right + (0,) * (size - len(right))
+    return (left > right) - (left < right)
+
+
+def at_least(version: str, bound: str) -> bool:
+    """True when version is bound or newer."""
+    return compare(version, bound) >= 0
