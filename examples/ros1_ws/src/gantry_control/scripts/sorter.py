@@ -10,7 +10,7 @@ from gantry_msgs.msg import Potato, PotatoArray
 from std_msgs.msg import Float64
 
 
-class Sorter(object):
+class Sorter:
     """Potatoes in, goals of the axis out."""
 
     def __init__(self):

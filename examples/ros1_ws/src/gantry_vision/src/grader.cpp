@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <stdexcept>
 
+#include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import rclpy
 from ament_index_python.packages import get_package_share_directory
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from porter_msgs.msg import BatteryReport
 from rclpy.node import Node
 
 from porter_monitor.limits import Verdict, read_limits
-from porter_msgs.msg import BatteryReport
 
 LEVELS = {
     Verdict.GO_ON: DiagnosticStatus.OK,

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 
 import pytest
-
 from porter_monitor.limits import Limits, Verdict, read_limits
 
 
