@@ -13,12 +13,13 @@ from __future__ import annotations
 
 import fnmatch
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 import msgspec
 
 from ..facts.manifest import Manifest
+from ..gather import Gathered
 from ..tree import PathProblem, Tree, inside
 
 _FILES = frozenset(
@@ -62,7 +63,7 @@ class PackagePlace(msgspec.Struct, frozen=True, gc=False):
     ignored: str = ""
 
 
-class Discovery:
+class Discovered:
     """What was found.
 
     packages: with a manifest, sorted by path. foreign: without. ignored: found, and left out as colcon is told to.
@@ -84,7 +85,7 @@ class Discovery:
             first.setdefault(place.name, place.path)
         self.duplicates = tuple(duplicates)
         self._owners: dict[str, PackagePlace | None] = {"": None}
-        self._owners.update((place.path, place) for place in every)
+        self._owners.update((place.path, place) for place in self.packages)
 
     @property
     def repositories(self) -> dict[str, str | None]:
@@ -92,7 +93,7 @@ class Discovery:
         return {place.path: place.repository for place in (*self.packages, *self.foreign)}
 
     def owner(self, path: str) -> PackagePlace | None:
-        """The innermost package a file or folder lies in, ignored ones included; None outside of every package."""
+        """The innermost of `packages` that a file or folder lies in; None where there is none."""
         owners = self._owners
         if path in owners:
             return owners[path]
@@ -109,19 +110,20 @@ class Discovery:
         return owner
 
 
-def discover(tree: Tree, manifest_of: Callable[[str], Manifest | None]) -> Discovery:
-    """Finds the packages of a tree.
+def discover(tree: Tree, gathered: Gathered) -> Discovered:
+    """Finds the packages of a tree from its paths and the facts of its manifests.
 
-    manifest_of: gives the facts of a manifest by its path, None when the file could not be read. A manifest without a
-    usable name still makes a package, so that what is wrong with it can be reported.
+    A manifest without a usable name still makes a package, so that what is wrong with it can be reported; one that could
+    not be read at all makes none, and is among the problems of `gathered`.
     """
-    return _Search(tree, manifest_of).run()
+    return _Search(tree, gathered).run()
 
 
 class _Search:
-    def __init__(self, tree: Tree, manifest_of: Callable[[str], Manifest | None]):
+    def __init__(self, tree: Tree, gathered: Gathered):
         self.tree = tree
-        self.manifest_of = manifest_of
+        self.gathered = gathered
+        gathered.preload(gathered.paths("manifest", "manifest_variant"))
         self.problems: list[PathProblem] = []
         self.files: dict[str, set[str]] = {}
         for entry in tree.entries():
@@ -132,7 +134,7 @@ class _Search:
         self.defaults = self._defaults()
         self.meta = self._meta()
 
-    def run(self) -> Discovery:
+    def run(self) -> Discovered:
         bases, only = self._bases()
         places: dict[str, PackagePlace] = {}
         foreign: dict[str, PackagePlace] = {}
@@ -176,7 +178,7 @@ class _Search:
                     ignored=self._ignored(place.name),
                 )
             )
-        return Discovery(found, self.problems)
+        return Discovered(found, self.problems)
 
     def _above(self, folder: str, places: Iterable[str]) -> str | None:
         """The nearest of the places above the folder."""
@@ -208,18 +210,18 @@ class _Search:
         )
         if "package.xml" in names:
             path = _join(folder, "package.xml")
-            manifest = self.manifest_of(path)
-            if manifest is None and not self.tree.exists(path):
+            manifest = self._manifest(path)
+            if manifest is None:
                 return None
         elif variants:
             path = variants[-1][1]
-            manifest = self.manifest_of(path)
+            manifest = self._manifest(path)
             if manifest is None or not manifest.name:
                 return None
         else:
             return None
         given = self._given(folder, names)
-        name = _text(given.get("name")) or (manifest.name if manifest else "") or _folder_name(folder, self.tree)
+        name = _text(given.get("name")) or manifest.name or _folder_name(folder, self.tree)
         given = {**self._named(name), **given}
         return PackagePlace(
             path=folder,
@@ -327,6 +329,9 @@ class _Search:
                     if place is not None and isinstance(values, dict):
                         into.setdefault(place, {}).update(values)
         return by_name, by_path
+
+    def _manifest(self, path: str) -> Manifest | None:
+        return self.gathered.facts(path).facts if path in self.gathered.kinds else None
 
     def _given(self, folder: str, names: set[str]) -> dict[str, Any]:
         """What colcon.pkg and colcon.meta say of a folder; the latter weighs more."""
