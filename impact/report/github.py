@@ -1,0 +1,106 @@
+"""The report as GitHub workflow commands, which GitHub shows beside the lines of a pull request.
+
+Syntax and escapes: docs.github.com, "Workflow commands for GitHub Actions". GitHub shows at most ten annotations
+of each level for one step; what goes beyond is printed as plain lines and told in the step summary.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..rules.rule import Finding
+from . import markdown
+from .report import Report, count_by_severity, counted, coverage_text, focus, fresh, one_line, safe
+
+SHOWN = 10
+_COMMAND = {"error": "error", "warning": "warning", "note": "notice"}
+
+
+def render(report: Report, prefix: str = "") -> str:
+    """Workflow commands, the rest of the findings as plain lines, and one line of coverage.
+
+    prefix: the workspace's folder relative to the repository's root, where annotations need it.
+    """
+    folder = prefix.strip("/")
+    folder = f"{folder}/" if folder not in ("", ".") else ""
+    commands: list[str] = []
+    rest: list[str] = []
+    used = dict.fromkeys(_COMMAND, 0)
+    rank = tuple(_COMMAND)
+    findings = sorted(fresh(report), key=lambda finding: rank.index(finding.severity))
+    for finding in _different_first(findings):
+        if used[finding.severity] < SHOWN:
+            used[finding.severity] += 1
+            commands.append(_command(report, finding, folder))
+        else:
+            rest.append(
+                f"{folder}{one_line(finding.path)}:{finding.line}: {finding.severity}[{finding.rule}] "
+                f"{one_line(finding.message)}{_on(report, finding)}"
+            )
+    if report.failure:
+        commands.insert(0, f"::error title=rosimpact::{_data(report.failure)}")
+    counts = ", ".join(counted(number, severity) for severity, number in count_by_severity(findings).items())
+    return "\n".join([*commands, *rest, f"rosimpact: {counts}; {coverage_text(report.coverage)}"]) + "\n"
+
+
+def step_summary(report: Report) -> str:
+    """Markdown for the file that GITHUB_STEP_SUMMARY names: the verdict and a table of all errors and warnings."""
+    lines = [markdown.render(report)]
+    findings = sorted(
+        (finding for finding in fresh(report) if finding.severity != "note"), key=lambda finding: finding.severity
+    )
+    if findings:
+        lines += ["| | place | finding | targets |", "|---|---|---|---|"]
+    for finding in findings[:500]:
+        place = markdown.code(f"{one_line(finding.path)}:{finding.line}").replace("|", "\\|")
+        message = markdown.escaped(finding.message).replace("\\|", "|").replace("|", "\\|")
+        targets = markdown.escaped(", ".join(finding.targets))
+        lines.append(f"| {finding.severity} | {place} | {message} | {targets} |")
+    if len(findings) > 500:
+        lines.append(f"\nand {len(findings) - 500:,} more")
+    return "\n".join(lines) + "\n"
+
+
+def write_step_summary(report: Report, environment: Mapping[str, str]) -> None:
+    """Appends the summary to the file GITHUB_STEP_SUMMARY names; nothing without it. Raises OSError."""
+    path = environment.get("GITHUB_STEP_SUMMARY")
+    if path:
+        with open(path, "a", encoding="utf-8", errors="replace") as file:
+            file.write(step_summary(report))
+
+
+def _different_first(findings: list[Finding]) -> list[Finding]:
+    """Findings with those first that say something not said yet, since only ten of a level are shown."""
+    said: set[tuple[str, str]] = set()
+    first, again = [], []
+    for finding in findings:
+        key = (finding.rule, finding.message)
+        (again if key in said else first).append(finding)
+        said.add(key)
+    return first + again
+
+
+def _command(report: Report, finding: Finding, folder: str) -> str:
+    properties = {"file": folder + finding.path, "title": f"{finding.rule}{_on(report, finding)}"}
+    if finding.line:
+        properties["line"] = str(finding.line)
+    if finding.line and finding.column:
+        properties["col"] = str(finding.column)
+        _, shown = focus(finding, report.excerpt(finding.path, finding.line))
+        if shown is not None and shown.width:
+            properties["endColumn"] = str(max(finding.column, shown.start + shown.width))
+    text = finding.message + (f"\nhelp: {finding.help}" if finding.help else "")
+    told = ",".join(f"{key}={_property(value)}" for key, value in properties.items())
+    return f"::{_COMMAND[finding.severity]} {told}::{_data(text)}"
+
+
+def _on(report: Report, finding: Finding) -> str:
+    return f" ({one_line(', '.join(finding.targets))})" if finding.targets and len(report.targets) > 1 else ""
+
+
+def _data(text: str) -> str:
+    return safe(text).replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

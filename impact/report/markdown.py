@@ -1,0 +1,96 @@
+"""The report as a comment for a pull request: ten lines at most."""
+
+from __future__ import annotations
+
+import re
+
+from ..rules.rule import Finding
+from .report import Report, count_by_severity, counted, coverage_text, fresh, one_line
+
+_LINES = 10
+_SYMBOL = {"error": "❌", "warning": "⚠️", "note": "💡"}
+_LONGEST = 300
+
+
+def render(report: Report) -> str:
+    """Markdown of at most ten lines: the verdict by target, the worst findings, what they rest on."""
+    findings = fresh(report)
+    head = [f"**rosimpact** {verdict(report)}", ""]
+    tail = ["", f"<sub>{_tail(report, findings)}</sub>"]
+    order = {"error": 0, "warning": 1}
+    told = sorted((each for each in findings if each.severity in order), key=lambda each: order[each.severity])
+    room = _LINES - len(head) - len(tail)
+    rows = [_row(report, finding) for finding in told]
+    if len(rows) > room:
+        rest = count_by_severity(told[room - 1 :])
+        more = ", ".join(counted(number, severity) for severity, number in rest.items() if number)
+        rows = [*rows[: room - 1], f"- and {more} more"]
+    return "\n".join([*head, *rows, *tail] if rows else [head[0], *tail]) + "\n"
+
+
+def verdict(report: Report) -> str:
+    """`breaks on robot: 2; may break on rolling: 1; safe on: humble, jazzy`, in Markdown."""
+    if report.failure:
+        return f"failed: {escaped(report.failure)}"
+    if not report.coverage.parsed:
+        return "analysed nothing"
+    by_target = {target.name: {"error": 0, "warning": 0, "note": 0} for target in report.targets}
+    for finding in fresh(report):
+        for name in finding.targets or by_target:
+            if name in by_target:
+                by_target[name][finding.severity] += 1
+    bad = [f"**{escaped(name)}**: {cell['error']}" for name, cell in by_target.items() if cell["error"]]
+    doubtful = [
+        f"{escaped(name)}: {cell['warning']}"
+        for name, cell in by_target.items()
+        if cell["warning"] and not cell["error"]
+    ]
+    good = [escaped(name) for name, cell in by_target.items() if not cell["error"] and not cell["warning"]]
+    parts = [f"breaks on {', '.join(bad)}"] if bad else []
+    parts += [f"may break on {', '.join(doubtful)}"] if doubtful else []
+    parts += [f"safe on: {', '.join(good)}"] if good else []
+    return "; ".join(parts) or "found no target to check"
+
+
+def _row(report: Report, finding: Finding) -> str:
+    place = one_line(finding.path) + (f":{finding.line}" if finding.line else "")
+    told = set(re.split(r"[\s,;()]+", finding.message)).issuperset(finding.targets)
+    everywhere = len(finding.targets) == len(report.targets)
+    names = "" if told or everywhere else f" ({escaped(', '.join(finding.targets))})"
+    text = f"- {_SYMBOL[finding.severity]} {code(place)} {escaped(_short(finding.message))}{names}"
+    return text + (f"; {escaped(_short(finding.help))}" if finding.help else "")
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+
+
+def _tail(report: Report, findings: list[Finding]) -> str:
+    parts = [coverage_text(report.coverage)]
+    notes = count_by_severity(findings)["note"]
+    parts += [counted(notes, "note")] if notes else []
+    parts += [f"new against {code(one_line(report.base))}"] if report.base else []
+    parts += [f"{len(report.suppressed):,} suppressed"] if report.suppressed else []
+    parts += [f"{len(report.known):,} in the baseline"] if report.known else []
+    parts.append(f"rosimpact {escaped(report.version)}, data of {escaped(report.data)}")
+    return " · ".join(parts)
+
+
+def escaped(text: str) -> str:
+    """Text that Markdown shows as it is on one line: code in single backticks stays code, all else is inert.
+
+    An empty comment keeps GitHub from taking `@name` and `#1` for a mention.
+    """
+    parts = re.split(r"(`[^`]+`)", one_line(text))
+    return "".join(
+        part if index % 2 else re.sub(r"[@#](?=\w)", r"\g<0><!-- -->", re.sub(r"[\\`*_\[\]<>&|$]", r"\\\g<0>", part))
+        for index, part in enumerate(parts)
+    )
+
+
+def code(text: str) -> str:
+    """Text as inline code, whatever backticks it holds."""
+    longest = max((len(run) for run in re.findall("`+", text)), default=0)
+    fence = "`" * (longest + 1)
+    pad = " " if text.startswith("`") or text.endswith("`") else ""
+    return f"{fence}{pad}{text}{pad}{fence}"

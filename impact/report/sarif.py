@@ -1,0 +1,183 @@
+"""The report as SARIF 2.1.0 (OASIS standard), as code scanning services read it."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable
+from typing import Any
+from urllib.parse import quote
+
+from ..findings import printable
+from ..rules.rule import Edit, Finding, Rule
+from .report import Report, focus
+
+SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+_ROOT = "%SRCROOT%"
+
+
+def render(report: Report) -> str:
+    """The report as SARIF text that ends in a line end. Suppressed and known findings are in it, marked as such."""
+    results = [
+        *((finding, []) for finding in report.findings),
+        *((finding, [{"kind": "inSource"}]) for finding in report.suppressed),
+        *((finding, [{"kind": "external", "justification": "in the baseline"}]) for finding in report.known),
+    ]
+    rules = _rules(report.rules, [finding for finding, _ in results])
+    index = {rule["id"]: position for position, rule in enumerate(rules)}
+    run = {
+        "tool": {
+            "driver": {
+                "name": "rosimpact",
+                "version": report.version,
+                "semanticVersion": report.version,
+                "rules": rules,
+            }
+        },
+        "invocations": [_invocation(report)],
+        "originalUriBaseIds": {_ROOT: {"description": {"text": "the root of the workspace"}}},
+        "columnKind": "unicodeCodePoints",
+        "results": [_result(report, finding, silent, index) for finding, silent in results],
+        "properties": {
+            "targets": [
+                {"name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform}
+                for target in report.targets
+            ],
+            "data": report.data,
+            "coverage": report.coverage._asdict() | {"unresolved": dict(report.coverage.unresolved)},
+        }
+        | ({"base": report.base} if report.base else {}),
+    }
+    if not re.fullmatch(r"\d+\.\d+\.\d+(?:[-+].*)?", report.version):
+        del run["tool"]["driver"]["semanticVersion"]
+    log = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+    return printable(json.dumps(log, ensure_ascii=False, indent=1)) + "\n"
+
+
+def _invocation(report: Report) -> dict[str, Any]:
+    covered = report.coverage
+    notices = [{"level": "error", "message": {"text": report.failure}}] if report.failure else []
+    if covered.parsed < covered.files:
+        unread = covered.files - covered.parsed
+        notices.append({"level": "warning", "message": {"text": f"{unread} of {covered.files} files were not read"}})
+    invocation: dict[str, Any] = {"executionSuccessful": not report.failure}
+    return invocation | ({"toolExecutionNotifications": notices} if notices else {})
+
+
+def _rules(rules: Iterable[Rule], findings: list[Finding]) -> list[dict[str, Any]]:
+    """Descriptors of the rules that have results, with their documentation as help."""
+    known = {rule.name: rule for rule in rules}
+    return [_rule(name, known.get(name)) for name in sorted({finding.rule for finding in findings})]
+
+
+def _rule(name: str, rule: Rule | None) -> dict[str, Any]:
+    if rule is None or not rule.documentation.strip():
+        return {"id": name}
+    head, _, body = rule.documentation.strip().partition("\n")
+    short = head.partition(": ")[2] or head
+    what = re.search(r"^What it does\n((?:[ \t]+\S.*\n?)+)", body, re.MULTILINE)
+    full = " ".join(what[1].split()) if what else short
+    return {
+        "id": name,
+        "name": "".join(part.title() for part in name.split("-")),
+        "shortDescription": {"text": short},
+        "fullDescription": {"text": full},
+        "help": {"text": rule.documentation.strip(), "markdown": _help(body) or short},
+        "defaultConfiguration": {"level": rule.severity},
+        "properties": {"tags": ["ros", rule.family], "precision": "medium" if rule.preview else "high"},
+    }
+
+
+def _help(body: str) -> str:
+    """A rule's documentation as Markdown: its sections become headings, examples code blocks."""
+    lines: list[str] = []
+    code = False
+    for line in body.strip("\n").split("\n"):
+        if line and not line[0].isspace():
+            lines += (["```", ""] if code else []) + [f"**{line}**", ""]
+            code = line.rstrip(":").lower() in ("example", "use instead")
+            lines += ["```"] if code else []
+        else:
+            lines.append(line[4:] if line.startswith("    ") else line)
+    while lines and not lines[-1]:
+        lines.pop()
+    return "\n".join(lines + (["```"] if code else []))
+
+
+def _result(report: Report, finding: Finding, silent: list[dict[str, str]], index: dict[str, int]) -> dict[str, Any]:
+    text = finding.message + (f"\nhelp: {finding.help}" if finding.help else "")
+    result: dict[str, Any] = {
+        "ruleId": finding.rule,
+        "ruleIndex": index[finding.rule],
+        "level": finding.severity,
+        "message": {"text": text},
+        "locations": [_location(report, finding)],
+        "partialFingerprints": {"rosimpact/v1": finding.fingerprint},
+        "properties": {
+            "targets": list(finding.targets),
+            "package": finding.package,
+            "subject": finding.subject,
+        },
+    }
+    if report.base:
+        result["baselineState"] = "new" if finding.new else "unchanged"
+    if silent:
+        result["suppressions"] = silent
+    if finding.fix:
+        result["fixes"] = [_fix(finding)]
+    return result
+
+
+def _location(report: Report, finding: Finding) -> dict[str, Any]:
+    place: dict[str, Any] = {"artifactLocation": _artifact(finding.path)}
+    if finding.line:
+        region: dict[str, Any] = {"startLine": finding.line}
+        lines = report.excerpt(finding.path, finding.line)
+        first, shown = focus(finding, lines)
+        if shown is not None:
+            region["snippet"] = {"text": shown.text}
+            if finding.column:
+                region["startColumn"] = finding.column
+                if shown.width:
+                    # The end is exclusive: the column behind the last character.
+                    region["endColumn"] = shown.start + shown.width + 1
+            place["contextRegion"] = {
+                "startLine": first,
+                "endLine": first + len(lines) - 1,
+                "snippet": {"text": "\n".join(lines)},
+            }
+        elif finding.column:
+            region["startColumn"] = finding.column
+        place["region"] = region
+    location: dict[str, Any] = {"physicalLocation": place}
+    if finding.package:
+        location["logicalLocations"] = [{"name": finding.package, "kind": "package"}]
+    return location
+
+
+def _artifact(path: str) -> dict[str, str]:
+    """A path as a relative URI; one that is empty stands for the root itself."""
+    # A first segment with a colon would read as a scheme (RFC 3986, 4.2); quote escapes colons, so that it cannot.
+    return {"uri": quote(path.encode("utf-8", "surrogateescape"), safe="/") or "./", "uriBaseId": _ROOT}
+
+
+def _fix(finding: Finding) -> dict[str, Any]:
+    by_path: dict[str, list[Edit]] = {}
+    for edit in finding.fix:
+        by_path.setdefault(edit.path, []).append(edit)
+    return {
+        "description": {"text": finding.help or "apply the fix"},
+        "artifactChanges": [
+            {
+                "artifactLocation": _artifact(path),
+                "replacements": [
+                    {
+                        "deletedRegion": {"byteOffset": edit.start, "byteLength": edit.end - edit.start},
+                        "insertedContent": {"text": edit.text},
+                    }
+                    for edit in edits
+                ],
+            }
+            for path, edits in by_path.items()
+        ],
+    }
