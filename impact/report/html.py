@@ -13,7 +13,7 @@ from typing import Any
 from ..findings import printable
 from ..rules.rule import Finding
 from .markdown import verdict
-from .report import Report, count_by_severity, coverage_text, focus, matrix, safe
+from .report import Report, count_by_severity, coverage_text, focus, fresh, matrix, safe
 
 _LONGEST_LINE = 400
 _PLACEHOLDER = re.compile(r"\{\{(policy|title|data)\}\}")
@@ -55,7 +55,7 @@ def _data(report: Report) -> str:
         "seconds": round(report.seconds, 2),
         "suppressed": len(report.suppressed),
         "known": len(report.known),
-        "counts": count_by_severity(report.findings),
+        "counts": count_by_severity(fresh(report)),
         "targets": [target._asdict() for target in report.targets],
         "folders": {package.name: package.path for package in report.packages},
         "matrix": [
