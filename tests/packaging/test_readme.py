@@ -1,0 +1,37 @@
+"""The README's commands are those that are run, and what it points to is there."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SET_UP = (
+    "python3 -m venv .venv || "
+    "{ $(command -v sudo) sh -c 'apt-get update && apt-get install -y python3-venv' && python3 -m venv .venv; } && "
+)
+
+
+def commands() -> list[str]:
+    """The lines of README.md that set the project up."""
+    return [line.strip() for line in README.splitlines() if line.strip().startswith("python3 -m venv")]
+
+
+def test_two_commands_set_up_and_run():
+    check, tests = commands()
+    assert check.startswith(SET_UP + ".venv/bin/pip install . && .venv/bin/rosimpact check examples/")
+    assert tests == SET_UP + ".venv/bin/pip install '.[test]' && .venv/bin/python -m pytest"
+
+
+def test_ci_runs_the_test_command_word_for_word():
+    lines = [line.strip() for line in (ROOT / ".ci/run").read_text(encoding="utf-8").splitlines()]
+    assert commands()[1] in lines
+
+
+@pytest.mark.parametrize("document", ["README.md", "CONTRIBUTING.md", "docs/ci.md", "examples/README.md"])
+def test_links_lead_somewhere(document):
+    path = ROOT / document
+    targets = re.findall(r"\]\(([^)#\s]+)[^)]*\)", path.read_text(encoding="utf-8"))
+    missing = [target for target in targets if "://" not in target and not (path.parent / target).exists()]
+    assert missing == []
