@@ -23,6 +23,7 @@ int main(int argc, char ** argv)
 }
 
 NAMES = ("humble", "jazzy", "rolling", "robot")
+PLATFORMS = {"humble": "ubuntu jammy", "jazzy": "ubuntu noble", "rolling": "ubuntu noble", "robot": "ubuntu jammy"}
 
 RULES = {
     name: Rule(name, family, severity, False, True, lambda: iter(()), f"{name}: {short}.\n\nWhat it does\n    {what}\n")
@@ -83,7 +84,7 @@ def report_of(hits, files, names=NAMES, **changes) -> Report:
     sources = Sources(files.get)
     findings = merge(hits, targets=names, rules=RULES, line_text=sources.line)
     targets = tuple(
-        ReportedTarget(name, "humble" if name == "robot" else name, "2026-08-22", "ubuntu jammy", "rosimpact.toml")
+        ReportedTarget(name, "humble" if name == "robot" else name, "2026-08-22", PLATFORMS[name], "rosimpact.toml")
         for name in names
     )
     packages = tuple(ReportedPackage(name, f"src/{name}") for name in ("driver", "localizer", "msgs", "planner", "ui"))

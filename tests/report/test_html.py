@@ -69,6 +69,8 @@ def test_the_page_shows_everything_and_asks_for_nothing(page, team):
     ]
     assert texts(browser, "#matrix thead th") == ["package", "humble", "jazzy", "rolling", "robot"]
     assert texts(browser, "#matrix tbody td") == ["! 1", "✗ 1", "✗ 1", "! 1", "·", "·", "·", "✗ 1"]
+    assert texts(browser, "#reason") == ["Targets chosen: rosimpact.toml"]
+    assert not browser.find_element("id", "old-label").is_displayed(), "nothing is older without a base"
     assert texts(browser, "#list .badge") == ["error", "error", "warning"]
     assert texts(browser, "#list mark") == ["tf2_geometry_msgs/tf2_geometry_msgs.h", "OpenCV", "cv_bridge"]
     assert browser.get_log("browser") == []
