@@ -1,0 +1,304 @@
+"""#if of the C and C++ preprocessor, evaluated as far as a machine's versions are known.
+
+Sources: the C++ standard, [cpp.cond]; version macros from the headers that define them (ros/common.h, rclcpp/version.h,
+opencv2/core/version.hpp, pcl/pcl_config.h, boost/version.hpp, Eigen/src/Core/util/Macros.h, QtCore/qtversionchecks.h,
+OgrePrerequisites.h).
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from functools import lru_cache
+
+from .environment import COMPARISONS, PARTS, Environment, against, numbers_of, version_of
+from .logic import both, either, negation
+
+_CPP_TOKEN = re.compile(
+    r"\s*(?:(?P<include>__has_include(?:_next)?\s*\(\s*(?:<[^>\n]*>|\"[^\"\n]*\")\s*\))"
+    r"|(?P<number>0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9][0-9']*)[uUlLzZ]*"
+    r"|(?P<name>[^\W\d]\w*)|(?P<char>'(?:[^'\\]|\\.)')|(?P<operator><<|>>|<=|>=|==|!=|&&|\|\||[-+*/%<>!~&|^?:(),]))"
+)
+_WORD_OPERATORS = {"and": "&&", "or": "||", "not": "!", "bitand": "&", "bitor": "|", "xor": "^", "not_eq": "!="}
+_PRECEDENCE = {
+    "||": 1, "&&": 2, "|": 3, "^": 4, "&": 5, "==": 6, "!=": 6, "<": 7, ">": 7, "<=": 7, ">=": 7,
+    "<<": 8, ">>": 8, "+": 9, "-": 9, "*": 10, "/": 10, "%": 10,
+}
+_PRESENT = frozenset(
+    ("__cplusplus", "__linux__", "__linux", "linux", "__unix__", "__unix", "unix", "__gnu_linux__", "__GNUC__")
+) | {"__has_include", "Q_OS_LINUX", "Q_OS_UNIX", "__ELF__", "__STDC__"}
+_ABSENT = frozenset(
+    (
+        "_WIN32",
+        "WIN32",
+        "__WIN32__",
+        "_WIN64",
+        "WIN64",
+        "_MSC_VER",
+        "__APPLE__",
+        "__MACH__",
+        "__MINGW32__",
+        "__MINGW64__",
+    )
+) | {"__CYGWIN__", "__FreeBSD__", "__OpenBSD__", "__NetBSD__", "__sun", "__ANDROID__", "__EMSCRIPTEN__", "__BORLANDC__"}
+_ABSENT |= {"Q_OS_WIN", "Q_OS_WIN32", "Q_OS_MAC", "Q_OS_MACOS", "Q_MOC_RUN", "SWIG", "DOXYGEN", "__INTELLISENSE__"}
+_ABSENT |= {"DOXYGEN_SHOULD_SKIP_THIS", "__VXWORKS__", "__QNX__", "ARDUINO"}
+_PART = re.compile(
+    r"(?:__)?(\w+?)_(?:VERSION_(MAJOR|MINOR|PATCH|REVISION|SUBMINOR)|(MAJOR|MINOR|PATCH|SUBMINOR)_VERSION)"
+)
+# X_VERSION as one number: how much major, minor and patch weigh.
+_WEIGHTS = {
+    "BOOST_VERSION": (100000, 100, 1),
+    "PCL_VERSION": (100000, 100, 1),
+    "FMT_VERSION": (10000, 100, 1),
+    "SPDLOG_VERSION": (10000, 100, 1),
+    "ZMQ_VERSION": (10000, 100, 1),
+    "QT_VERSION": (65536, 256, 1),
+    "OGRE_VERSION": (65536, 256, 1),
+    "MOVEIT_FCL_VERSION": (65536, 256, 1),
+    "OMPL_VERSION_VALUE": (1000000, 1000, 1),
+    "PY_VERSION_HEX": (1 << 24, 1 << 16, 1 << 8),
+}
+# Macros that make such a number from three.
+_MAKERS = {
+    "PCL_VERSION_CALC": (100000, 100, 1),
+    "ZMQ_MAKE_VERSION": (10000, 100, 1),
+    "QT_VERSION_CHECK": (65536, 256, 1),
+    "OGRE_VERSION_CHECK": (65536, 256, 1),
+    "FCL_VERSION_CHECK": (65536, 256, 1),
+}
+_AT_LEAST = re.compile(r"(\w+?)_(?:VERSION_(?:GTE|GE|AT_LEAST|MINIMUM)|MIN_VERSION)")
+_LESS_THAN = re.compile(r"(\w+?)_VERSION_(?:LT|LESS)")
+
+
+class _Cpp:
+    """A recursive descent parser over the tokens of one #if."""
+
+    def __init__(self, text: str) -> None:
+        self.tokens: list[tuple[str, str]] = []
+        position, text = 0, text.strip()
+        while position < len(text):
+            match = _CPP_TOKEN.match(text, position)
+            if match is None:
+                raise ValueError("no preprocessor expression")
+            kind = match.lastgroup or ""
+            value = match.group(kind)
+            if kind == "name" and value in _WORD_OPERATORS:
+                kind, value = "operator", _WORD_OPERATORS[value]
+            self.tokens.append((kind, value))
+            position = match.end()
+        self.tokens.append(("end", ""))
+        self.at = 0
+
+    def take(self) -> tuple[str, str]:
+        token = self.tokens[self.at]
+        self.at += 1
+        return token
+
+    def takes(self, value: str) -> bool:
+        if self.tokens[self.at] == ("operator", value):
+            self.at += 1
+            return True
+        return False
+
+    def expect(self, value: str) -> None:
+        if not self.takes(value):
+            raise ValueError(f"`{value}` expected")
+
+    def whole(self):
+        node = self.ternary()
+        if self.tokens[self.at][0] != "end":
+            raise ValueError("more than an expression")
+        return node
+
+    def ternary(self):
+        test = self.binary(1)
+        if not self.takes("?"):
+            return test
+        yes = self.ternary()
+        self.expect(":")
+        return ("?", test, yes, self.ternary())
+
+    def binary(self, least: int):
+        left = self.unary()
+        while True:
+            kind, value = self.tokens[self.at]
+            strength = _PRECEDENCE.get(value, 0) if kind == "operator" else 0
+            if strength < least:
+                return left
+            self.at += 1
+            left = (value, left, self.binary(strength + 1))
+
+    def unary(self):
+        kind, value = self.take()
+        if kind == "operator" and value in ("!", "-", "+", "~"):
+            return ("unary", value, self.unary())
+        if kind == "operator" and value == "(":
+            node = self.ternary()
+            self.expect(")")
+            return node
+        if kind == "number":
+            digits = value.replace("'", "")
+            octal = len(digits) > 1 and digits.isdigit() and digits[0] == "0"
+            if len(digits) > 20:
+                raise ValueError("number too long")
+            return ("number", int(digits, 8 if octal else 0))
+        if kind == "include":
+            return ("include", re.sub(r"^[^<\"]*[<\"]|[>\"]\s*\)$", "", value))
+        if kind != "name":
+            raise ValueError("operand expected")
+        if value == "defined":
+            opened = self.takes("(")
+            kind, value = self.take()
+            if kind != "name":
+                raise ValueError("name expected")
+            if opened:
+                self.expect(")")
+            return ("defined", value)
+        if self.takes("("):
+            return ("call", value, self.arguments())
+        return ("name", value)
+
+    def arguments(self) -> tuple:
+        """Arguments of a macro: expressions, or one operator as PCL_VERSION_COMPARE takes it."""
+        arguments: list = []
+        while not self.takes(")"):
+            if self.tokens[self.at][1] in COMPARISONS and self.tokens[self.at + 1] == ("operator", ","):
+                arguments.append(("operator", self.take()[1]))
+            else:
+                arguments.append(self.ternary())
+            if not self.takes(",") and self.tokens[self.at] != ("operator", ")"):
+                raise ValueError("`,` expected")
+        return tuple(arguments)
+
+
+@lru_cache(4096)
+def _cpp_parsed(text: str):
+    try:
+        return _Cpp(text).whole()
+    except (ValueError, LookupError, RecursionError):
+        return None
+
+
+def evaluate(text: str, environment: Environment) -> bool | None:
+    node = _cpp_parsed(text)
+    if node is None:
+        return None
+    value = _cpp_value(node, environment)
+    return None if value is None else value != 0
+
+
+def _truth(value: int | None) -> bool | None:
+    return None if value is None else value != 0
+
+
+def _cpp_value(node, environment: Environment) -> int | None:
+    kind = node[0]
+    if kind == "number":
+        return node[1]
+    if kind == "name":
+        return _macro(node[1], environment)
+    if kind == "defined":
+        return _defined(node[1], environment)
+    if kind == "include":
+        return environment.headers(node[1])
+    if kind == "call":
+        return _macro_call(node[1], node[2], environment)
+    if kind == "?":
+        test = _truth(_cpp_value(node[1], environment))
+        yes, no = _cpp_value(node[2], environment), _cpp_value(node[3], environment)
+        return (yes if yes == no else None) if test is None else yes if test else no
+    if kind == "unary":
+        value = _cpp_value(node[2], environment)
+        if node[1] == "!":
+            return negation(_truth(value))
+        return None if value is None else -value if node[1] == "-" else ~value if node[1] == "~" else value
+    left, right = _cpp_value(node[1], environment), _cpp_value(node[2], environment)
+    if kind == "&&":
+        return both(_truth(left), _truth(right))
+    if kind == "||":
+        return either(_truth(left), _truth(right))
+    if left is None or right is None:
+        return None
+    if kind in COMPARISONS:
+        return COMPARISONS[kind](left, right)
+    return _arithmetic(kind, left, right)
+
+
+def _arithmetic(kind: str, left: int, right: int) -> int | None:
+    if kind in ("<<", ">>"):
+        if not 0 <= right < 64:
+            return None
+        value = left << right if kind == "<<" else left >> right
+    elif kind in ("/", "%"):
+        if right == 0:
+            return None
+        quotient = abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
+        value = quotient if kind == "/" else left - quotient * right
+    else:
+        operations = {"+": operator.add, "-": operator.sub, "*": operator.mul, "|": operator.or_}
+        operations |= {"&": operator.and_, "^": operator.xor}
+        value = operations[kind](left, right)
+    return value if abs(value) < 1 << 64 else None
+
+
+def _defined(name: str, environment: Environment) -> bool | None:
+    if name in _PRESENT:
+        return True
+    if name in _ABSENT:
+        return False
+    if name == "CV_VERSION_EPOCH":
+        # OpenCV 2 alone has it.
+        order = against(version_of("opencv", environment), (3,))
+        return None if order is None else order < 0
+    return None
+
+
+def _macro(name: str, environment: Environment) -> int | None:
+    """The number a macro stands for; 0 for one that is surely not defined."""
+    if name in _ABSENT or name == "false":
+        return 0
+    if name == "true":
+        return 1
+    if name in ("__GNUC__", "__GNUC_MINOR__", "__GNUC_PATCHLEVEL__"):
+        known = numbers_of(version_of("gcc", environment) or "")
+        index = ("__GNUC__", "__GNUC_MINOR__", "__GNUC_PATCHLEVEL__").index(name)
+        return known[index] if index < len(known) else None
+    if name in _PRESENT:
+        return None if name in ("__cplusplus", "__has_include") else 1
+    eigen = ("EIGEN_WORLD_VERSION", "EIGEN_MAJOR_VERSION", "EIGEN_MINOR_VERSION")
+    if name in eigen:
+        # Eigen 3.4.0 is world 3, major 4, minor 0.
+        known = numbers_of(version_of("eigen", environment) or "")
+        return known[eigen.index(name)] if eigen.index(name) < len(known) else None
+    weights = _WEIGHTS.get(name)
+    if weights is not None:
+        prefix = "py" if name == "PY_VERSION_HEX" else name.partition("_VERSION")[0]
+        known = numbers_of(version_of(prefix, environment) or "")
+        if len(known) < 2:
+            return None
+        return sum(weight * part for weight, part in zip(weights, (*known, 0, 0), strict=False))
+    part = _PART.fullmatch(name)
+    if part is None:
+        return None
+    known = numbers_of(version_of(part.group(1), environment) or "")
+    index = PARTS[part.group(2) or part.group(3)]
+    return known[index] if index < len(known) else None
+
+
+def _macro_call(name: str, arguments: tuple, environment: Environment) -> int | None:
+    numbers = [_cpp_value(argument, environment) for argument in arguments if argument[0] != "operator"]
+    if not numbers or None in numbers:
+        return None
+    wanted = tuple(number for number in numbers if number is not None)
+    if name in _MAKERS:
+        return sum(weight * part for weight, part in zip(_MAKERS[name], (*wanted, 0, 0), strict=False))
+    if name == "PCL_VERSION_COMPARE" and arguments[0][0] == "operator":
+        order = against(version_of("pcl", environment), wanted)
+        return None if order is None else COMPARISONS[arguments[0][1]](order, 0)
+    for pattern, compare in ((_AT_LEAST, operator.ge), (_LESS_THAN, operator.lt)):
+        match = pattern.fullmatch(name)
+        if match:
+            order = against(version_of(match.group(1), environment), wanted)
+            return None if order is None else compare(order, 0)
+    return None
