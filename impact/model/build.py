@@ -1,7 +1,12 @@
 """The CMake of one package, interpreted across files: what is found, built, linked, generated, installed, exported."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 import msgspec
 
+from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 
 
@@ -54,7 +59,8 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     kind: executable, library, interface (INTERFACE library), module, test (add_gtest, ament_add_gtest, rostest ...),
     custom (add_custom_target), generated (rosidl_generate_interfaces, generate_messages, generate_parameter_library,
-    generate_dynamic_reconfigure_options ...), imported, alias.
+    generate_dynamic_reconfigure_options ...), imported, alias, external (ExternalProject_Add, ament_vendor), fetched
+    (FetchContent), unknown (something is given to it, but nothing that could be read makes it).
     sources: paths relative to the workspace root when they can be told, else as written.
     """
 
@@ -89,12 +95,14 @@ class Exported(msgspec.Struct, frozen=True, array_like=True, gc=False):
     how: ament_export_dependencies, ament_export_include_directories, ament_export_libraries, ament_export_targets,
     catkin_depends, system_depends (DEPENDS), include_dirs, libraries, cfg_extras, plugin_description, component
     (rclcpp_components: item is the class).
+    context: for a plugin description the package of the base class, for a component the library it is in.
     """
 
     item: str
     how: str
     at: At
     conditions: tuple[Condition, ...] = ()
+    context: str = ""
 
 
 class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -113,7 +121,8 @@ class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False
 class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
     or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
-    for variable, context is the command it is read in."""
+    for variable, context is the command it is read in; for a command of one of CMake's modules, the module that would
+    have to be included or found first (`FindPkgConfig` for `pkg_check_modules`)."""
 
     kind: str
     name: str
@@ -144,3 +153,44 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     ament_package: At | None = None
     unresolved: tuple[tuple[At, str], ...] = ()
     files: tuple[str, ...] = ()
+    message_files: tuple[tuple[str, At], ...] = ()
+
+
+def _no_extras(package: str) -> tuple[str, ...]:
+    return ()
+
+
+def interpret(
+    package_path: str,
+    read: Callable[[str], CMakeFile | None],
+    exists: Callable[[str], bool],
+    glob: Callable[[str, bool], list[str]],
+    *,
+    package: str = "",
+    dependencies: tuple[str, ...] = (),
+    extras: Callable[[str], tuple[str, ...]] = _no_extras,
+) -> Build:
+    """Interprets the CMakeLists.txt of a package, and all that it includes, without building.
+
+    All paths are posix paths relative to the workspace root, `` being the root. read gives the facts of a CMake file,
+    None when there is none; exists tells about files and folders; glob(pattern, recursive) lists the files that match a
+    pattern whose last part may hold wildcards, in all folders below when recursive. package: its name in package.xml.
+    dependencies: the build dependencies that package.xml declares, for ament_cmake_auto. extras: the CMake files that
+    another package of the workspace gives to those that find it, see extras_of().
+
+    Always returns; what could not be told or went beyond the bounds is in `unresolved`.
+    """
+    from .cmake import interpret_package
+
+    return interpret_package(package_path, read, exists, glob, package, dependencies, extras)
+
+
+def extras_of(package_path: str, glob: Callable[[str, bool], list[str]]) -> tuple[str, ...]:
+    """The files from which dependants of a package get its functions and macros: all CMake files in its `cmake` folder
+    and beside its CMakeLists.txt, templates included. The caller reads templates (`.cmake.in`, `.cmake.em`) as CMake."""
+    base = f"{package_path}/" if package_path else ""
+    found: dict[str, None] = {}
+    for ending in (".cmake", ".cmake.in", ".cmake.em"):
+        found.update(dict.fromkeys(sorted(glob(f"{base}*{ending}", False))))
+        found.update(dict.fromkeys(sorted(glob(f"{base}cmake/*{ending}", True))))
+    return tuple(found)

@@ -1,0 +1,26 @@
+"""The CMake interpreter: values, conditions, control flow, and what each family of commands means."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ...facts.cmake import CMakeFile
+from ..build import Build
+from . import ament, catkin, find, install, language, targets
+from .interpreter import Interpreter
+
+# Importing these registers what their commands mean.
+_FAMILIES = (language, find, targets, install, catkin, ament)
+
+
+def interpret_package(
+    package_path: str,
+    read: Callable[[str], CMakeFile | None],
+    exists: Callable[[str], bool],
+    glob: Callable[[str, bool], list[str]],
+    package: str,
+    dependencies: tuple[str, ...],
+    extras: Callable[[str], tuple[str, ...]],
+) -> Build:
+    """See build.interpret()."""
+    return Interpreter(package_path, read, exists, glob, package, dependencies, extras).run()

@@ -1,0 +1,365 @@
+"""ament_cmake, ament_cmake_auto, rosidl, rclcpp_components, pluginlib and generate_parameter_library.
+
+Source: the CMake files of those packages, and the ament_cmake user documentation.
+"""
+
+from __future__ import annotations
+
+import posixpath
+
+from ..build import At, Found, GeneratedInterfaces, Install
+from .blocks import Call
+from .catkin import sections
+from .interpreter import Interpreter, handles, stands_in_for
+from .targets import add_links, add_sources, known
+from .values import Word, split_words, word
+
+_CPP_SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
+
+
+def package_name(run: Interpreter) -> str:
+    """The name under which the package installs itself."""
+    return run.project or run.package
+
+
+@handles("ament_target_dependencies")
+def ament_target_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_target_dependencies()."""
+    if args:
+        items = [item for item in split_words(args[1:]) if item != "SYSTEM"]
+        add_links(run, known(run, args[0]), items, "ament")
+
+
+_EXPORTS = {
+    "ament_export_dependencies": "ament_export_dependencies",
+    "ament_export_include_directories": "ament_export_include_directories",
+    "ament_export_libraries": "ament_export_libraries",
+    "ament_export_library_names": "ament_export_libraries",
+    "ament_export_targets": "ament_export_targets",
+    "ament_export_interfaces": "ament_export_targets",
+    "ament_export_definitions": "ament_export_definitions",
+    "ament_export_link_flags": "ament_export_link_flags",
+}
+
+
+@handles(*_EXPORTS)
+def ament_export(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_export_dependencies() and kin."""
+    how = _EXPORTS[call.name]
+    for item in split_words(args):
+        if item in ("HAS_LIBRARY_TARGET", "NAMESPACE"):
+            continue
+        text = run.tree_path(item) if how == "ament_export_include_directories" else str(item)
+        run.add_export(text, how, item.at, run.under(item))
+
+
+@handles("ament_package")
+def ament_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_package(CONFIG_EXTRAS ...)."""
+    if not run.silent:
+        run.ament_package = run.place(call.at)
+    given = sections(args, frozenset({"CONFIG_EXTRAS", "CONFIG_EXTRAS_POST"}))
+    held = run.get(f"{package_name(run)}_CONFIG_EXTRAS")
+    extras = [*given.get("CONFIG_EXTRAS", []), *given.get("CONFIG_EXTRAS_POST", []), *(held.words if held else ())]
+    for item in split_words(extras):
+        run.add_export(run.tree_path(item), "cfg_extras", item.at, run.under(item))
+
+
+_ROSIDL = frozenset("DEPENDENCIES LIBRARY_NAME SKIP_INSTALL SKIP_GROUP_MEMBERSHIP_CHECK ADD_LINTER_TESTS".split())
+
+
+@handles("rosidl_generate_interfaces")
+def rosidl_generate_interfaces(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """rosidl_generate_interfaces(target files... DEPENDENCIES packages...)."""
+    if not args or run.silent:
+        return
+    target = args[0]
+    given = sections(args[1:], _ROSIDL)
+    if given.get("LIBRARY_NAME"):
+        given[""].extend(given["LIBRARY_NAME"][1:])
+    for flag in ("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK", "ADD_LINTER_TESTS"):
+        given[""].extend(given.get(flag, []))
+    files: list[str] = []
+    for item in split_words(given[""]):
+        # `folder:path` gives the folder that the path is relative to.
+        base, separator, rest = item.partition(":")
+        text = posixpath.join(base, rest) if separator else str(item)
+        path = run.tree_path(word(text, item.at))
+        files.append(path)
+        run.message_files[(path, run.place(item.at))] = None
+    wanted = tuple((str(item), run.place(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
+    run.generated.append(
+        GeneratedInterfaces("rosidl", str(target), tuple(files), wanted, run.place(call.at), run.under(target))
+    )
+    run.new_target(target, "generated", target.at)
+    run.set_text("rosidl_generate_interfaces_TARGET", str(target), call.at)
+    for language in ("rosidl_typesupport_cpp", "rosidl_typesupport_c", "rosidl_generator_c", "rosidl_generator_cpp",
+                     "rosidl_generator_py", "cpp", "py"):  # fmt: skip
+        run.new_target(f"{target}__{language}", "generated", target.at)
+
+
+@handles("rosidl_target_interfaces")
+def rosidl_target_interfaces(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """rosidl_target_interfaces(target interfaces typesupport), until Humble."""
+    if len(args) >= 2:
+        add_links(run, known(run, args[0]), [args[1]], "interfaces")
+
+
+@handles("rosidl_get_typesupport_target")
+def rosidl_get_typesupport_target(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """rosidl_get_typesupport_target(variable interfaces typesupport)."""
+    if len(args) >= 3:
+        run.set_text(args[0], f"{args[1]}__{args[2]}", args[1].at)
+
+
+@handles("rclcpp_components_register_nodes")
+def rclcpp_components_register_nodes(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """rclcpp_components_register_nodes(target classes...)."""
+    for item in split_words(args[1:]):
+        if item not in ("RESOURCE_INDEX", "rclcpp_components"):
+            run.add_export(item, "component", item.at, run.under(item), str(args[0]))
+
+
+@handles("rclcpp_components_register_node")
+def rclcpp_components_register_node(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """rclcpp_components_register_node(target PLUGIN class EXECUTABLE name): also makes and installs an executable."""
+    if not args:
+        return
+    given = sections(args[1:], frozenset("PLUGIN EXECUTABLE EXECUTOR RESOURCE_INDEX NO_UNDEFINED_SYMBOLS".split()))
+    for item in given.get("PLUGIN", [])[:1]:
+        run.add_export(item, "component", item.at, run.under(item), str(args[0]))
+    for item in given.get("EXECUTABLE", [])[:1]:
+        draft = run.new_target(item, "executable", item.at)
+        add_links(run, draft, [word("rclcpp", call.at), word("class_loader", call.at)], "generated")
+        run.add_install(
+            Install("targets", (str(item),), f"lib/{package_name(run)}", run.place(item.at), (), run.under(item))
+        )
+
+
+@handles("pluginlib_export_plugin_description_file")
+def pluginlib_export_plugin_description_file(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """pluginlib_export_plugin_description_file(base_package file): the file is installed too."""
+    if len(args) < 2:
+        return
+    item = args[1]
+    path = run.tree_path(item)
+    run.add_export(path, "plugin_description", item.at, run.under(item), str(args[0]))
+    folder = "" if item.startswith("/") else posixpath.dirname(item)
+    destination = posixpath.join("share", package_name(run), folder).rstrip("/")
+    run.add_install(Install("files", (path,), destination, run.place(item.at), (), run.under(item)))
+
+
+@handles("ament_python_install_package", "_ament_cmake_python_install_package")
+def ament_python_install_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_python_install_package(name PACKAGE_DIR folder)."""
+    if not args:
+        return
+    given = sections(
+        args[1:], frozenset("PACKAGE_DIR VERSION SETUP_CFG DESTINATION SCRIPTS_DESTINATION SKIP_COMPILE".split())
+    )
+    folder = given["PACKAGE_DIR"][0] if given.get("PACKAGE_DIR") else args[0]
+    run.add_install(
+        Install("python", (run.tree_path(folder),), str(args[0]), run.place(args[0].at), (), run.under(args[0]))
+    )
+
+
+@handles("ament_python_install_module")
+def ament_python_install_module(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_python_install_module(file)."""
+    for item in args[:1]:
+        run.add_install(Install("python", (run.tree_path(item),), "", run.place(item.at), (), run.under(item)))
+
+
+@handles("generate_parameter_library", "generate_parameter_module")
+def generate_parameter_library(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """generate_parameter_library(target yaml [validation header])."""
+    if len(args) < 2 or run.silent:
+        return
+    files = tuple(run.tree_path(item) for item in args[1:])
+    run.generated.append(
+        GeneratedInterfaces("parameters", str(args[0]), files, (), run.place(call.at), run.under(args[0]))
+    )
+    run.new_target(args[0], "generated", args[0].at)
+
+
+_TEST_OPTIONS = frozenset(
+    """
+    RUNNER TIMEOUT WORKING_DIRECTORY ENV APPEND_ENV APPEND_LIBRARY_DIRS SKIP_LINKING_MAIN_LIBRARIES SKIP_TEST
+    SKIP_RETURN_CODE PYTHON_EXECUTABLE COMMAND OUTPUT_FILE RESULT_FILE GENERATE_RESULT_FOR_RETURN_CODE_ZERO ARGS
+    LABELS TARGET PROCESSORS EXCLUDE_FROM_ALL
+    """.split()
+)
+_FLAGS = frozenset({"SKIP_LINKING_MAIN_LIBRARIES", "SKIP_TEST", "EXCLUDE_FROM_ALL"})
+
+
+def test_arguments(args: list[Word]) -> dict[str, list[Word]]:
+    """Arguments of a test command by keyword; a flag takes none, so sources may follow it."""
+    found = sections(args, _TEST_OPTIONS)
+    for flag in _FLAGS:
+        found[""].extend(found.get(flag, []))
+    return found
+
+
+@handles(
+    "ament_add_gtest",
+    "ament_add_gmock",
+    "ament_add_gtest_executable",
+    "ament_add_gmock_executable",
+    "ament_add_google_benchmark",
+    "ament_add_google_benchmark_executable",
+    "ament_add_ros_isolated_gtest",
+    "ament_add_ros_isolated_gmock",
+    "ament_add_catch2",
+)
+def ament_add_gtest(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """Tests that are executables."""
+    if args:
+        draft = run.new_target(args[0], "test", args[0].at)
+        add_sources(run, draft, test_arguments(args[1:])[""])
+
+
+@handles("ament_add_pytest_test", "ament_add_nose_test", "add_launch_test", "add_ros_test", "ament_add_test",
+         "ament_add_ros_isolated_pytest_test", "add_ros_isolated_launch_test")  # fmt: skip
+def ament_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """Tests that run a file; add_launch_test() names its test after the file unless TARGET says otherwise."""
+    if not args:
+        return
+    given = test_arguments(args[1:])
+    name = args[0]
+    sources = given[""][:1]
+    if call.name in ("add_launch_test", "add_ros_test", "add_ros_isolated_launch_test"):
+        sources = [name]
+        name = given["TARGET"][0] if given.get("TARGET") else word(name.replace("/", "_"), name.at, name.conditions)
+    if name in run.targets:
+        return
+    draft = run.new_target(name, "test", name.at)
+    if call.name != "ament_add_test":
+        add_sources(run, draft, sources)
+
+
+@handles("ament_add_gtest_test", "ament_add_gmock_test", "ament_add_google_benchmark_test", "ament_add_test_label")
+def ament_known_test(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """Commands about a test executable that is there already."""
+
+
+@handles("ament_vendor")
+def ament_vendor(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_vendor(): downloads and builds a project."""
+    if args:
+        run.new_target(args[0], "external", args[0].at)
+
+
+@handles("ament_auto_find_build_dependencies", "ament_auto_find_test_dependencies")
+def ament_auto_find_build_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_auto_find_build_dependencies(): finds every declared build dependency."""
+    given = sections(args, frozenset({"REQUIRED"}))
+    required = {str(item) for item in given.get("REQUIRED", [])}
+    names = [name for name in run.dependencies if name not in required]
+    for item in split_words(given.get("REQUIRED", [])):
+        run.add_found(Found(str(item), "ament_auto", run.place(item.at), True, conditions=run.under(item)))
+        run.extend(str(item), item.at)
+    for name in names:
+        run.add_found(Found(name, "ament_auto", run.place(call.at), conditions=run.conditions))
+        run.extend(name, call.at)
+
+
+@handles("ament_auto_add_library", "ament_auto_add_executable", "ament_auto_add_gtest", "ament_auto_add_gmock")
+def ament_auto_add_target(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_auto_add_library() and kin; DIRECTORY takes all sources of a folder."""
+    if not args:
+        return
+    name = args[0]
+    kind = {"library": "library", "executable": "executable"}.get(call.name.rpartition("_")[2], "test")
+    given = sections(
+        args[1:],
+        frozenset("DIRECTORY STATIC SHARED MODULE INTERFACE EXCLUDE_FROM_ALL NO_TARGET_LINK_LIBRARIES".split())
+        | (_TEST_OPTIONS if kind == "test" else frozenset()),
+    )
+    if "INTERFACE" in given:
+        kind = "interface"
+    draft = run.new_target(name, kind, name.at)
+    if "STATIC" in given:
+        draft.installed_as = "static"
+    for section in ("", "STATIC", "SHARED", "MODULE", "INTERFACE", "EXCLUDE_FROM_ALL", "NO_TARGET_LINK_LIBRARIES",
+                    "SKIP_LINKING_MAIN_LIBRARIES", "SKIP_TEST"):  # fmt: skip
+        add_sources(run, draft, given.get(section, []))
+    for directory in given.get("DIRECTORY", []):
+        relative = run.relative(run.resolve(directory))
+        hits = run.glob(posixpath.join(relative, "*"), True) if relative is not None else []
+        for path in sorted(hits):
+            if path.endswith(_CPP_SOURCES):
+                draft.sources[path] = None
+    for dependency in run.dependencies:
+        add_links(run, draft, [word(dependency, call.at)], "ament")
+    if kind != "test":
+        run.automatic.append(draft)
+
+
+@handles("ament_auto_package", "autoware_ament_auto_package", "autoware_auto_package")
+def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_auto_package(): installs what ament_auto_add_*() made, include/, and INSTALL_TO_SHARE folders."""
+    given = sections(
+        args,
+        frozenset(
+            "INSTALL_TO_PATH INSTALL_TO_SHARE CONFIG_EXTRAS CONFIG_EXTRAS_POST USE_SCOPED_HEADER_INSTALL_DIR".split()
+        ),
+    )
+    at = run.place(call.at)
+    package = package_name(run)
+    path_destination = "bin" if "INSTALL_TO_PATH" in given else f"lib/{package}"
+    for draft in run.automatic:
+        destination = path_destination if draft.kind == "executable" else "lib"
+        run.add_install(Install("targets", (draft.name,), destination, at, (), draft.conditions))
+        if draft.kind in ("library", "interface"):
+            run.add_export(draft.name, "ament_export_libraries", call.at, run.conditions)
+    include = run.tree_path("include/")
+    if run.exists(include.rstrip("/")):
+        run.add_install(Install("directory", (include,), "include", at, (), run.conditions))
+        run.add_export(include.rstrip("/"), "ament_export_include_directories", call.at, run.conditions)
+    share = split_words([*given.get("INSTALL_TO_SHARE", []), *given.get("USE_SCOPED_HEADER_INSTALL_DIR", [])])
+    for item in share:
+        run.add_install(
+            Install("directory", (run.tree_path(item),), f"share/{package}", run.place(item.at), (), run.under(item))
+        )
+    for dependency in run.dependencies:
+        run.add_export(dependency, "ament_export_dependencies", call.at, run.conditions)
+    ament_package(
+        run, call, [item for item in args if item in ("CONFIG_EXTRAS",) or item in given.get("CONFIG_EXTRAS", [])]
+    )
+
+
+@stands_in_for("autoware_package")
+def autoware_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """autoware_package() of autoware_cmake: C++17, ament_cmake_auto, all declared dependencies, Eigen."""
+    _wrapper_standard(run, call, 17)
+    find_quietly(run, call.at, "ament_cmake_auto", "eigen3_cmake_module", "Eigen3")
+    ament_auto_find_build_dependencies(run, call, [])
+
+
+@stands_in_for("nav2_package", "moveit_package")
+def compile_defaults(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """nav2_package() of nav2_common and moveit_package() of moveit_common: C++17 unless another is set."""
+    _wrapper_standard(run, call, 17)
+
+
+@stands_in_for("set_compiler_options", "export_windows_symbols")
+def ros2_control_defaults(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """set_compiler_options() and export_windows_symbols() of ros2_control_cmake: warnings, and C++17 unless set."""
+    if call.name == "set_compiler_options":
+        _wrapper_standard(run, call, 17)
+
+
+def _wrapper_standard(run: Interpreter, call: Call, number: int) -> None:
+    if run.get("CMAKE_CXX_STANDARD") is None and not run.silent:
+        run.standards.append((number, run.place(call.at), True))
+
+
+def find_quietly(run: Interpreter, at: At, *names: str) -> None:
+    """Packages that a wrapper finds by itself and that its own package exports: they count as found, not as asked for."""
+    for name in names:
+        run.add_found(Found(name, "ament_auto", run.place(at), conditions=run.conditions))
+
+
+@handles("ament_lint_auto_find_test_dependencies")
+def ament_lint_auto_find_test_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_lint_auto_find_test_dependencies(): finds declared test dependencies that are linters."""

@@ -1,0 +1,211 @@
+"""catkin, genmsg, dynamic_reconfigure and rostest, and the rosbuild macros that older packages still carry.
+
+Source: catkin's API reference and the CMake files of genmsg, actionlib_msgs, dynamic_reconfigure and rostest.
+"""
+
+from __future__ import annotations
+
+import posixpath
+
+from ..build import At, GeneratedInterfaces, Install
+from .blocks import Call
+from .interpreter import Interpreter, handles
+from .targets import add_links, add_sources
+from .values import Value, Word, split_words, word
+
+
+def sections(args: list[Word], keywords: frozenset[str]) -> dict[str, list[Word]]:
+    """Arguments by the keyword they follow; those before any keyword are under the empty one."""
+    found: dict[str, list[Word]] = {"": []}
+    current = found[""]
+    for item in args:
+        if item in keywords:
+            current = found.setdefault(str(item), [])
+        else:
+            current.append(item)
+    return found
+
+
+_PACKAGE = frozenset(
+    "INCLUDE_DIRS LIBRARIES CATKIN_DEPENDS DEPENDS CFG_EXTRAS EXPORTED_TARGETS SKIP_CMAKE_CONFIG_GENERATION "
+    "SKIP_PKG_CONFIG_GENERATION".split()
+)
+_PROMISES = {
+    "INCLUDE_DIRS": "include_dirs",
+    "LIBRARIES": "libraries",
+    "CATKIN_DEPENDS": "catkin_depends",
+    "DEPENDS": "system_depends",
+    "CFG_EXTRAS": "cfg_extras",
+}
+
+
+@handles("catkin_package")
+def catkin_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """catkin_package()."""
+    if not run.silent:
+        run.catkin_package = run.place(call.at)
+    for keyword, items in sections(args, _PACKAGE).items():
+        how = _PROMISES.get(keyword)
+        if how is None:
+            continue
+        for item in split_words(items):
+            text: str = item
+            if how == "include_dirs":
+                text = run.tree_path(item)
+            elif how == "cfg_extras":
+                text = _extras_path(run, item)
+            run.add_export(text, how, item.at, run.under(item))
+    package = run.project or run.package
+    run.set_unknown(f"{package}_EXPORTED_TARGETS", call.at)
+
+
+def _extras_path(run: Interpreter, item: Word) -> str:
+    """The file a CFG_EXTRAS entry is made from: `cmake/x.cmake`, or the same with `.in` or `.em`."""
+    base = run.tree_path(item if "/" in item else word(f"cmake/{item}", item.at))
+    return next((path for path in (base, f"{base}.in", f"{base}.em") if run.exists(path)), base)
+
+
+@handles("catkin_metapackage")
+def catkin_metapackage(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """catkin_metapackage()."""
+    if not run.silent:
+        run.catkin_package = run.place(call.at)
+
+
+_MESSAGE_FOLDERS = {"add_message_files": "msg", "add_service_files": "srv", "add_action_files": "action"}
+_ADD_FILES = frozenset("DIRECTORY FILES PACKAGE BASE_DIR NOINSTALL".split())
+
+
+@handles(*_MESSAGE_FOLDERS)
+def add_interface_files(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """add_message_files() and kin; without files it takes the whole folder."""
+    if run.silent:
+        return
+    kind = _MESSAGE_FOLDERS[call.name]
+    given = sections(args, _ADD_FILES)
+    folder = str(given["DIRECTORY"][0]) if given.get("DIRECTORY") else kind
+    files = split_words([*given.get("FILES", []), *given[""]])
+    if "FILES" not in given and not files:
+        relative = run.relative(run.resolve(folder))
+        hits = run.glob(posixpath.join(relative, f"*.{kind}"), False) if relative is not None else []
+        for path in sorted(hits):
+            run.message_files[(path, run.place(call.at))] = None
+        return
+    for item in files:
+        path = run.tree_path(word(posixpath.join(folder, item), item.at))
+        run.message_files[(path, run.place(item.at))] = None
+
+
+_GENERATORS = ("cpp", "py", "lisp", "eus", "nodejs")
+
+
+@handles("generate_messages")
+def generate_messages(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """generate_messages(): its targets are X_generate_messages, X_generate_messages_cpp, X_gencpp and so on."""
+    if run.silent:
+        return
+    given = sections(args, frozenset({"DEPENDENCIES", "LANGS"}))
+    package = run.project or run.package
+    target = f"{package}_generate_messages"
+    files = tuple(path for path, _ in run.message_files)
+    wanted = tuple((str(item), run.place(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
+    run.generated.append(GeneratedInterfaces("catkin", target, files, wanted, run.place(call.at), run.conditions))
+    run.new_target(target, "generated", call.at)
+    for language in _GENERATORS:
+        run.new_target(f"{target}_{language}", "generated", call.at)
+        run.new_target(f"{package}_gen{language}", "generated", call.at)
+
+
+@handles("generate_dynamic_reconfigure_options")
+def generate_dynamic_reconfigure_options(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """generate_dynamic_reconfigure_options(): its target is X_gencfg."""
+    if run.silent:
+        return
+    target = f"{run.project or run.package}_gencfg"
+    files = tuple(run.tree_path(item) for item in split_words(args))
+    run.generated.append(GeneratedInterfaces("reconfigure", target, files, (), run.place(call.at), run.conditions))
+    run.new_target(target, "generated", call.at)
+
+
+@handles("catkin_python_setup")
+def catkin_python_setup(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """catkin_python_setup(): what setup.py names is installed."""
+    item = run.tree_path("setup.py")
+    destination = f"lib/python3/dist-packages/{run.project or run.package}"
+    run.add_install(Install("python", (item,), destination, run.place(call.at), (), run.conditions))
+
+
+@handles("catkin_install_python")
+def catkin_install_python(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """catkin_install_python(PROGRAMS ... DESTINATION ...)."""
+    given = sections(args, frozenset({"PROGRAMS", "DESTINATION", "OPTIONAL"}))
+    destination = run.shown(given["DESTINATION"][0]) if given.get("DESTINATION") else ""
+    for item in split_words(given.get("PROGRAMS", [])):
+        run.add_install(
+            Install("programs", (run.tree_path(item),), destination, run.place(item.at), (), run.under(item))
+        )
+
+
+_TEST_OPTIONS = frozenset("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARGS".split())
+
+
+@handles(
+    "catkin_add_gtest",
+    "catkin_add_gmock",
+    "catkin_add_executable_with_gtest",
+    "catkin_add_executable_with_gmock",
+    "add_rostest_gtest",
+    "add_rostest_gmock",
+    "rosbuild_add_gtest",
+    "rosbuild_add_gtest_build_flags",
+)
+def catkin_add_gtest(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """Tests that are executables: catkin_add_gtest(), add_rostest_gtest() and kin."""
+    if not args:
+        return
+    name = args[0]
+    draft = run.new_target(name, "test", name.at)
+    given = sections(args[1:], _TEST_OPTIONS)
+    sources = given[""]
+    if call.name.startswith("add_rostest"):
+        sources = [item for item in sources if not item.endswith((".test", ".launch", ".xml"))]
+    add_sources(run, draft, sources)
+    add_links(run, draft, split_words(given.get("DEPENDENCIES", [])), "order")
+
+
+@handles(
+    "add_rostest", "catkin_add_nosetests", "rosbuild_add_rostest", "rosbuild_add_pyunit", "roslaunch_add_file_check"
+)
+def catkin_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """Tests that are launch files or Python: a test target named after the file."""
+    if not args:
+        return
+    item = args[0]
+    name = f"{run.package}_{item.replace('/', '_')}"
+    draft = run.new_target(word(name, item.at, item.conditions), "test", item.at)
+    add_sources(run, draft, [item])
+    given = sections(args[1:], _TEST_OPTIONS)
+    add_links(run, draft, split_words(given.get("DEPENDENCIES", [])), "order")
+
+
+@handles("catkin_download_test_data", "catkin_download")
+def catkin_download(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """catkin_download_test_data(): a custom target."""
+    if args:
+        run.new_target(args[0], "custom", args[0].at)
+
+
+@handles("catkin_add_env_hooks", "catkin_add_env_hooks_", "rosbuild_init", "rosbuild_genmsg", "rosbuild_gensrv")
+def catkin_other(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """Commands that set destinations or nothing at all."""
+    if call.name == "rosbuild_init" and not run.project:
+        at = At(call.path, call.at.line, call.at.column)
+        run.assign(run.scope, "PROJECT_NAME", Value((word(run.package, at),)))
+        run.project = run.package
+    elif call.name in ("rosbuild_genmsg", "rosbuild_gensrv") and not run.silent:
+        kind = call.name[-3:]
+        relative = run.relative(run.resolve(kind))
+        files = tuple(sorted(run.glob(f"{relative}/*.{kind}", False))) if relative is not None else ()
+        target = f"ROSBUILD_gen{kind}_cpp"
+        run.generated.append(GeneratedInterfaces("catkin", target, files, (), run.place(call.at), run.conditions))
+        run.new_target(target, "generated", call.at)

@@ -1,0 +1,85 @@
+"""Targets while they are being described, command by command."""
+
+from __future__ import annotations
+
+from ...facts.condition import Condition
+from ..build import At, BuildTarget, Link
+
+
+class TargetDraft:
+    """A BuildTarget that still grows; lists keep the order of the commands."""
+
+    __slots__ = (
+        "alias_of",
+        "at",
+        "conditions",
+        "definitions",
+        "installed_as",
+        "kind",
+        "links",
+        "name",
+        "output_name",
+        "sources",
+        "standard",
+    )
+
+    def __init__(self, name: str, kind: str, at: At, conditions: tuple[Condition, ...]):
+        self.name = name
+        self.kind = kind
+        self.at = at
+        self.conditions = conditions
+        self.sources: dict[str, None] = {}
+        self.links: dict[Link, None] = {}
+        self.definitions: dict[str, None] = {}
+        self.standard = 0
+        self.output_name = ""
+        self.alias_of = ""
+        self.installed_as = kind  # the artifact: executable, library, static or module
+
+    def finish(self) -> BuildTarget:
+        """The target as it stands."""
+        return BuildTarget(
+            self.name,
+            self.kind,
+            self.at,
+            tuple(self.sources),
+            tuple(self.links),
+            tuple(self.definitions),
+            self.standard,
+            self.output_name,
+            self.alias_of,
+            self.conditions,
+        )
+
+
+class Targets:
+    """The targets of a package by name."""
+
+    def __init__(self) -> None:
+        self._drafts: dict[str, TargetDraft] = {}
+
+    def __contains__(self, name: str) -> bool:
+        draft = self._drafts.get(name)
+        return draft is not None and draft.kind != "unknown"
+
+    def get(self, name: str) -> TargetDraft | None:
+        """The target of this name, if there is one."""
+        return self._drafts.get(name)
+
+    def make(self, name: str, kind: str, at: At, conditions: tuple[Condition, ...]) -> TargetDraft:
+        """The target of this name; made when it is new. One that was only mentioned takes kind and place from here."""
+        draft = self._drafts.get(name)
+        if draft is None:
+            draft = self._drafts[name] = TargetDraft(name, kind, at, conditions)
+        elif draft.kind == "unknown" and kind != "unknown":
+            draft.kind = draft.installed_as = kind
+            draft.at = at
+            draft.conditions = conditions
+        elif kind != "unknown" and conditions != draft.conditions:
+            # Made in both branches of an if: only what both have in common is a condition of the target.
+            draft.conditions = tuple(held for held in draft.conditions if held in conditions)
+        return draft
+
+    def finish(self) -> tuple[BuildTarget, ...]:
+        """All targets in the order they were first named."""
+        return tuple(draft.finish() for draft in self._drafts.values())

@@ -1,0 +1,283 @@
+"""What is looked for: find_package(), pkg-config, find_library() and its kin, fetched projects."""
+
+from __future__ import annotations
+
+import re
+
+from ..build import At, Found
+from .blocks import Call
+from .interpreter import Interpreter, handles
+from .language import add_module
+from .values import REFERENCE, Value, Word, merge, split_words, word
+
+_VERSION = re.compile(r"\d[\d.]*(?:\.\.\.<?\d[\d.]*)?\Z")
+_PKG_SPEC = re.compile(r"(.+?)\s*(>=|<=|=|>|<)\s*(\d.*)\Z")
+
+_FLAGS = frozenset(
+    """
+    EXACT QUIET REQUIRED MODULE CONFIG NO_MODULE NO_POLICY_SCOPE GLOBAL BYPASS_PROVIDER NO_DEFAULT_PATH
+    NO_PACKAGE_ROOT_PATH NO_CMAKE_PATH NO_CMAKE_ENVIRONMENT_PATH NO_SYSTEM_ENVIRONMENT_PATH NO_CMAKE_PACKAGE_REGISTRY
+    NO_CMAKE_BUILDS_PATH NO_CMAKE_SYSTEM_PATH NO_CMAKE_INSTALL_PREFIX NO_CMAKE_SYSTEM_PACKAGE_REGISTRY
+    CMAKE_FIND_ROOT_PATH_BOTH ONLY_CMAKE_FIND_ROOT_PATH NO_CMAKE_FIND_ROOT_PATH
+    """.split()
+)
+_LISTS = frozenset(
+    "NAMES CONFIGS HINTS PATHS PATH_SUFFIXES REGISTRY_VIEW COMPONENTS OPTIONAL_COMPONENTS DOC ENV VALIDATOR".split()
+)
+
+
+@handles("find_package", "find_dependency")
+def find_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """find_package() in all its signatures; each component of catkin is a package of its own."""
+    if not args:
+        return
+    first = call.templates[0]
+    if first.kind == REFERENCE and not run.silent:
+        value = run.lookup("", first.name)
+        if value is not None and not value.sure and len(value.words) > 1 and len(value.chosen) == 1:
+            for name in value.words:
+                _find(run, call, name, args[1:])
+            return
+    _find(run, call, args[0], args[1:])
+
+
+def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
+    flags: set[str] = set()
+    components: list[Word] = []
+    optional: list[Word] = []
+    version = ""
+    section = ""
+    for index, item in enumerate(rest):
+        if item in _FLAGS:
+            flags.add(item)
+            section = (
+                "COMPONENTS" if item == "REQUIRED" else ("" if section in ("HINTS", "PATHS", "NAMES") else section)
+            )
+        elif item in _LISTS:
+            section = str(item)
+        elif section == "OPTIONAL_COMPONENTS":
+            optional.append(item)
+        elif section == "COMPONENTS":
+            components.append(item)
+        elif not section and index == 0 and _VERSION.match(item):
+            version = str(item)
+        elif not section and not version and _VERSION.match(item):
+            version = str(item)
+        elif not section and item.startswith("${") and item.endswith("VERSION}"):
+            continue
+        elif not section and flags:
+            components.append(item)
+    required = "REQUIRED" in flags
+    quiet = "QUIET" in flags
+    conditions = run.under(name)
+    add_module(run, f"Find{name}")
+    if name == "catkin":
+        run.add_found(Found(name="catkin", how="find_package", at=run.place(name.at), required=required, quiet=quiet,
+                            version=version, conditions=conditions))  # fmt: skip
+        for component in split_words(components):
+            add(
+                run,
+                component,
+                "catkin",
+                required=required,
+                quiet=quiet,
+                conditions=merge(conditions, component.conditions),
+            )
+            run.extend(component, component.at)
+    else:
+        run.add_found(
+            Found(
+                str(name),
+                "find_package",
+                run.place(name.at),
+                required,
+                quiet,
+                version,
+                "EXACT" in flags,
+                tuple((str(component), run.place(component.at)) for component in components),
+                tuple(str(component) for component in optional),
+                "",
+                conditions,
+            )
+        )
+    if required:
+        found = Value((word("1", call.at),))
+        run.assign(run.scope, f"{name}_FOUND", found)
+        if name.upper() != name:
+            run.assign(run.scope, f"{name.upper()}_FOUND", found)
+    run.extend(str(name), name.at)
+    effect = _FINDING.get(name)
+    if effect is not None:
+        effect(run, call)
+
+
+def add(
+    run: Interpreter,
+    name: Word,
+    how: str,
+    *,
+    required: bool = True,
+    quiet: bool = False,
+    at: At | None = None,
+    conditions: tuple = (),
+) -> None:
+    """Collects one package by name."""
+    place = run.place(at if at is not None else name.at)
+    run.add_found(Found(str(name), how, place, required, quiet, conditions=conditions or run.under(name)))
+
+
+def _catkin(run: Interpreter, call: Call) -> None:
+    """What find_package(catkin) sets; destinations as documented for catkin_package()."""
+    package = run.project or run.package
+    values = {
+        "CATKIN_PACKAGE_BIN_DESTINATION": f"lib/{package}",
+        "CATKIN_PACKAGE_ETC_DESTINATION": f"etc/{package}",
+        "CATKIN_PACKAGE_INCLUDE_DESTINATION": f"include/{package}",
+        "CATKIN_PACKAGE_LIB_DESTINATION": "lib",
+        "CATKIN_PACKAGE_PYTHON_DESTINATION": f"lib/python3/dist-packages/{package}",
+        "CATKIN_PACKAGE_SHARE_DESTINATION": f"share/{package}",
+        "CATKIN_GLOBAL_BIN_DESTINATION": "bin",
+        "CATKIN_GLOBAL_ETC_DESTINATION": "etc",
+        "CATKIN_GLOBAL_INCLUDE_DESTINATION": "include",
+        "CATKIN_GLOBAL_LIB_DESTINATION": "lib",
+        "CATKIN_GLOBAL_LIBEXEC_DESTINATION": "lib",
+        "CATKIN_GLOBAL_PYTHON_DESTINATION": "lib/python3/dist-packages",
+        "CATKIN_GLOBAL_SHARE_DESTINATION": "share",
+    }
+    for name, text in values.items():
+        run.assign(run.scope, name, Value((word(text, call.at),)))
+
+
+_FINDING = {"catkin": _catkin}
+
+
+@handles("catkin_destinations")
+def catkin_destinations(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """catkin_destinations() sets what find_package(catkin) and project() set together."""
+    _catkin(run, call)
+
+
+_PKG_FLAGS = frozenset(
+    "REQUIRED QUIET IMPORTED_TARGET GLOBAL NO_CMAKE_PATH NO_CMAKE_ENVIRONMENT_PATH STATIC_TARGET".split()
+)
+_PKG_VARIABLES = (
+    "LIBRARIES LINK_LIBRARIES LIBRARY_DIRS LDFLAGS LDFLAGS_OTHER INCLUDE_DIRS CFLAGS CFLAGS_OTHER VERSION PREFIX "
+    "INCLUDEDIR LIBDIR"
+).split()
+
+
+@handles("pkg_check_modules", "pkg_search_module")
+def pkg_check_modules(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """pkg_check_modules() and pkg_search_module(), with version bounds."""
+    if len(args) < 2:
+        return
+    prefix = str(args[0])
+    flags = {str(item) for item in args[1:] if item in _PKG_FLAGS}
+    modules = split_words(item for item in args[1:] if item not in _PKG_FLAGS)
+    required = "REQUIRED" in flags
+    entries: list[tuple[Word, str, str, bool]] = []
+    for item in modules:
+        spec = _PKG_SPEC.match(item)
+        if spec is None:
+            entries.append((item, str(item), "", False))
+        else:
+            operator = spec.group(2)
+            version = spec.group(3) if operator in ("=", ">=") else operator + spec.group(3)
+            entries.append((item, spec.group(1), version, operator == "="))
+    alternatives = call.name == "pkg_search_module"
+    for item, name, version, exact in entries[:1] if alternatives else entries:
+        others = tuple(other for _, other, _, _ in entries[1:]) if alternatives else ()
+        run.add_found(
+            Found(
+                name,
+                "pkg_check_modules",
+                run.place(item.at),
+                required,
+                "QUIET" in flags,
+                version,
+                exact,
+                (),
+                others,
+                prefix,
+                run.under(item),
+            )  # fmt: skip
+        )
+    for suffix in _PKG_VARIABLES:
+        run.set_unknown(f"{prefix}_{suffix}", call.at)
+    if required:
+        run.set_text(f"{prefix}_FOUND", "1", call.at)
+    if "IMPORTED_TARGET" in flags:
+        run.new_target(f"PkgConfig::{prefix}", "imported", args[0].at)
+
+
+_LOCATE_STOPS = frozenset(
+    """
+    HINTS PATHS PATH_SUFFIXES DOC NO_CACHE REQUIRED NO_DEFAULT_PATH NO_PACKAGE_ROOT_PATH NO_CMAKE_PATH
+    NO_CMAKE_ENVIRONMENT_PATH NO_SYSTEM_ENVIRONMENT_PATH NO_CMAKE_SYSTEM_PATH NO_CMAKE_INSTALL_PREFIX
+    CMAKE_FIND_ROOT_PATH_BOTH ONLY_CMAKE_FIND_ROOT_PATH NO_CMAKE_FIND_ROOT_PATH NAMES_PER_DIR VALIDATOR REGISTRY_VIEW
+    """.split()
+)
+
+
+@handles("find_library", "find_path", "find_program", "find_file")
+def locate(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """find_library(), find_path(), find_program() and find_file(): the variable is set to what is not known."""
+    if len(args) < 2:
+        return
+    variable = str(args[0])
+    names: list[Word] = []
+    explicit = args[1] == "NAMES"
+    for item in args[2:] if explicit else args[1:]:
+        if item in _LOCATE_STOPS or (not explicit and names and item.startswith("/")):
+            break
+        names.append(item)
+        if not explicit and len(args) > 2 and call.name == "find_file":
+            break
+    run.set_unknown(variable, call.at)
+    if not names or call.name == "find_file":
+        return
+    first = names[0]
+    run.add_found(
+        Found(
+            str(first),
+            call.name,
+            run.place(first.at),
+            "REQUIRED" in args,
+            optional_components=tuple(str(name) for name in names[1:]),
+            prefix=variable,
+            conditions=run.under(first),
+        )
+    )
+
+
+@handles("fetchcontent_declare")
+def fetchcontent_declare(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """FetchContent_Declare(): names a project that is downloaded while configuring."""
+    if args:
+        run.properties[f"FETCH {args[0].lower()}"] = Value((args[0],))
+
+
+@handles("fetchcontent_makeavailable", "fetchcontent_populate", "fetchcontent_getproperties")
+def fetchcontent_makeavailable(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """FetchContent_MakeAvailable(): the project's targets are there, but cannot be seen."""
+    for name in args if call.name == "fetchcontent_makeavailable" else args[:1]:
+        lower = name.lower()
+        for suffix in ("SOURCE_DIR", "BINARY_DIR"):
+            run.set_unknown(f"{lower}_{suffix}", call.at)
+        if call.name != "fetchcontent_getproperties":
+            draft = run.new_target(name, "fetched", name.at)
+            draft.alias_of = ""
+
+
+@handles("externalproject_add")
+def externalproject_add(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ExternalProject_Add(): a custom target that downloads and builds."""
+    if args:
+        run.new_target(args[0], "external", args[0].at)
+
+
+@handles("externalproject_get_property")
+def externalproject_get_property(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ExternalProject_Get_Property(): folders that are not known before the build."""
+    for name in args[1:]:
+        run.set_unknown(name, call.at)

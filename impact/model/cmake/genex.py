@@ -1,0 +1,134 @@
+"""Generator expressions reduced to what can be read from them without generating.
+
+Source: cmake-generator-expressions(7).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ...facts.condition import Condition
+from .values import Word, split_list, word
+
+_MAX_DEPTH = 20
+
+# Expressions that hold a plain item as their only content.
+_WRAPPERS = frozenset({"BUILD_INTERFACE", "LINK_ONLY", "BUILD_LOCAL_INTERFACE", "COMPILE_ONLY", "TARGET_NAME", "1"})
+_TESTED = frozenset({"TARGET_NAME_IF_EXISTS"})
+_DROPPED = frozenset({"INSTALL_INTERFACE", "0", "INSTALL_PREFIX", "ANGLE-R", "COMMA", "SEMICOLON"})
+
+
+def rejoin(items: list[Word]) -> list[Word]:
+    """Puts generator expressions together again that an unquoted semicolon or space took apart."""
+    if not any("$<" in item for item in items):
+        return items
+    joined: list[Word] = []
+    open_count = 0
+    for item in items:
+        if open_count > 0:
+            last = joined[-1]
+            joined[-1] = word(f"{last};{item}", last.at, last.conditions, last.sure)
+        else:
+            joined.append(item)
+            open_count = 0
+        open_count += item.count("$<") - (item.count(">") - item.count("->"))
+    return joined
+
+
+def reduced(item: Word) -> Iterator[Word]:
+    """The items an argument may stand for: itself when it is no generator expression, else what lies inside, under the
+    expression's test as a condition. What only counts after installation is left out."""
+    if "$<" not in item:
+        yield item
+        return
+    yield from _reduce(item, item, (), 0)
+
+
+def _reduce(text: str, origin: Word, tests: tuple[Condition, ...], depth: int) -> Iterator[Word]:
+    for part in _split(text):
+        if not part.startswith("$<") or depth > _MAX_DEPTH or _close(part, 2) != len(part) - 1:
+            yield word(part, origin.at, origin.conditions + tests, origin.sure)
+            continue
+        head, content = _halves(part[2:-1])
+        if head in _WRAPPERS:
+            yield from _reduce(content, origin, tests, depth + 1)
+        elif head in _DROPPED:
+            continue
+        elif head in _TESTED:
+            yield from _reduce(content, origin, (*tests, Condition("cmake", f"TARGET {content}")), depth + 1)
+        elif head == "IF":
+            pieces = _commas(content)
+            if len(pieces) == 3:
+                yield from _reduce(pieces[1], origin, (*tests, Condition("cmake", pieces[0])), depth + 1)
+                yield from _reduce(pieces[2], origin, (*tests, Condition("cmake", pieces[0], True)), depth + 1)
+        elif head.startswith("$<") and content:
+            yield from _reduce(content, origin, (*tests, Condition("cmake", head)), depth + 1)
+        else:
+            yield word(part, origin.at, origin.conditions + tests, origin.sure)
+
+
+def _close(text: str, begin: int) -> int:
+    """Offset of the `>` that closes the expression whose content begins there, -1 when none does."""
+    depth = 1
+    index = begin
+    while index < len(text):
+        if text.startswith("$<", index):
+            depth += 1
+            index += 2
+            continue
+        if text[index] == ">":
+            depth -= 1
+            if depth == 0:
+                return index
+        index += 1
+    return -1
+
+
+def _halves(inner: str) -> tuple[str, str]:
+    """An expression's head and what follows its first colon outside of nested expressions."""
+    depth = 0
+    index = 0
+    while index < len(inner):
+        if inner.startswith("$<", index):
+            depth += 1
+            index += 2
+            continue
+        if inner[index] == ">":
+            depth -= 1
+        elif inner[index] == ":" and depth <= 0:
+            return inner[:index], inner[index + 1 :]
+        index += 1
+    return inner, ""
+
+
+def _commas(content: str) -> list[str]:
+    """Parts between commas outside of nested expressions."""
+    return _cut(content, ",")
+
+
+def _split(text: str) -> list[str]:
+    """List items; a semicolon inside an expression does not separate."""
+    if ";" not in text:
+        return [text] if text else []
+    if "$<" not in text:
+        return split_list(text)
+    return [part for part in _cut(text, ";") if part]
+
+
+def _cut(text: str, separator: str) -> list[str]:
+    parts: list[str] = []
+    depth = 0
+    start = index = 0
+    while index < len(text):
+        if text.startswith("$<", index):
+            depth += 1
+            index += 2
+            continue
+        if text[index] == ">" and depth:
+            depth -= 1
+        elif text[index] == separator and depth == 0:
+            parts.append(text[start:index])
+            start = index + 1
+        index += 1
+    parts.append(text[start:])
+    return parts

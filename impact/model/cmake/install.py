@@ -1,0 +1,159 @@
+"""What is installed."""
+
+from __future__ import annotations
+
+from ...facts.condition import Condition
+from ..build import Install
+from .blocks import Call
+from .interpreter import Interpreter, handles
+from .values import Word, merge, split_words
+
+_ARTIFACTS = frozenset("ARCHIVE LIBRARY RUNTIME OBJECTS FRAMEWORK BUNDLE PRIVATE_HEADER PUBLIC_HEADER RESOURCE".split())
+_KEYWORDS = frozenset(
+    """
+    DESTINATION PERMISSIONS CONFIGURATIONS COMPONENT RENAME OPTIONAL EXCLUDE_FROM_ALL EXPORT TYPE FILE_PERMISSIONS
+    DIRECTORY_PERMISSIONS USE_SOURCE_PERMISSIONS MESSAGE_NEVER FILES_MATCHING PATTERN REGEX EXCLUDE NAMELINK_ONLY
+    NAMELINK_SKIP NAMELINK_COMPONENT INCLUDES RUNTIME_DEPENDENCIES RUNTIME_DEPENDENCY_SET FILE_SET NAMESPACE FILE
+    CXX_MODULES_BMI CXX_MODULES_DIRECTORY EXPORT_LINK_INTERFACE_LIBRARIES
+    """.split()
+)
+# cmake-commands(7), install(), "TYPE": where each type goes.
+_TYPES = {
+    "BIN": "bin",
+    "SBIN": "sbin",
+    "LIB": "lib",
+    "INCLUDE": "include",
+    "SYSCONF": "etc",
+    "SHAREDSTATE": "com",
+    "LOCALSTATE": "var",
+    "RUNSTATE": "var/run",
+    "DATA": "share",
+    "INFO": "share/info",
+    "LOCALE": "share/locale",
+    "MAN": "share/man",
+    "DOC": "share/doc",
+    "LIBEXEC": "libexec",
+}
+
+
+@handles("install")
+def install(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """install() of targets, files, programs, folders and exports. Scripts and code are not followed."""
+    if not args or run.silent:
+        return
+    form = args[0]
+    if form in ("TARGETS", "IMPORTED_RUNTIME_ARTIFACTS"):
+        _targets(run, call, args[1:])
+    elif form in ("FILES", "PROGRAMS"):
+        _files(run, call, form.lower(), args[1:])
+    elif form == "DIRECTORY":
+        _directory(run, call, args[1:])
+    elif form == "EXPORT" and len(args) > 1:
+        destination = _after(args, "DESTINATION")
+        run.add_install(
+            Install("export", (str(args[1]),), run.shown(destination), run.place(args[1].at), (), run.under(args[1]))
+        )
+
+
+@handles("install_targets", "install_files", "install_programs")
+def old_install(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """install_targets() and kin, as CMake had them before install()."""
+    if len(args) > 1:
+        kind = call.name.partition("_")[2]
+        items = [str(item) if kind == "targets" else run.tree_path(item) for item in args[1:]]
+        run.add_install(
+            Install(kind, tuple(items), run.shown(args[0].lstrip("/")), run.place(call.at), (), run.conditions)
+        )
+
+
+def _after(args: list[Word], keyword: str) -> str:
+    return str(args[args.index(keyword) + 1]) if keyword in args[:-1] else ""
+
+
+def _targets(run: Interpreter, call: Call, args: list[Word]) -> None:
+    names: list[Word] = []
+    destinations: dict[str, str] = {}
+    artifact = ""
+    expecting = ""
+    in_names = True
+    for item in args:
+        if in_names and item not in _KEYWORDS and item not in _ARTIFACTS:
+            names.append(item)
+            continue
+        in_names = False
+        if item in _ARTIFACTS:
+            artifact = str(item)
+            expecting = ""
+        elif item in _KEYWORDS:
+            expecting = str(item)
+            if item == "INCLUDES":
+                artifact = "INCLUDES"
+        elif expecting == "DESTINATION":
+            destinations.setdefault(artifact, run.shown(item))
+            expecting = ""
+    fallback = destinations.get("", "")
+    rules: dict[tuple[str, tuple[Condition, ...]], list[Word]] = {}
+    for name in split_words(names):
+        draft = run.targets.get(name)
+        form = draft.installed_as if draft is not None else ""
+        if form in ("executable", "test"):
+            destination = destinations.get("RUNTIME", fallback or "bin")
+        elif form == "static":
+            destination = destinations.get("ARCHIVE", fallback or "lib")
+        elif form in ("library", "module"):
+            destination = destinations.get("LIBRARY") or fallback or destinations.get("ARCHIVE", "lib")
+        elif form == "interface":
+            destination = fallback or destinations.get("LIBRARY") or destinations.get("ARCHIVE", "")
+        else:
+            destination = fallback or destinations.get("LIBRARY") or destinations.get("RUNTIME", "")
+        rules.setdefault((destination, run.under(name)), []).append(name)
+    for (destination, conditions), members in rules.items():
+        run.add_install(
+            Install(
+                "targets", tuple(str(name) for name in members), destination, run.place(members[0].at), (), conditions
+            )
+        )
+
+
+def _files(run: Interpreter, call: Call, kind: str, args: list[Word]) -> None:
+    items: list[Word] = []
+    for item in args:
+        if item in _KEYWORDS:
+            break
+        items.append(item)
+    destination = _destination(run, args)
+    items = split_words(items)
+    by_conditions: dict[tuple[Condition, ...], list[Word]] = {}
+    for item in items:
+        by_conditions.setdefault(item.conditions, []).append(item)
+    for conditions, members in by_conditions.items():
+        paths = tuple(run.tree_path(item) for item in members)
+        place = run.place(members[0].at if len(members) == 1 else call.at)
+        run.add_install(Install(kind, paths, destination, place, (), merge(run.conditions, conditions)))
+
+
+def _destination(run: Interpreter, args: list[Word]) -> str:
+    destination = run.shown(_after(args, "DESTINATION"))
+    return destination or _TYPES.get(_after(args, "TYPE"), "")
+
+
+def _directory(run: Interpreter, call: Call, args: list[Word]) -> None:
+    items: list[Word] = []
+    patterns: list[str] = []
+    mode = ""
+    in_items = True
+    for item in args:
+        if item in _KEYWORDS:
+            in_items = False
+            mode = str(item)
+            if item == "EXCLUDE" and patterns:
+                patterns[-1] = f"!{patterns[-1]}"
+        elif in_items:
+            items.append(item)
+        elif mode in ("PATTERN", "REGEX"):
+            patterns.append(str(item))
+            mode = ""
+    paths = tuple(run.tree_path(item) for item in split_words(items))
+    run.add_install(
+        Install("directory", paths, _destination(run, args), run.place(call.at), tuple(patterns), run.conditions)
+    )

@@ -1,0 +1,924 @@
+"""Runs the CMake of one package without building it: scopes, control flow, calls, and what is collected on the way.
+
+A test that cannot be decided is no obstacle: both branches run, each under its condition, and what they leave in
+variables is joined.
+"""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Callable, Iterable
+
+from ...facts.cmake import CMakeFile
+from ...facts.condition import Condition
+from ..build import At, Build, Exported, Found, GeneratedInterfaces, Install, Use
+from . import conditions as tests
+from .blocks import Block, Call, blocks
+from .drafts import TargetDraft, Targets
+from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES
+from .values import (
+    LITERAL,
+    MAX_TEXT,
+    MAX_WORDS,
+    QUOTED_REFERENCE,
+    REFERENCE,
+    UNSET,
+    Template,
+    Value,
+    Word,
+    join,
+    merge,
+    read_references,
+    split_list,
+    split_words,
+    unsure,
+    with_conditions,
+    word,
+)
+
+# The tree, the build folder and the install prefix as they look from inside; no real path starts like this.
+SOURCE = "/@source"
+BINARY = "/@build"
+PREFIX = "/@install"
+
+MAX_STEPS = 100_000
+MAX_ITERATIONS = 1_000
+MAX_NESTING = 120
+
+NORMAL, BREAK, CONTINUE, RETURN, FATAL = range(5)
+
+Handler = Callable[["Interpreter", Call, list[Word]], "int | None"]
+
+
+class _TooMuch(Exception):
+    """The package asks for more work than any real one."""
+
+
+class Interpreter:
+    """One run over one package. Command handlers read and write it; run() gives the Build."""
+
+    def __init__(
+        self,
+        package_path: str,
+        read: Callable[[str], CMakeFile | None],
+        exists: Callable[[str], bool],
+        glob: Callable[[str, bool], list[str]],
+        package: str,
+        dependencies: tuple[str, ...],
+        extras: Callable[[str], tuple[str, ...]],
+    ):
+        self.package_path = package_path.strip("/")
+        self.package = package or posixpath.basename(self.package_path)
+        self.read = read
+        self.exists = exists
+        self.glob = glob
+        self.dependencies = dependencies
+        self.extras = extras
+
+        self.scopes: list[dict[str, Value]] = [{}]
+        self.scope = self.scopes[0]
+        self.cache: dict[str, Value] = {}
+        self.environment: dict[str, Value] = {}
+        self.properties: dict[str, Value] = {}
+        self.overlay: dict[str, Value] = {}  # arguments of the macro that is running
+        self.definitions: dict[str, tuple[Block, dict[str, Value]]] = {}
+        self.conditions: tuple[Condition, ...] = ()
+        self.assumed: dict[str, bool] = {}
+        self.journal: list[tuple[dict[str, Value], str, Value | None]] = []
+        self.recording = 0
+        self.call_site: At | None = None
+        self.silent = 0
+        self.steps = 0
+        self.nesting = 0
+        self.maybe_break = False
+        self.minimum_policy: tuple[int, ...] = (3, 5)
+        self.parsed: dict[str, list[Call | Block] | None] = {}
+        self.including: list[str] = []
+        self.extended: set[str] = set()
+        self.modules: set[str] = set()
+        self.guarded: set[str] = set()
+        self.configured: dict[str, None] = {}
+        self.automatic: list[TargetDraft] = []  # made by ament_auto_add_*()
+
+        self.project = ""
+        self.minimum: tuple[str, At] | None = None
+        self.standards: list[tuple[int, At, bool]] = []
+        self.found: dict[Found, None] = {}
+        self.targets = Targets()
+        self.installs: dict[Install, None] = {}
+        self.exports: dict[Exported, None] = {}
+        self.generated: list[GeneratedInterfaces] = []
+        self.uses: dict[Use, None] = {}
+        self.include_dirs: dict[tuple[str, At], None] = {}
+        self.links: dict = {}
+        self.catkin_package: At | None = None
+        self.ament_package: At | None = None
+        self.unresolved: dict[tuple[At, str], None] = {}
+        self.files: dict[str, None] = {}
+        self.message_files: dict[tuple[str, At], None] = {}
+
+    def run(self) -> Build:
+        """Interprets the package from its CMakeLists.txt on."""
+        path = posixpath.join(self.package_path, "CMakeLists.txt")
+        source = self.absolute(self.package_path)
+        self.predefine(source)
+        body = self.load(path)
+        if body is not None:
+            self.including.append(path)
+            try:
+                self.run_body(body)
+            except _TooMuch as stop:
+                self.unresolved[(At(path, 1), str(stop))] = None
+        return self.result()
+
+    def predefine(self, source: str) -> None:
+        """Variables that CMake sets itself, on Linux with GCC."""
+        binary = f"{BINARY}/{self.package}"
+        at = At(posixpath.join(self.package_path, "CMakeLists.txt"), 1)
+        known = {
+            "CMAKE_SOURCE_DIR": source,
+            "CMAKE_CURRENT_SOURCE_DIR": source,
+            "CMAKE_CURRENT_LIST_DIR": source,
+            "CMAKE_CURRENT_LIST_FILE": f"{source}/CMakeLists.txt",
+            "CMAKE_BINARY_DIR": binary,
+            "CMAKE_CURRENT_BINARY_DIR": binary,
+            "CMAKE_INSTALL_PREFIX": PREFIX,
+            "CMAKE_SYSTEM_NAME": "Linux",
+            "CMAKE_HOST_SYSTEM_NAME": "Linux",
+            "UNIX": "1",
+            "LINUX": "1",
+            "CMAKE_HOST_UNIX": "1",
+            "CMAKE_COMPILER_IS_GNUCXX": "1",
+            "CMAKE_COMPILER_IS_GNUCC": "1",
+            "CMAKE_CXX_COMPILER_ID": "GNU",
+            "CMAKE_C_COMPILER_ID": "GNU",
+            "CMAKE_COMMAND": "cmake",
+            "CMAKE_SHARED_LIBRARY_PREFIX": "lib",
+            "CMAKE_SHARED_LIBRARY_SUFFIX": ".so",
+            "CMAKE_STATIC_LIBRARY_PREFIX": "lib",
+            "CMAKE_STATIC_LIBRARY_SUFFIX": ".a",
+            "CMAKE_SHARED_MODULE_PREFIX": "lib",
+            "CMAKE_SHARED_MODULE_SUFFIX": ".so",
+            "CMAKE_INSTALL_LIBDIR": "lib",
+            "CMAKE_INSTALL_BINDIR": "bin",
+            "CMAKE_INSTALL_INCLUDEDIR": "include",
+            "CMAKE_INSTALL_DATADIR": "share",
+            "CMAKE_INSTALL_DATAROOTDIR": "share",
+            "CMAKE_INSTALL_SYSCONFDIR": "etc",
+            "CMAKE_INSTALL_LIBEXECDIR": "libexec",
+        }
+        for name, text in known.items():
+            self.scope[name] = Value((word(text, at),))
+        empty = Value((word("", at),))
+        for name in FALSE_PLATFORMS:
+            self.scope[name] = empty
+        for name in ("CMAKE_CXX_FLAGS", "CMAKE_C_FLAGS", "CMAKE_MODULE_PATH", "CMAKE_PREFIX_PATH"):
+            self.scope[name] = unsure(empty)
+
+    def result(self) -> Build:
+        """What was collected."""
+        standard = None
+        default_only = False
+        if self.standards:
+            number, at, _ = max(self.standards, key=lambda entry: entry[0] if entry[0] < 90 else entry[0] - 100)
+            standard = (number, at)
+            default_only = all(is_default for _, _, is_default in self.standards)
+        return Build(
+            project=self.project,
+            minimum=self.minimum,
+            standard=standard,
+            standard_default_only=default_only,
+            found=tuple(self.found),
+            targets=self.targets.finish(),
+            installs=tuple(self.installs),
+            exports=tuple(self.exports),
+            generated=tuple(self.generated),
+            uses=tuple(self.uses),
+            include_dirs=tuple(self.include_dirs),
+            links=tuple(self.links),
+            catkin_package=self.catkin_package,
+            ament_package=self.ament_package,
+            unresolved=tuple(self.unresolved),
+            files=tuple(self.files),
+            message_files=tuple(self.message_files),
+        )
+
+    def load(self, path: str) -> list[Call | Block] | None:
+        """Blocks of a file of the tree, None when it is not there."""
+        if path in self.parsed:
+            return self.parsed[path]
+        facts = self.read(path)
+        if facts is None:
+            self.parsed[path] = None
+            return None
+        body, problems = blocks(facts, path)
+        self.parsed[path] = body
+        if not self.silent:
+            self.files[path] = None
+            for problem in problems:
+                self.unresolved[problem] = None
+        return body
+
+    def run_body(self, body: list[Call | Block]) -> int:
+        """Runs commands in order; returns how they ended."""
+        self.nesting += 1
+        if self.nesting > MAX_NESTING:
+            self.nesting -= 1
+            raise _TooMuch("calls are nested too deeply")
+        try:
+            for node in body:
+                signal = self.run_call(node) if type(node) is Call else self.run_block(node)  # type: ignore[arg-type]
+                if signal:
+                    return signal
+        finally:
+            self.nesting -= 1
+        return NORMAL
+
+    def run_call(self, call: Call) -> int:
+        """Runs one command."""
+        self.steps += 1
+        if self.steps > MAX_STEPS:
+            raise _TooMuch("more than 100,000 commands run")
+        name = call.name
+        handler = HANDLERS.get(name)
+        if handler is not None:
+            if name not in BUILTIN_COMMANDS:
+                self.use_command(call)
+            return handler(self, call, self.expand(call.templates)) or NORMAL
+        defined = self.definitions.get(name)
+        if defined is not None:
+            return self.invoke(call, defined)
+        wrapper = WRAPPERS.get(name)
+        if wrapper is not None:
+            self.use_command(call)
+            return wrapper(self, call, self.expand(call.templates)) or NORMAL
+        if name not in BUILTIN_COMMANDS:
+            self.use_command(call)
+        self.expand(call.templates)
+        return NORMAL
+
+    def use_command(self, call: Call) -> None:
+        """Notes a command that neither CMake nor the tree defines."""
+        if self.silent or call.name in self.definitions:
+            return
+        module = MODULE_OF.get(call.name, "")
+        if module and module in self.modules:
+            return
+        self.uses[Use("command", call.name, self.place(call.at), module, self.conditions)] = None
+
+    def run_block(self, block: Block) -> int:
+        """Runs a block command."""
+        kind = block.kind
+        if kind == "if":
+            return self.run_if(block)
+        if kind == "foreach":
+            return self.run_foreach(block)
+        if kind == "while":
+            return self.run_while(block)
+        if kind == "block":
+            return self.run_body(block.body)
+        head = block.head
+        names = self.expand(head.templates[:1])
+        if names:
+            self.definitions[names[0].lower()] = (block, self.overlay)
+        return NORMAL
+
+    def run_if(self, block: Block) -> int:
+        """Runs the branches that may be taken."""
+        outer = self.conditions
+        before: tuple[Condition, ...] = ()
+        outcomes: list[dict[tuple[int, str], tuple[dict[str, Value], Value | None]]] = []
+        returned: list[tuple[Condition, ...]] = []
+        signals: set[int] = set()
+        exhaustive = False
+        for head, body in block.branches:
+            if head.name == "else":
+                value: bool | None = True
+                text = ""
+            else:
+                value, text = self.decide(head)
+            if value is False:
+                continue
+            if value is True and not before:  # the only branch that can be taken
+                return self.run_body(body)
+            own = before if value is True else (*before, Condition("cmake", text))
+            signal, changes = self.run_branch(body, merge(outer, own))
+            if signal in (RETURN, FATAL):
+                signals.add(signal)
+                if signal == RETURN and len(own) == 1:
+                    returned.append(own)
+                elif signal == FATAL and len(own) == 1:
+                    self.assume(own[0].text, own[0].negated)
+            else:
+                if signal in (BREAK, CONTINUE):
+                    self.maybe_break = True
+                outcomes.append(changes)
+            if value is True:
+                exhaustive = True
+                break
+            before = (*before, Condition("cmake", text, True))
+        if not exhaustive:
+            outcomes.insert(0, {})
+        if not outcomes:
+            return RETURN if RETURN in signals else FATAL
+        self.merge_outcomes(outcomes)
+        for own in returned:
+            rest = Condition(own[0].language, own[0].text, not own[0].negated)
+            self.conditions = merge(self.conditions, (rest,))
+        return NORMAL
+
+    def run_branch(self, body, conditions):
+        """Runs one branch on trial: returns how it ended and what it wrote, with the writes taken back."""
+        kept = self.conditions
+        self.conditions = conditions
+        mark = len(self.journal)
+        self.recording += 1
+        overlay = self.overlay
+        scope_depth = len(self.scopes)
+        try:
+            signal = self.run_body(body)
+        finally:
+            self.recording -= 1
+            self.conditions = kept
+            self.overlay = overlay
+            del self.scopes[scope_depth:]
+            self.scope = self.scopes[-1]
+        changes: dict[tuple[int, str], tuple[dict[str, Value], Value | None]] = {}
+        for where, name, _ in self.journal[mark:]:
+            key = (id(where), name)
+            if key not in changes:
+                changes[key] = (where, where.get(name))
+        for where, name, old in reversed(self.journal[mark:]):
+            if old is None:
+                where.pop(name, None)
+            else:
+                where[name] = old
+        del self.journal[mark:]
+        return signal, changes
+
+    def merge_outcomes(self, outcomes) -> None:
+        """Leaves in each variable what the branches wrote, joined."""
+        touched: dict[tuple[int, str], dict[str, Value]] = {}
+        for changes in outcomes:
+            for key, (where, _) in changes.items():
+                touched[key] = where
+        for (key, name), where in touched.items():
+            left = [changes[(key, name)][1] if (key, name) in changes else where.get(name) for changes in outcomes]
+            value = join(left)
+            if value is not None:
+                self.assign(where, name, value)
+
+    def decide(self, head: Call) -> tuple[bool | None, str]:
+        """The value of a test and its text."""
+        tokens = self.condition_tokens(head)
+        value = tests.evaluate(tokens, self)
+        if value is not None:
+            return value, ""
+        text = self.shown(tests.text_of(tokens))
+        for held in self.conditions:
+            if held.text == text and held.language == "cmake":
+                return not held.negated, text
+        plain, negated = (text[4:], True) if text.startswith("NOT ") and text.count(" ") == 1 else (text, False)
+        for held in self.conditions:
+            if held.language == "cmake" and held.text == plain:
+                return held.negated == negated, text
+            if held.language == "cmake" and not negated and held.text == f"NOT {plain}":
+                return held.negated, text
+        assumed = self.assumed.get(plain)
+        if assumed is not None:
+            return assumed != negated, text
+        return None, text
+
+    def assume(self, text: str, value: bool) -> None:
+        """Takes a test as decided from here on: configuring stops when it is otherwise."""
+        if text.startswith("NOT ") and text.count(" ") == 1:
+            self.assumed[text[4:]] = not value
+        else:
+            self.assumed[text] = value
+
+    def condition_tokens(self, head: Call) -> list[tests.Token]:
+        """Arguments of if() expanded; each remembers whether it was quoted."""
+        tokens: list[tests.Token] = []
+        for template in head.templates:
+            if template.kind == LITERAL:
+                tokens.extend(tests.Token(item, template.quoted, True, True) for item in template.words)
+                continue
+            if template.kind == REFERENCE:
+                value = self.reference(template, head)
+                if not value.sure and value.defined:  # differing branches: one token, which nobody relies upon
+                    tokens.append(tests.Token(value.text or f"${{{template.name}}}", False, False, False))
+                else:
+                    tokens.extend(tests.Token(item, False, item.sure, False) for item in value.words if item)
+                continue
+            for item in self.expand_one(template, head):
+                tokens.append(tests.Token(item, template.quoted, item.sure, False))
+        return tokens
+
+    def run_foreach(self, block: Block) -> int:
+        """Runs a foreach() in any of its forms."""
+        args = self.expand(block.head.templates)
+        if not args:
+            return NORMAL
+        variables = [args[0]]
+        rounds: Iterable[tuple[Word, ...]] = ()
+        rest = args[1:]
+        mode = rest[0] if rest else ""
+        if mode == "RANGE":
+            rounds = [(word(str(number), block.head.at),) for number in self.numbers(rest[1:], block.head)]
+        elif "IN" in args[1:] and ("LISTS" in rest or "ITEMS" in rest or "ZIP_LISTS" in rest):
+            split = args.index("IN")
+            variables = args[:split]
+            rounds = self.listed(args[split + 1 :], len(variables))
+        else:
+            rounds = [(item,) for item in rest]
+        names = [str(name) for name in variables]
+        scope = self.scope
+        kept = {name: scope.get(name) for name in names}
+        outer = self.conditions
+        signal = NORMAL
+        for count, items in enumerate(rounds):
+            if count >= MAX_ITERATIONS:
+                self.give_up(block.head.at, f"foreach() was left after {MAX_ITERATIONS} rounds")
+                break
+            if len(names) == 1 and len(items) > 1:
+                for index, item in enumerate(items):
+                    self.assign(scope, f"{names[0]}_{index}", Value((item,), item.sure))
+            else:
+                for name, item in zip(names, items, strict=False):
+                    self.assign(scope, name, Value((item,), item.sure or len(names) == 1))
+            self.conditions = merge(outer, items[0].conditions) if items else outer
+            signal = self.run_body(block.body)
+            if signal == BREAK or signal >= RETURN:
+                break
+        self.conditions = outer
+        for name, value in kept.items():
+            self.assign(scope, name, value if value is not None else UNSET)
+        return signal if signal >= RETURN else NORMAL
+
+    def listed(self, args: list[Word], width: int) -> list[tuple[Word, ...]]:
+        """Rounds of foreach(IN LISTS / ITEMS / ZIP_LISTS)."""
+        items: list[Word] = []
+        zipped: list[tuple[Word, ...]] = []
+        mode = ""
+        for item in args:
+            if item in ("LISTS", "ITEMS", "ZIP_LISTS"):
+                mode = str(item)
+            elif mode == "ITEMS":
+                items.append(item)
+            elif mode in ("LISTS", "ZIP_LISTS"):
+                value = self.get(item)
+                words = value.words if value is not None else (word(f"${{{item}}}", item.at, (), False),)
+                words = tuple(each for each in words if each)
+                if mode == "LISTS":
+                    items.extend(words)
+                else:
+                    zipped.append(words)
+        if mode == "ZIP_LISTS" and zipped:
+            length = min(max(len(words) for words in zipped), MAX_ITERATIONS + 1)
+            blank = word("", args[0].at)
+            return [tuple(words[index] if index < len(words) else blank for words in zipped) for index in range(length)]
+        return [(item,) for item in items]
+
+    def numbers(self, args: list[Word], head: Call) -> range:
+        """Rounds of foreach(RANGE)."""
+        try:
+            bounds = [int(item) for item in args[:3]]
+        except ValueError:
+            self.give_up(head.at, "foreach(RANGE) over bounds that are not known")
+            return range(1)
+        if not bounds:
+            return range(0)
+        start, stop = (0, bounds[0]) if len(bounds) == 1 else (bounds[0], bounds[1])
+        step = abs(bounds[2]) if len(bounds) > 2 else 1
+        if step == 0:
+            return range(0)
+        return range(start, stop + 1, step) if start <= stop else range(start, stop - 1, -step)
+
+    def run_while(self, block: Block) -> int:
+        """Runs a while(): once when its test is not known."""
+        for _ in range(MAX_ITERATIONS):
+            value, text = self.decide(block.head)
+            if value is False:
+                return NORMAL
+            if value is None:
+                signal, changes = self.run_branch(block.body, merge(self.conditions, (Condition("cmake", text),)))
+                self.merge_outcomes([{}, changes])
+                return NORMAL
+            self.maybe_break = False
+            signal = self.run_body(block.body)
+            if signal == BREAK or self.maybe_break:
+                self.maybe_break = False
+                return NORMAL
+            if signal >= RETURN:
+                return signal
+        self.give_up(block.head.at, f"while() was left after {MAX_ITERATIONS} rounds")
+        return NORMAL
+
+    def invoke(self, call: Call, defined: tuple[Block, dict[str, Value]]) -> int:
+        """Calls a function or macro of the tree."""
+        block, captured = defined
+        templates = block.head.templates
+        names = [template.raw for template in templates[1:]]
+        args = self.expand(call.templates)
+        at = call.at
+        arguments: dict[str, Value] = dict(captured)
+        for index, name in enumerate(names):
+            if index < len(args):
+                arguments[name] = Value((args[index],), args[index].sure)
+            else:
+                arguments[name] = UNSET
+        arguments["ARGC"] = Value((word(str(len(args)), at),))
+        arguments["ARGV"] = _listing(args)
+        arguments["ARGN"] = _listing(args[len(names) :])
+        for index, item in enumerate(args[:64]):
+            arguments[f"ARGV{index}"] = Value((item,), item.sure)
+
+        overlay, conditions, site = self.overlay, self.conditions, self.call_site
+        if site is None and not self.inside(block.head.path):
+            self.call_site = at
+        try:
+            if block.kind == "macro":
+                self.overlay = arguments
+                signal = self.run_body(block.body)
+            else:
+                self.overlay = captured
+                scope = dict(self.scope)
+                for name in (f"ARGV{index}" for index in range(len(args), 64)):
+                    if name not in scope:
+                        break
+                    del scope[name]
+                scope.update(arguments)
+                directory = self.absolute(posixpath.dirname(block.head.path))
+                scope["CMAKE_CURRENT_FUNCTION"] = Value((word(block.head.templates[0].raw, at),))
+                scope["CMAKE_CURRENT_FUNCTION_LIST_DIR"] = Value((word(directory, at),))
+                self.push(scope)
+                try:
+                    signal = self.run_body(block.body)
+                finally:
+                    self.pop()
+        finally:
+            self.overlay = overlay
+            self.call_site = site
+            if block.kind != "macro":
+                self.conditions = conditions
+        if signal == RETURN and block.kind == "macro":
+            return RETURN
+        return FATAL if signal == FATAL else NORMAL
+
+    def run_file(self, path: str, at: At, subdirectory: str | None = None) -> int | None:
+        """Runs a file of the tree: as include() does, or as add_subdirectory() of `subdirectory`. None: not there."""
+        body = self.load(path)
+        if body is None:
+            return None
+        if path in self.including and self.including.count(path) > 3:
+            self.give_up(at, f"{path} includes itself")
+            return NORMAL
+        listing = {
+            "CMAKE_CURRENT_LIST_DIR": self.absolute(posixpath.dirname(path)),
+            "CMAKE_CURRENT_LIST_FILE": self.absolute(path),
+        }
+        conditions, overlay = self.conditions, self.overlay
+        self.overlay = {}
+        self.including.append(path)
+        kept = {name: self.scope.get(name) for name in listing}
+        try:
+            if subdirectory is not None:
+                self.push(dict(self.scope))
+                listing["CMAKE_CURRENT_SOURCE_DIR"] = self.absolute(subdirectory)
+                inside = posixpath.relpath(subdirectory, self.package_path or ".")
+                listing["CMAKE_CURRENT_BINARY_DIR"] = posixpath.join(BINARY, self.package, inside)
+            for name, text in listing.items():
+                self.scope[name] = Value((word(text, at),))
+            signal = self.run_body(body)
+        finally:
+            self.including.pop()
+            self.overlay = overlay
+            self.conditions = conditions
+            if subdirectory is not None:
+                self.pop()
+            else:
+                for name, value in kept.items():
+                    if value is not None:
+                        self.scope[name] = value
+        return FATAL if signal == FATAL else NORMAL
+
+    def extend(self, package: str, at: At) -> None:
+        """Makes known what a package of the workspace gives to those that find it: its functions and macros, and, from
+        its extras files, its variables. Nothing that it finds or builds itself counts here."""
+        if package in self.extended or package == self.package:
+            return
+        self.extended.add(package)
+        for path in self.extras(package):
+            self.silent += 1
+            try:
+                name = posixpath.basename(path)
+                body = self.load(path)
+                if body is None:
+                    continue
+                self.define_all(body)
+                if "extras" in name:
+                    self.run_file(path, at)
+            finally:
+                self.silent -= 1
+
+    def exported_file(self, package: str, name: str) -> str | None:
+        """The file that `${package_DIR}/name` stands for, when the package is in the workspace."""
+        base = posixpath.basename(name)
+        for path in self.extras(package):
+            if posixpath.basename(path) in (base, f"{base}.in", f"{base}.em"):
+                return path
+        return None
+
+    def define_all(self, body: list[Call | Block]) -> None:
+        """Learns the functions and macros of a body without running it."""
+        pending = list(body)
+        while pending:
+            node = pending.pop()
+            if isinstance(node, Call):
+                continue
+            if node.kind in ("function", "macro"):
+                templates = node.head.templates
+                if templates:
+                    self.definitions.setdefault(templates[0].raw.lower(), (node, {}))
+            elif node.kind == "if":
+                for _, branch in node.branches:
+                    pending.extend(branch)
+
+    def push(self, scope: dict[str, Value]) -> None:
+        """Opens a variable scope."""
+        self.scopes.append(scope)
+        self.scope = scope
+
+    def pop(self) -> None:
+        """Closes the innermost scope."""
+        self.scopes.pop()
+        self.scope = self.scopes[-1]
+
+    def get(self, name: str) -> Value | None:
+        """A normal or cache variable, None when nothing has set or unset it."""
+        value = self.scope.get(name)
+        return value if value is not None else self.cache.get(name)
+
+    variable = get
+
+    def assign(self, where: dict[str, Value], name: str, value: Value) -> None:
+        """Writes into a scope, so that a branch on trial can take it back."""
+        if self.recording:
+            self.journal.append((where, name, where.get(name)))
+        where[name] = value
+
+    def set(self, name: str, words: Iterable[Word], sure: bool = True) -> None:
+        """Sets a normal variable to a list; under a condition its words remember it."""
+        kept = with_conditions(words, self.conditions)
+        if len(kept) > MAX_WORDS:
+            self.give_up(self.call_site, f"`{name}` has more than {MAX_WORDS} items")
+            kept = kept[:MAX_WORDS]
+        self.assign(self.scope, name, Value(kept, sure and all(item.sure for item in kept)))
+
+    def set_text(self, name: str, text: str, at: At, sure: bool = True) -> None:
+        """Sets a normal variable to a single text."""
+        self.assign(self.scope, name, Value((word(text[:MAX_TEXT], at, self.conditions, sure),), sure))
+
+    def set_unknown(self, name: str, at: At) -> None:
+        """Marks a variable as set to something that cannot be told; it reads as `${name}`."""
+        self.assign(self.scope, name, Value((word(f"${{{name}}}", at, (), False),), False))
+
+    def lookup(self, scope: str, name: str) -> Value | None:
+        """What a reference reads."""
+        if scope == "ENV":
+            return self.environment.get(name)
+        if scope == "CACHE":
+            return self.cache.get(name)
+        value = self.overlay.get(name) if self.overlay else None
+        return value if value is not None else self.get(name)
+
+    def expand(self, templates: Iterable[Template]) -> list[Word]:
+        """Arguments after expansion and list splitting."""
+        words: list[Word] = []
+        for template in templates:
+            kind = template.kind
+            if kind == LITERAL:
+                words.extend(template.words)
+            elif kind == REFERENCE:
+                value = self.reference(template, None)
+                if value.sure or words:
+                    words.extend([item for item in value.words if item])
+                elif len(value.chosen) == 1:
+                    words.extend([item for item in value.chosen if item])
+                else:
+                    words.extend([item for item in value.words if item])
+            else:
+                words.extend(self.expand_one(template, None))
+            if len(words) > MAX_WORDS:
+                self.give_up(template.at, f"more than {MAX_WORDS} arguments")
+                return words[:MAX_WORDS]
+        return words
+
+    def reference(self, template: Template, head: Call | None) -> Value:
+        """The value behind a plain `${name}`."""
+        name = template.name
+        value = self.overlay.get(name) if self.overlay else None
+        if value is None:
+            value = self.scope.get(name)
+            if value is None:
+                value = self.cache.get(name)
+                if value is None:
+                    self.use_variable(name, template.at)
+                    return Value((word(f"${{{name}}}", template.at, (), False),), False)
+        return _flat(value)
+
+    def expand_one(self, template: Template, head: Call | None) -> tuple[Word, ...]:
+        """Words of a quoted reference or a mixed argument."""
+        at = template.at
+        if template.kind == QUOTED_REFERENCE:
+            value = self.lookup("", template.name)
+            if value is None:
+                self.use_variable(template.name, at)
+                return (word(f"${{{template.name}}}", at, (), False),)
+            single = word(value.text, at, (), value.sure)
+            single.parts = value.words if value.sure else value.chosen
+            return (single,)
+        if template.kind == REFERENCE:
+            return tuple(item for item in self.reference(template, head).words if item)
+        text, sure, conditions = read_references(template.parts, self._lookup_used(at))
+        if len(text) > MAX_TEXT:
+            self.give_up(at, f"a value is longer than {MAX_TEXT} characters")
+            text = text[:MAX_TEXT]
+        if template.quoted:
+            return (word(text, at, conditions, sure),)
+        return tuple(word(part, at, conditions, sure) for part in split_list(text))
+
+    def _lookup_used(self, at: At) -> Callable[[str, str], Value | None]:
+        def lookup(scope: str, name: str) -> Value | None:
+            value = self.lookup(scope, name)
+            if value is None and not scope:
+                self.use_variable(name, at)
+            return value
+
+        return lookup
+
+    def use_variable(self, name: str, at: At) -> None:
+        """Notes a variable that is read and that nothing sets, when its name tells that a package should."""
+        if self.silent or not name.endswith(READ_SUFFIXES) or name.startswith("CMAKE_"):
+            return
+        self.uses[Use("variable", name, self.place(at), "", self.conditions)] = None
+
+    def is_target(self, name: str) -> bool | None:
+        """True when the tree makes this target."""
+        return True if name in self.targets else None
+
+    def is_command(self, name: str) -> bool | None:
+        """True when CMake or the tree defines this command."""
+        name = name.lower()
+        return True if name in self.definitions or (name in COMMANDS and name not in MODULE_OF) else None
+
+    def path_exists(self, path: str, directory: bool) -> bool | None:
+        """Whether a path of the tree exists; None outside of it."""
+        if not path.startswith("/"):
+            return None
+        relative = self.relative(path)
+        return None if relative is None else self.exists(relative)
+
+    def matched(self, groups: tuple[str, ...]) -> None:
+        """Sets CMAKE_MATCH_<n>."""
+        at = self.call_site or At(self.including[-1] if self.including else "", 1)
+        for index, text in enumerate(groups[:10]):
+            self.set_text(f"CMAKE_MATCH_{index}", text, at)
+
+    def quotes_protect(self) -> bool:
+        """CMP0054: quoted arguments of if() are no variable names from policy version 3.1 on."""
+        return self.minimum_policy >= (3, 1)
+
+    def absolute(self, relative: str) -> str:
+        """A path of the tree as CMake code sees it."""
+        return posixpath.normpath(f"{SOURCE}/{relative}") if relative else SOURCE
+
+    def relative(self, path: str) -> str | None:
+        """A path that CMake code holds, relative to the workspace root; None when it lies elsewhere."""
+        if not path.startswith(SOURCE):
+            return None
+        normal = posixpath.normpath(path)
+        if normal == SOURCE:
+            return ""
+        return normal[len(SOURCE) + 1 :] if normal.startswith(SOURCE + "/") else None
+
+    def current_directory(self) -> str:
+        """CMAKE_CURRENT_SOURCE_DIR as CMake code sees it."""
+        value = self.scope.get("CMAKE_CURRENT_SOURCE_DIR")
+        return value.text if value is not None else SOURCE
+
+    def resolve(self, text: str, base: str | None = None) -> str:
+        """A path argument, absolute: relative ones start at `base`, else at the current source folder."""
+        if text.startswith(("/", "$", "~")):
+            return text
+        return posixpath.normpath(posixpath.join(base or self.current_directory(), text))
+
+    def tree_path(self, text: str) -> str:
+        """A path argument relative to the workspace root when it can be told, else as a reader would write it."""
+        if not text or text.startswith("$<"):
+            return self.shown(text)
+        relative = self.relative(self.resolve(text))
+        if relative is None:
+            return self.shown(text)
+        return relative + "/" if text.endswith("/") and relative else relative
+
+    def shown(self, text: str) -> str:
+        """A text without the names this interpreter gives to the tree, the build and the install folder."""
+        if "/@" not in text:
+            return str(text)
+        text = text.replace(f"{SOURCE}/", "").replace(SOURCE, ".")
+        text = text.replace(f"{BINARY}/{self.package}", "${CMAKE_BINARY_DIR}").replace(BINARY, "${CMAKE_BINARY_DIR}")
+        return text.replace(f"{PREFIX}/", "").replace(PREFIX, "")
+
+    def inside(self, path: str) -> bool:
+        """True for a file of the package itself."""
+        return not self.package_path or path.startswith(self.package_path + "/")
+
+    def place(self, at: At) -> At:
+        """The place a finding should point at: inside the package, so a call into another one's macro stands for it."""
+        return self.call_site if self.call_site is not None and not self.inside(at.path) else at
+
+    def under(self, item: Word) -> tuple[Condition, ...]:
+        """The conditions that hold for a word here."""
+        return merge(self.conditions, item.conditions)
+
+    def give_up(self, at: At | None, reason: str) -> None:
+        """Notes what could not be told."""
+        if not self.silent:
+            here = at or At(self.including[-1] if self.including else "", 1)
+            self.unresolved[(self.place(here), reason)] = None
+
+    def add_found(self, found: Found) -> None:
+        """Collects a package looked for."""
+        if not self.silent:
+            self.found[found] = None
+
+    def add_install(self, install: Install) -> None:
+        """Collects an install rule."""
+        if not self.silent and install.items:
+            self.installs[install] = None
+
+    def add_export(self, item: str, how: str, at: At, conditions: tuple[Condition, ...], context: str = "") -> None:
+        """Collects a promise to dependants."""
+        if not self.silent and item:
+            self.exports[Exported(self.shown(item), how, self.place(at), conditions, context)] = None
+
+    def add_standard(self, number: int, at: At, is_default: bool) -> None:
+        """Collects a C++ standard set for everything."""
+        if not self.silent:
+            self.standards.append((number, self.place(at), is_default))
+
+    def new_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
+        """Makes or finds a target; a second one of the same name adds to the first."""
+        conditions = self.under(name) if isinstance(name, Word) else self.conditions
+        return self.targets.make(str(name), kind, self.place(at), conditions)
+
+
+def _listing(args: list[Word]) -> Value:
+    """Arguments as the value of ARGV or ARGN."""
+    words: list[Word] = []
+    for item in args:
+        if ";" in item and item.parts:
+            words.extend(item.parts)
+        else:
+            words.append(item)
+    return Value(tuple(words), all(item.sure for item in words))
+
+
+def _flat(value: Value) -> Value:
+    """A value whose words hold no more lists: an argument in quotes may."""
+    for item in value.words:
+        if ";" in item:
+            break
+    else:
+        return value
+    made = Value(tuple(split_words(value.words)), value.sure, value.defined)
+    if value.chosen is not value.words:
+        made.chosen = tuple(split_words(value.chosen))
+    return made
+
+
+HANDLERS: dict[str, Handler] = {}
+WRAPPERS: dict[str, Handler] = {}
+
+
+def handles(*names: str) -> Callable[[Handler], Handler]:
+    """Registers the decorated function as the meaning of these commands."""
+
+    def register(handler: Handler) -> Handler:
+        for name in names:
+            HANDLERS[name] = handler
+        return handler
+
+    return register
+
+
+def stands_in_for(*names: str) -> Callable[[Handler], Handler]:
+    """Registers a meaning that is used only when the tree itself does not define the command."""
+
+    def register(handler: Handler) -> Handler:
+        for name in names:
+            WRAPPERS[name] = handler
+        return handler
+
+    return register

@@ -1,0 +1,57 @@
+"""The C++ standard a package asks for, in every form it can be asked for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from .values import Word
+
+if TYPE_CHECKING:
+    from .interpreter import Interpreter
+
+_FLAG = re.compile(r"(?:^|[\s;:,\"])-std=(?:c|gnu)\+\+([0-9][0-9a-z])\b")
+_FEATURE = re.compile(r"cxx_std_(\d\d)\b")
+_NAMES = {"0x": 11, "1y": 14, "1z": 17, "2a": 20, "2b": 23, "2c": 26, "03": 98}
+
+
+def flag_standard(text: str) -> int:
+    """The standard of a `-std=` flag in a text (`-std=gnu++1z` is 17), 0 when there is none; the last one counts."""
+    if "-std=" not in text:
+        return 0
+    found = _FLAG.findall(text)
+    if not found:
+        return 0
+    name = found[-1]
+    return _NAMES.get(name) or (int(name) if name.isdigit() else 0)
+
+
+def feature_standard(text: str) -> int:
+    """The standard of a `cxx_std_17` compile feature, 0 for any other feature."""
+    found = _FEATURE.search(text)
+    return int(found.group(1)) if found else 0
+
+
+def is_default(run: Interpreter) -> bool:
+    """True when a standard set here gives way to one that the user or a toolchain chose."""
+    return any("CMAKE_CXX_STANDARD" in held.text for held in run.conditions)
+
+
+def note_variable(run: Interpreter, name: str, text: str, item: Word) -> None:
+    """Collects a standard that is set through a variable."""
+    if name == "CMAKE_CXX_STANDARD":
+        if text.isdigit() and len(text) == 2:
+            run.add_standard(int(text), item.at, is_default(run))
+    elif name.startswith("CMAKE_CXX_FLAGS"):
+        number = flag_standard(text)
+        if number:
+            run.add_standard(number, item.at, is_default(run))
+
+
+def note_options(run: Interpreter, items: Iterable[Word]) -> None:
+    """Collects a standard that is set with add_compile_options() or add_definitions()."""
+    for item in items:
+        number = flag_standard(item)
+        if number:
+            run.add_standard(number, item.at, is_default(run))

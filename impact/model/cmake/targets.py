@@ -1,0 +1,338 @@
+"""What is built: libraries, executables, custom targets, and what is given to them."""
+
+from __future__ import annotations
+
+from ..build import GeneratedInterfaces, Link
+from .blocks import Call
+from .drafts import TargetDraft
+from .genex import reduced, rejoin
+from .interpreter import Interpreter, handles
+from .standard import feature_standard, flag_standard, is_default, note_options
+from .values import Value, Word, split_words, word
+
+_LIBRARY_KINDS = {
+    "STATIC": "library",
+    "SHARED": "library",
+    "OBJECT": "library",
+    "UNKNOWN": "library",
+    "MODULE": "module",
+    "INTERFACE": "interface",
+}
+_LIBRARY_FLAGS = frozenset({"EXCLUDE_FROM_ALL", "IMPORTED", "GLOBAL", "WITH_SOABI", "THIN_LTO", "NO_EXTRAS", "SYSTEM"})
+
+
+@handles("add_library", "cuda_add_library", "rosbuild_add_library", "python_add_library", "python3_add_library",
+         "pybind11_add_module", "pybind_add_module", "python_add_module", "ament_python_add_module")  # fmt: skip
+def add_library(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """add_library() in all its signatures, and the modules' variants of it."""
+    if not args:
+        return
+    name, rest = args[0], args[1:]
+    if len(rest) >= 2 and rest[0] == "ALIAS":
+        draft = run.new_target(name, "alias", name.at)
+        draft.alias_of = str(rest[1])
+        return
+    kind = "module" if call.name not in ("add_library", "cuda_add_library", "rosbuild_add_library") else "library"
+    form = ""
+    sources: list[Word] = []
+    for item in rest:
+        if item in _LIBRARY_KINDS and not sources:
+            form = str(item)
+            kind = _LIBRARY_KINDS[item]
+        elif item not in _LIBRARY_FLAGS:
+            sources.append(item)
+    if "IMPORTED" in rest:
+        kind = "imported"
+    draft = run.new_target(name, kind, name.at)
+    if form in ("STATIC", "OBJECT"):
+        draft.installed_as = "static"
+    add_sources(run, draft, sources)
+
+
+@handles("add_executable", "cuda_add_executable", "rosbuild_add_executable", "qt_add_executable", "qt5_add_executable")
+def add_executable(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """add_executable() in all its signatures."""
+    if not args:
+        return
+    name, rest = args[0], args[1:]
+    if len(rest) >= 2 and rest[0] == "ALIAS":
+        draft = run.new_target(name, "alias", name.at)
+        draft.alias_of = str(rest[1])
+        return
+    draft = run.new_target(name, "imported" if rest[:1] == ["IMPORTED"] else "executable", name.at)
+    add_sources(run, draft, [item for item in rest if item not in ("WIN32", "MACOSX_BUNDLE", *_LIBRARY_FLAGS)])
+
+
+def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None:
+    """Gives sources to a target, as paths relative to the workspace root where they can be told."""
+    for item in rejoin(items):
+        for part in reduced(item):
+            if part and not part.startswith("$<TARGET_OBJECTS"):
+                draft.sources[run.tree_path(part)] = None
+
+
+@handles("target_sources")
+def target_sources(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """target_sources(), FILE_SET forms included."""
+    if not args:
+        return
+    draft = known(run, args[0])
+    kept: list[Word] = []
+    section = ""
+    for item in args[1:]:
+        if item in ("PUBLIC", "PRIVATE", "INTERFACE"):
+            section = ""
+        elif item in ("FILE_SET", "TYPE", "BASE_DIRS"):
+            section = str(item)
+        elif item == "FILES":
+            section = ""
+        elif not section:
+            kept.append(item)
+    add_sources(run, draft, kept)
+
+
+def known(run: Interpreter, name: Word) -> TargetDraft:
+    """The target of this name; one that nothing makes is noted as unknown."""
+    draft = run.targets.get(name)
+    while draft is not None and draft.kind == "alias" and run.targets.get(draft.alias_of) is not None:
+        followed = run.targets.get(draft.alias_of)
+        if followed is None or followed is draft or followed.kind == "alias":
+            break
+        draft = followed
+    return draft if draft is not None else run.new_target(name, "unknown", name.at)
+
+
+_VISIBILITY = {
+    "PUBLIC": "PUBLIC",
+    "PRIVATE": "PRIVATE",
+    "INTERFACE": "INTERFACE",
+    "LINK_PUBLIC": "PUBLIC",
+    "LINK_PRIVATE": "PRIVATE",
+    "LINK_INTERFACE_LIBRARIES": "INTERFACE",
+}
+_LINK_FLAGS = frozenset({"debug", "optimized", "general"})
+_INCLUDE_FLAGS = frozenset({"SYSTEM", "BEFORE", "AFTER"})
+
+
+def add_links(run: Interpreter, draft: TargetDraft, items: list[Word], how: str, visibility: str = "") -> None:
+    """Gives items to a target, generator expressions reduced."""
+    if run.silent:
+        return
+    for item in rejoin(items):
+        if item in _VISIBILITY:
+            visibility = _VISIBILITY[item]
+            continue
+        for part in reduced(item):
+            if part:
+                text = run.tree_path(part) if how == "include" else run.shown(part)
+                draft.links[Link(text, how, run.place(part.at), visibility, run.under(part))] = None
+
+
+@handles("target_link_libraries", "swig_link_libraries")
+def target_link_libraries(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """target_link_libraries(), old and new keywords."""
+    if args:
+        items = split_words(item for item in args[1:] if item not in _LINK_FLAGS)
+        add_links(run, known(run, args[0]), items, "link")
+
+
+@handles("target_include_directories")
+def target_include_directories(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """target_include_directories()."""
+    if args:
+        items = split_words(item for item in args[1:] if item not in _INCLUDE_FLAGS)
+        add_links(run, known(run, args[0]), items, "include")
+
+
+@handles("include_directories")
+def include_directories(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """include_directories()."""
+    for item in rejoin(split_words(args)):
+        if item in _INCLUDE_FLAGS or run.silent:
+            continue
+        for part in reduced(item):
+            run.include_dirs[(run.tree_path(part), run.place(part.at))] = None
+
+
+@handles("link_libraries")
+def link_libraries(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """link_libraries(): for every target that follows."""
+    for item in rejoin(split_words(args)):
+        if item in _LINK_FLAGS or run.silent:
+            continue
+        for part in reduced(item):
+            run.links[Link(run.shown(part), "link", run.place(part.at), "", run.under(part))] = None
+
+
+@handles("rosbuild_link_boost", "target_link_boost")
+def link_boost(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """rosbuild_link_boost(): Boost libraries by component."""
+    if args:
+        items = [word(f"Boost::{item}", item.at, item.conditions, item.sure) for item in split_words(args[1:])]
+        add_links(run, known(run, args[0]), items, "link")
+
+
+@handles("add_dependencies")
+def add_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """add_dependencies()."""
+    if args:
+        add_links(run, known(run, args[0]), split_words(args[1:]), "order")
+
+
+@handles("add_custom_target")
+def add_custom_target(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """add_custom_target()."""
+    if not args:
+        return
+    draft = run.new_target(args[0], "custom", args[0].at)
+    section = ""
+    for item in args[1:]:
+        if item in ("DEPENDS", "SOURCES"):
+            section = str(item)
+        elif item in ("COMMAND", "WORKING_DIRECTORY", "COMMENT", "BYPRODUCTS", "ALL", "VERBATIM", "USES_TERMINAL"):
+            section = ""
+        elif section == "DEPENDS" and "/" not in item and "." not in item:
+            add_links(run, draft, [item], "order")
+        elif section == "SOURCES":
+            add_sources(run, draft, [item])
+
+
+@handles("target_compile_definitions")
+def target_compile_definitions(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """target_compile_definitions()."""
+    if args:
+        draft = known(run, args[0])
+        for item in split_words(args[1:]):
+            if item not in _VISIBILITY:
+                draft.definitions[item[2:] if item.startswith("-D") else str(item)] = None
+
+
+@handles("target_compile_options", "target_compile_features")
+def target_compile_options(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """target_compile_options() and target_compile_features(), of which the C++ standard is kept."""
+    if args:
+        draft = known(run, args[0])
+        for item in args[1:]:
+            draft.standard = max(draft.standard, flag_standard(item), feature_standard(item))
+
+
+@handles("add_compile_options", "add_definitions")
+def add_compile_options(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """add_compile_options() and add_definitions()."""
+    note_options(run, args)
+
+
+@handles("set_target_properties")
+def set_target_properties(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """set_target_properties()."""
+    if "PROPERTIES" in args:
+        split = args.index("PROPERTIES")
+        pairs = args[split + 1 :]
+        for name in split_words(args[:split]):
+            for key, value in zip(pairs[::2], pairs[1::2], strict=False):
+                set_target_property(run, name, key, value)
+
+
+@handles("set_property")
+def set_property(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """set_property() on targets; others are remembered for get_property()."""
+    if "PROPERTY" not in args[:-1]:
+        return
+    split = args.index("PROPERTY")
+    key, values = args[split + 1], args[split + 2 :]
+    owners = [item for item in args[1:split] if item not in ("APPEND", "APPEND_STRING")]
+    if args[0] == "TARGET":
+        for name in owners:
+            for value in values[:1]:
+                set_target_property(run, name, key, value)
+            run.assign(run.properties, f"TARGET {name} {key}", Value(tuple(values)))
+        return
+    owner = " ".join([args[0], *owners[:1], key])
+    if "APPEND" in args[:split] and owner in run.properties:
+        values = [*run.properties[owner].words, *values]
+    run.assign(run.properties, owner, Value(tuple(values)))
+
+
+def set_target_property(run: Interpreter, name: Word, key: str, value: Word) -> None:
+    """Keeps the properties that matter: the standard, the output name, compile flags, what is linked."""
+    draft = run.targets.get(name)
+    run.assign(run.properties, f"TARGET {name} {key}", Value((value,)))
+    if draft is None:
+        return
+    if key == "CXX_STANDARD":
+        if value.isdigit():
+            draft.standard = max(draft.standard, int(value))
+    elif key in ("COMPILE_FLAGS", "COMPILE_OPTIONS"):
+        draft.standard = max(draft.standard, flag_standard(value))
+    elif key in ("OUTPUT_NAME", "LIBRARY_OUTPUT_NAME", "RUNTIME_OUTPUT_NAME"):
+        draft.output_name = str(value)
+    elif key in ("INTERFACE_LINK_LIBRARIES", "LINK_LIBRARIES"):
+        add_links(run, draft, list(split_words([value])), "link", "INTERFACE" if key.startswith("INTERFACE") else "")
+    elif key == "INTERFACE_INCLUDE_DIRECTORIES":
+        add_links(run, draft, list(split_words([value])), "include", "INTERFACE")
+
+
+@handles("add_test")
+def add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """add_test() makes no target."""
+
+
+@handles("generate_export_header")
+def generate_export_header(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """generate_export_header(): a header in the build folder."""
+    if args:
+        base = f"{args[0].lower()}_export.h"
+        if "EXPORT_FILE_NAME" in args[:-1]:
+            base = str(args[args.index("EXPORT_FILE_NAME") + 1])
+        value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
+        run.configured[run.shown(run.resolve(base, value.text if value is not None else None))] = None
+
+
+_QT_OPTIONS = frozenset({"OPTIONS", "TARGET", "DEPENDS"})
+
+
+@handles("qt4_wrap_cpp", "qt5_wrap_cpp", "qt6_wrap_cpp", "qt_wrap_cpp", "qt4_wrap_ui", "qt5_wrap_ui", "qt6_wrap_ui",
+         "qt_wrap_ui", "qt4_add_resources", "qt5_add_resources", "qt6_add_resources", "qt_add_resources")  # fmt: skip
+def qt_wrap(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """Qt's generators: the variable lists files of the build folder, named as Qt names them."""
+    if len(args) < 2:
+        return
+    shape = {"cpp": "moc_{}.cpp", "ui": "ui_{}.h"}.get(call.name.rpartition("_")[2], "qrc_{}.cpp")
+    binary = run.scope["CMAKE_CURRENT_BINARY_DIR"].text
+    held = run.get(args[0])
+    made = list(held.words) if held is not None else []
+    for item in args[1:]:
+        if item in _QT_OPTIONS:
+            break
+        base = item.rpartition("/")[2].rpartition(".")[0] or item.rpartition("/")[2]
+        made.append(word(f"{binary}/{shape.format(base)}", item.at, item.conditions, item.sure))
+    run.set(args[0], made)
+
+
+@handles("protobuf_generate_cpp", "protobuf_generate_python")
+def protobuf_generate_cpp(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """protobuf_generate_cpp(SRCS HDRS files...)."""
+    outputs = 2 if call.name.endswith("cpp") else 1
+    endings = (".pb.cc", ".pb.h") if outputs == 2 else ("_pb2.py",)
+    files = [item for item in args[outputs:] if item.endswith(".proto")]
+    binary = run.scope["CMAKE_CURRENT_BINARY_DIR"].text
+    for name, ending in zip(args[:outputs], endings, strict=False):
+        made = [word(f"{binary}/{item.rpartition('/')[2][:-6]}{ending}", item.at) for item in files]
+        run.set(name, made)
+    if files and not run.silent:
+        paths = tuple(run.tree_path(item) for item in files)
+        run.generated.append(GeneratedInterfaces("protobuf", "", paths, (), run.place(call.at), run.conditions))
+
+
+@handles("protobuf_generate")
+def protobuf_generate(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """protobuf_generate(TARGET t PROTOS files...)."""
+    target = str(args[args.index("TARGET") + 1]) if "TARGET" in args[:-1] else ""
+    files = tuple(run.tree_path(item) for item in args if item.endswith(".proto"))
+    if not run.silent:
+        run.generated.append(GeneratedInterfaces("protobuf", target, files, (), run.place(call.at), run.conditions))
+
+
+def default_standard(run: Interpreter, number: int, call: Call) -> None:
+    """A standard that a wrapper sets unless one is set already."""
+    run.add_standard(number, call.at, is_default(run))
