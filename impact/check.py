@@ -68,7 +68,8 @@ def check(path: str | os.PathLike[str], options: Options = Options(), progress: 
         if options.base:
             from .base import against_base
 
-            found = against_base(tree, options.base, found, workspace, targets, rules, store, config, options)
+            found = against_base(tree, options.base, found, workspace, views, rules, store, sources,
+                                 lambda w, v, s: judge(w, v, rules, s, config))  # fmt: skip
         known: Sequence[Finding] = ()
         if options.baseline:
             found, known = after.without_known(found, after.known_from(options.baseline))

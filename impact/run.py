@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .check import Options, __version__, check as run_check
 from .config import ConfigError
-from .findings import SettingsError, baseline as baseline_text, edits as edits_of, fails
+from .findings import SettingsError, baseline as baseline_text, fails
 from .report.report import Report
 from .targets.distro import TargetError
 from .targets.snapshot import SnapshotError
@@ -118,14 +118,22 @@ def _progress():
 def _fix(path: Path, report: Report, diff: bool) -> int:
     from . import fix
 
-    edits = edits_of(report.findings)
-    result = fix.apply(edits, lambda p: (path / p).read_bytes())
-    if diff:
-        for name, data in result.changed.items():
-            _write(fix.unified_diff(name, (path / name).read_bytes(), data))
-        return 0
-    fix.write(path, result.changed)
-    print(f"{len(result.changed)} files changed", file=sys.stderr)
+    def read(name: str) -> bytes | None:
+        try:
+            return (path / name).read_bytes()
+        except OSError:
+            return None
+
+    applied = fix.apply(fix.fixes(report.findings), read)
+    for name, data in applied.files.items():
+        if diff:
+            _write(fix.unified_diff(name, read(name) or b"", data))
+        else:
+            fix.write(path / name, data)
+    for edit, reason in applied.refused:
+        print(f"{edit[0].path if edit else path}: not changed: {reason}", file=sys.stderr)
+    if not diff:
+        print(f"{len(applied.files)} files changed", file=sys.stderr)
     return 0
 
 

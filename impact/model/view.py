@@ -5,18 +5,21 @@ This is the join that most rules ask: model × target. Nothing here reads files.
 
 from __future__ import annotations
 
+import re
 from collections import deque
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
 from ..facts.condition import Condition
+from ..targets.changes import transitive_includes
 from ..targets.target import Change, Provider, Target
+from ..config import Config
 from .build import At
 from .conditions import Environment, all_hold
 from .package import role_of_folder
 from .spelling import Names
-from .workspace import Package, Workspace, is_interface_header
+from .workspace import Package, Workspace, is_interface_header, snake
 
 # Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's Depends).
 _INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
@@ -45,11 +48,21 @@ class Need(NamedTuple):
     targets: tuple[str, ...] = ()
 
 
+class Misnamed(NamedTuple):
+    """Why an include path cannot be right, and what to write."""
+
+    message: str
+    help: str
+
+
+_CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
+
+
 class View:
     """One workspace on one target. providers answers for everything outside the workspace."""
 
-    def __init__(self, workspace: Workspace, target: Target, providers):
-        self.workspace, self.target, self.providers = workspace, target, providers
+    def __init__(self, workspace: Workspace, target: Target, providers, config: Config = Config()):
+        self.workspace, self.target, self.providers, self.config = workspace, target, providers, config
         self._closures: dict[tuple[str, frozenset[str]], dict[str, str]] = {}
         self._needs: dict[str, tuple[Need, ...]] = {}
         self._headers: dict[str, tuple[Provider, ...]] = {}
@@ -111,6 +124,62 @@ class View:
         """True when a package of this name is in the workspace, released on the target, or a rosdep key there."""
         target = self.target
         return name in self.workspace.packages or target.version(name) is not None or target.resolve(name) is not None
+
+    @property
+    def transitive(self):
+        """Headers that compilers and libraries stopped bringing along, see targets/changes.py."""
+        return transitive_includes()
+
+    def successor(self, name: str) -> str:
+        """What the known-changes table says to use instead of a package, as a cure; empty when it says nothing."""
+        for change in self.changes("package-renamed", "package-removed"):
+            if change.new and name in (change.old, change.package):
+                return f"depend on `{change.new}`"
+        return ""
+
+    def last_distro(self, name: str) -> str:
+        """The newest distro that has released a package, empty when none has."""
+        return self.target.last_distro(name)
+
+    @property
+    def underlaid(self) -> bool:
+        """True when the configuration names underlays or .repos files, whose packages are not looked into."""
+        return bool(self.config.underlays or self.config.repos)
+
+    def private(self, name: str) -> bool:
+        """True for packages that the configuration calls one's own."""
+        return name in self.config.private
+
+    def is_standard(self, header: str) -> bool:
+        """True for headers of the C and C++ standard libraries and of the operating system."""
+        return any(not p.name for p in self.providers.header(header))
+
+    def misnamed_interface(self, path: str) -> Misnamed | None:
+        """What is wrong with the spelling of a generated header on this target's generation, None when nothing is."""
+        head, _, rest = path.partition("/")
+        if not rest or not self._generates_interfaces(head):
+            return None
+        parts = rest.split("/")
+        name = parts[-1].rsplit(".", 1)[0]
+        if self.target.ros == 2:
+            if len(parts) == 1 and path.endswith(".h") and _CAMEL.match(name) and "_" not in name:
+                folder = "srv" if name.endswith(("Request", "Response")) else "msg"
+                return Misnamed(f"`{path}` is the ROS 1 name of a generated header",
+                                f"include `{head}/{folder}/{snake(name)}.hpp`")  # fmt: skip
+            if len(parts) == 2 and parts[0] in ("msg", "srv", "action") and name != name.lower():
+                return Misnamed(f"generated headers are in lower case, so there is no `{path}`",
+                                f"include `{head}/{parts[0]}/{snake(name).replace('__', '_')}.hpp`")  # fmt: skip
+        elif len(parts) == 2 and parts[0] in ("msg", "srv", "action") and path.endswith(".hpp"):
+            return Misnamed(f"`{path}` is the ROS 2 name of a generated header", f"include `{head}/<Name>.h`")
+        return None
+
+    def _generates_interfaces(self, name: str) -> bool:
+        package = self.workspace.packages.get(name)
+        if package is not None:
+            return package.is_interface_package
+        if not name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")):
+            return False
+        return self.target.version(name) is not None
 
     @cached_property
     def _changes(self) -> dict[str, list[Change]]:

@@ -200,12 +200,19 @@ def link(tree, gathered: Gathered, store, ros: int | None, watched: Watched) -> 
     return Workspace(linker.digests(store), discovered, ros, gathered, tree.read)
 
 
+def _manifest(gathered: Gathered, path: str) -> Manifest | None:
+    if path not in gathered.kinds:
+        return None
+    facts = gathered.facts(path).facts
+    return facts if isinstance(facts, Manifest) else None
+
+
 def generation(discovered: Discovered, gathered: Gathered) -> int:
     """1 or 2: which ROS generation most packages of the tree are written for."""
     two = 0
     total = 0
     for place in discovered.packages:
-        manifest = gathered.facts(place.manifest_path).facts
+        manifest = _manifest(gathered, place.manifest_path)
         if manifest is None:
             continue
         total += 1
@@ -222,14 +229,14 @@ class _Linker:
         self.paths_of: dict[str, list[str]] = {p.path: [] for p in discovered.packages}
         for entry in tree.entries():
             owner = discovered.owner(entry.path)
-            if owner is not None:
+            if owner is not None and owner.path in self.paths_of:
                 self.paths_of[owner.path].append(entry.path)
         self.all_paths = frozenset(e.path for e in tree.entries())
         self.by_name = {p.name: p for p in discovered.packages}
 
     def digests(self, store) -> list[Digest]:
         found: dict[str, Digest] = {}
-        places = [p for p in self.discovered.packages if p.name]
+        places = [p for p in self.discovered.packages if _manifest(self.gathered, p.manifest_path) is not None]
         keys = {p.path: self.key(p) for p in places}
         decoder = msgspec.msgpack.Decoder(Digest)
         remembered = store.memos("digest", list(keys.values())) if store is not None else {}
@@ -262,7 +269,8 @@ class _Linker:
 
     def join(self, place) -> tuple[Digest, dict[str, str]]:
         gathered = self.gathered
-        manifest: Manifest = gathered.facts(place.manifest_path).facts
+        manifest = _manifest(gathered, place.manifest_path)
+        assert manifest is not None
         files = self.paths_of[place.path]
         gathered.preload(files)
         read: dict[str, str] = {}

@@ -10,7 +10,7 @@ _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
 
 def weight(need: Need) -> tuple:
     """Sort key: what is surest to break comes first."""
-    return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at)
+    return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at.path, need.at.line)
 
 
 def present(view: View, name: str) -> bool:

@@ -161,7 +161,7 @@ def _catkin_order(view: View, package):
                 continue
             wanted.setdefault((head, kind), []).append((include, target))
     for (head, kind), uses in wanted.items():
-        include, target = min(uses, key=lambda u: (u[1].at, u[0].at))
+        include, target = min(uses, key=lambda u: (u[1].at.path, u[1].at.line, u[0].at.path, u[0].at.line))
         own = head == package.name
         cure = "${" + (f"{package.name}" if own else "catkin") + "_EXPORTED_TARGETS}"
         names = sorted({t.name for _, t in uses})

@@ -34,7 +34,7 @@ def unreleased_package(view: View):
                 continue
             if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
                 continue
-            if not target.ever_released(name) or not target.knows_releases:
+            if not target.ever_released(name) or view.private(name) or view.successor(name):
                 continue
             if dependency.condition and not view.active_manifest(dependency.condition):
                 continue

@@ -38,7 +38,7 @@ def unresolvable_key(view: View):
             if dependency.condition and not view.active_manifest(dependency.condition):
                 continue
             seen.add(name)
-            if target.ever_released(name):
+            if target.ever_released(name) or view.private(name):
                 continue  # unreleased-package says it
             guess = nearest(name, view.known_names)
             known = target.known_key(name)
@@ -46,7 +46,7 @@ def unresolvable_key(view: View):
             if known:
                 yield Hit(
                     at, name, f"rosdep has no rule for `{name}` on {target.platform}", _cure(guess, name), package.name,
-                    severity="error" if target.knows_keys else "warning",
+                    severity="error",
                 )  # fmt: skip
             elif guess:
                 yield Hit(at, name, f"`{name}` is neither a package nor a rosdep key", _cure(guess, name), package.name)

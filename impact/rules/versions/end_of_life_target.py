@@ -18,8 +18,7 @@ from ..rule import Hit, rule
 @rule(severity="note")
 def end_of_life_target(view: View):
     ended = getattr(view.target, "end_of_life", "") or ""
-    today = view.today
-    if ended and today and ended <= today:
+    if ended and ended <= view.target.data_date:
         first = next(iter(view.workspace), None)
         if first is not None:
             yield Hit(At(first.digest.manifest_path, 1), view.target.distro, f"{view.target.distro} reached its end of life on {ended}",

@@ -1,0 +1,116 @@
+"""Scores `check` on historical breaks and on releases that built, straight from git, without a checkout.
+
+The same judgement as the benchmark's own score.py, which is given as a file; only the trees are read from the
+repositories, so that a whole run takes minutes.
+
+usage: breaks.py --score score.py --repos DIR [--breaks FILE] [--negatives FILE] [--only TEXT] [--out FILE] [--jobs N]
+"""
+
+from __future__ import annotations
+
+import argparse
+import collections
+import importlib.util
+import json
+import pathlib
+import sys
+import time
+import traceback
+from concurrent.futures import ProcessPoolExecutor
+
+_STATE: dict = {}
+
+
+def start(score_path: str, repos: str, breaks: str | None) -> None:
+    spec = importlib.util.spec_from_file_location("score", score_path)
+    score = importlib.util.module_from_spec(spec)
+    sys.modules["score"] = score
+    spec.loader.exec_module(score)
+    _STATE.update(score=score, repos=pathlib.Path(repos))
+    by_id = {r["id"]: r for r in score.load(breaks, 0)} if breaks else {}
+    _STATE["args"] = argparse.Namespace(repos=_STATE["repos"], by_id=by_id, command="")
+
+    def tree(git, commit, folder) -> bool:
+        pathlib.Path(folder, "REVISION").write_text(f"{git}\n{commit}")
+        return True
+
+    def check(command, folder, targets, timeout=300):
+        from rosimpact.impact.check import Options
+        from rosimpact.impact.check import check as run
+
+        git, commit = pathlib.Path(folder, "REVISION").read_text().split("\n")
+        began = time.monotonic()
+        try:
+            report = run(git, Options(targets=tuple(targets), rev=commit, jobs=1))
+        except Exception as error:
+            return None, "".join(traceback.format_exception(error))[-600:], time.monotonic() - began
+        if report.failure:
+            return None, report.failure, time.monotonic() - began
+        found = [f._asdict() for f in report.findings]
+        _STATE["last"] = found
+        return found, None, time.monotonic() - began
+
+    score.tree, score.check = tree, check
+
+
+def one_break(record):
+    row = _STATE["score"].score_break(_STATE["args"], record)
+    row["record"] = record
+    return row
+
+
+def one_negative(record):
+    row = _STATE["score"].score_negative(_STATE["args"], record)
+    if row["result"] == "run":
+        folders = sorted(((p["path"].strip("./"), p["name"]) for p in record["package_paths"]), key=lambda p: -len(p[0]))
+        own = lambda path: next((n for at, n in folders if not at or path.startswith(at + "/")), None)  # noqa: E731
+        row["said"] = [
+            (f["severity"], f["rule"], own(f["path"]), f["path"], f["line"], f["subject"], f["message"])
+            for f in _STATE["last"] if f["severity"] != "note" and (own(f["path"]) or "/" not in f["path"])
+        ]  # fmt: skip
+    return row
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("--score", "--repos"):
+        parser.add_argument(name, required=True)
+    for name in ("--breaks", "--negatives", "--only", "--out"):
+        parser.add_argument(name)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--sample", type=int, default=0)
+    args = parser.parse_args()
+    start(args.score, args.repos, args.breaks)
+    load = _STATE["score"].load
+    keep = lambda rows: [r for r in rows if not args.only or args.only in json.dumps(r)]  # noqa: E731
+    out = open(args.out, "w") if args.out else None
+    with ProcessPoolExecutor(args.jobs, initializer=start, initargs=(args.score, args.repos, args.breaks)) as pool:
+        if args.breaks:
+            rows = [r for r in pool.map(one_break, keep(load(args.breaks, args.sample))) if r["result"] != "no repository"]
+            for label, part in (("all", rows), ("tier A, hard", [r for r in rows if r["tier"] == "A" and r["hardness"] == "hard"])):
+                won = [r for r in part if r["result"] == "found"]
+                print(f"recall, {label}: {len(won)}/{len(part)} = {len(won) / max(1, len(part)):.3f}, "
+                      f"as errors {sum(r['error'] for r in won) / max(1, len(part)):.3f}")  # fmt: skip
+            families = collections.defaultdict(collections.Counter)
+            for r in rows:
+                families[r["family"]][r["result"]] += 1
+            for family, counts in sorted(families.items()):
+                print(f"  {family:28s} {counts['found']:3d}/{sum(counts.values()):3d}  {dict(counts)}")
+            if out:
+                out.writelines(json.dumps(r) + "\n" for r in rows)
+        if args.negatives:
+            rows = [r for r in pool.map(one_negative, keep(load(args.negatives, args.sample))) if r["result"] != "no repository"]
+            packages = sum(r["packages"] for r in rows)
+            alarmed = sum(r["alarmed"] for r in rows)
+            print(f"false alarms: {sum(len(r['alarms']) for r in rows)} errors in {alarmed} of {packages} released packages = "
+                  f"{alarmed / max(1, packages):.4f}; failed {sum(r['result'] == 'failed' for r in rows)}")  # fmt: skip
+            print(f"noise: {sum(r['warnings'] for r in rows) / max(1, packages):.3f} warnings per released package")
+            for severity in ("error", "warning"):
+                rules = collections.Counter(s[1] for r in rows for s in r.get("said", ()) if s[0] == severity)
+                print(f"  {severity}: " + ", ".join(f"{rule} {n}" for rule, n in rules.most_common()))
+            if out:
+                out.writelines(json.dumps(r) + "\n" for r in rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,224 @@
+"""This machine as a target: what `rosimpact env capture` writes, and how it is read back.
+
+A captured file holds versions and nothing else: no user names, host names or paths, so that it can be committed.
+"""
+
+from __future__ import annotations
+
+import datetime
+import json
+import os
+import platform as machine
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .distro import DistroTarget, TargetError
+from .version import compare
+
+SCHEMA = 1
+_ROS_DEBIAN = re.compile(r"ros-([a-z]+)-([a-z0-9-]+)$")
+
+# Platform library (names of platform_versions.yaml) to the Debian packages whose version tells it, first found wins.
+LIBRARIES: dict[str, tuple[str, ...]] = {
+    "assimp": ("libassimp-dev", "libassimp5"), "boost": ("libboost-dev",), "bullet": ("libbullet-dev",),
+    "ceres": ("libceres-dev",), "cmake": ("cmake",), "eigen3": ("libeigen3-dev",), "fcl": ("libfcl-dev",),
+    "fmt": ("libfmt-dev",), "gazebo-classic": ("gazebo11", "gazebo9", "gazebo7"), "gcc": ("g++", "gcc"),
+    "gtest": ("libgtest-dev",), "ffmpeg-libavcodec": ("libavcodec-dev",), "nlohmann-json": ("nlohmann-json3-dev",),
+    "numpy": ("python3-numpy",), "octomap": ("liboctomap-dev",), "opencv": ("libopencv-dev", "libopencv-core-dev"),
+    "pcl": ("libpcl-dev",), "protobuf": ("libprotobuf-dev",), "python3": ("python3",), "qt5": ("qtbase5-dev",),
+    "qt6": ("qt6-base-dev",), "spdlog": ("libspdlog-dev",), "tinyxml2": ("libtinyxml2-dev",), "vtk": ("libvtk9-dev", "libvtk7-dev", "libvtk6-dev"),
+    "yaml-cpp": ("libyaml-cpp-dev",), "zeromq": ("libzmq3-dev",),
+}  # fmt: skip
+
+
+class Machine(NamedTuple):
+    """What was read from a machine. packages: ROS packages; debian: system packages that matter; pip: Python
+    distributions outside the system's own; tools: compilers, CMake. All map names to versions."""
+
+    distro: str
+    date: str
+    platform: str
+    packages: dict[str, str]
+    libraries: dict[str, str]
+    debian: dict[str, str]
+    pip: dict[str, str]
+    tools: dict[str, str]
+
+
+def plain(version: str) -> str:
+    """A Debian version without epoch, revision and packaging suffixes: `1:4.5.4+dfsg-9` gives `4.5.4`."""
+    return re.split(r"[-+~]", version.split(":", 1)[-1], maxsplit=1)[0]
+
+
+def from_dpkg(rows: Iterable[tuple[str, str]]) -> tuple[str, dict[str, str], dict[str, str], dict[str, str]]:
+    """(distro, ROS packages, libraries, system packages that matter) from (Debian name, version) pairs.
+
+    Where packages of several distros are installed, the one with most packages is taken.
+    """
+    installed = {name.split(":", 1)[0]: version for name, version in rows}
+    by_distro: dict[str, dict[str, str]] = {}
+    for name, version in installed.items():
+        match = _ROS_DEBIAN.match(name)
+        if match and not name.endswith(("-dbgsym", "-dbg")):
+            by_distro.setdefault(match[1], {})[match[2].replace("-", "_")] = plain(version)
+    distro = max(by_distro, key=lambda d: (len(by_distro[d]), d), default="")
+    libraries = {}
+    matter = {}
+    for library, names in LIBRARIES.items():
+        for name in names:
+            if name in installed:
+                libraries[library] = plain(installed[name])
+                matter[name] = installed[name]
+                break
+    return distro, by_distro.get(distro, {}), libraries, matter
+
+
+def capture(
+    run: Callable[[list[str]], str] | None = None, root: Path = Path("/"), environment: dict[str, str] | None = None
+) -> Machine:
+    """Reads this machine. run: a command to its output (empty when it fails); root and environment are for tests."""
+    run = run or _run
+    environment = dict(os.environ) if environment is None else environment
+    listing = run(["dpkg-query", "-W", "-f", "${db:Status-Abbrev}\t${Package}\t${Version}\n"])
+    rows = [line.split("\t")[1:3] for line in listing.splitlines() if line.startswith("ii") and line.count("\t") == 2]
+    distro, packages, libraries, debian = from_dpkg((name, version) for name, version in rows)
+    for prefix in _prefixes(root, environment):
+        for manifest in sorted(prefix.glob("share/*/package.xml")):
+            name, version = _name_and_version(manifest)
+            if name:
+                packages[name] = version  # an overlay comes after what it covers
+    tools = {}
+    for name, command in (("gcc", ["g++", "-dumpfullversion"]), ("clang", ["clang", "-dumpversion"]), ("cmake", ["cmake", "--version"])):
+        match = re.search(r"\d+(?:\.\d+)+", run(command))
+        if match:
+            tools[name] = match[0]
+    libraries.update({name: version for name, version in tools.items() if name in ("gcc", "cmake")})
+    libraries["python3"] = machine.python_version()
+    return Machine(
+        environment.get("ROS_DISTRO") or distro or _only_distro(root), datetime.date.today().isoformat(), _platform(root),
+        dict(sorted(packages.items())), dict(sorted(libraries.items())), dict(sorted(debian.items())), _pip(), dict(sorted(tools.items())),
+    )  # fmt: skip
+
+
+def to_json(captured: Machine) -> str:
+    """The captured file: small, sorted, the same bytes for the same machine on the same day."""
+    return json.dumps({"rosimpact_target": SCHEMA, **captured._asdict()}, indent=1, sort_keys=True) + "\n"
+
+
+def read(path: Path) -> Machine:
+    """Reads a captured file. Raises TargetError with what is wrong and what to do."""
+    try:
+        data: Any = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise TargetError(f"{path}: cannot be read as a captured machine: {error}; write it anew with `rosimpact env capture`") from None
+    if not isinstance(data, dict) or data.get("rosimpact_target") != SCHEMA:
+        raise TargetError(f"{path}: is no captured machine of this version; write it anew with `rosimpact env capture`")
+
+    def versions(key: str) -> dict[str, str]:
+        value = data.get(key, {})
+        return {str(k): str(v) for k, v in value.items()} if isinstance(value, dict) else {}
+
+    return Machine(
+        str(data.get("distro", "")), str(data.get("date", "")), str(data.get("platform", "")), versions("packages"),
+        versions("libraries"), versions("debian"), versions("pip"), versions("tools"),
+    )  # fmt: skip
+
+
+def load_capture(path: Path | str, name: str | None = None) -> DistroTarget:
+    """A captured file as a target. Packages that are not installed there can still be installed: they have the version
+    of the distro on the day of the capture. Raises TargetError."""
+    path = Path(path)
+    return as_target(read(path), name or path.name.removesuffix(".json"), str(path))
+
+
+def as_target(captured: Machine, name: str, where: str) -> DistroTarget:
+    """A machine as a target. where: the file it came from, for messages."""
+    if not captured.distro:
+        raise TargetError(f"{where}: names no ROS distro; set `distro` in it, or capture with ROS sourced")
+    versions = {**captured.libraries, **captured.packages}
+    return DistroTarget(captured.distro, captured.date or None, captured.platform or None, versions, name)
+
+
+class Difference(NamedTuple):
+    """One thing that two machines have in different versions; an empty version means that it is not there."""
+
+    kind: str
+    name: str
+    first: str
+    second: str
+    used_by: tuple[str, ...] = ()
+
+
+def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] = ()) -> list[Difference]:
+    """What differs between two targets: distro, platform, libraries, and released packages (all of both, or `names`)."""
+    found = []
+    for kind, a, b in (("distro", first.distro, second.distro), ("platform", first.platform, second.platform),
+                       ("date", first.date, second.date)):  # fmt: skip
+        if a != b:
+            found.append(Difference(kind, kind, a, b))
+    for name in sorted(first.library_names() | second.library_names()):
+        a, b = first.library(name) or "", second.library(name) or ""
+        if a and b and compare(a, b):
+            found.append(Difference("library", name, a, b))
+    for name in sorted(set(names) or first.released_names() | second.released_names()):
+        a, b = first.version(name) or "", second.version(name) or ""
+        if a != b:
+            found.append(Difference("package", name, a, b))
+    return found
+
+
+def _run(command: list[str]) -> str:
+    try:
+        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False).stdout
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+
+
+def _prefixes(root: Path, environment: dict[str, str]) -> list[Path]:
+    """Installed prefixes, overlaid ones first, so that what covers them is read last."""
+    listed = [Path(p) for key in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH") for p in environment.get(key, "").split(os.pathsep) if p]
+    found = sorted((root / "opt" / "ros").glob("*")) if environment.get("ROS_DISTRO") is None else []
+    found += [root / "opt" / "ros" / environment["ROS_DISTRO"]] if environment.get("ROS_DISTRO") else []
+    return [p for p in [*found, *reversed(listed)] if p.is_dir()]
+
+
+def _only_distro(root: Path) -> str:
+    names = [p.name for p in (root / "opt" / "ros").glob("*") if p.is_dir()]
+    return names[0] if len(names) == 1 else ""
+
+
+def _name_and_version(manifest: Path) -> tuple[str, str]:
+    try:
+        text = manifest.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return "", ""
+    name, version = re.search(r"<name>\s*([\w.-]+)\s*</name>", text), re.search(r"<version[^>]*>\s*([\d.]+)\s*</version>", text)
+    return (name[1], version[1]) if name and version else ("", "")
+
+
+def _platform(root: Path) -> str:
+    try:
+        text = (root / "etc" / "os-release").read_text(encoding="utf-8")
+    except OSError:
+        return ""
+    fields = dict(re.findall(r'^(\w+)="?([^"\n]*)"?$', text, re.M))
+    return f"{fields.get('ID', '')} {fields.get('VERSION_CODENAME') or fields.get('UBUNTU_CODENAME') or fields.get('VERSION_ID', '')}".strip()
+
+
+def _pip() -> dict[str, str]:
+    """Python distributions that pip put there for the user or the machine, not the system's packages nor a virtual
+    environment's (rosimpact itself often runs in one)."""
+    from importlib import metadata
+
+    if sys.prefix != sys.base_prefix:
+        return {}
+    found = {}
+    for item in metadata.distributions():
+        name, where = item.metadata["Name"], str(getattr(item, "_path", ""))
+        if name and "dist-packages" not in where.split("/usr/lib", 1)[-1]:
+            found[name] = item.version
+    return dict(sorted(found.items()))
