@@ -1,0 +1,83 @@
+"""The GitHub action and the pre-commit hooks: well-formed, and their commands run."""
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+ACTION = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
+HOOKS = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+STEPS = ACTION["runs"]["steps"]
+PROGRAM = Path(sys.executable).parent / "rosimpact"
+
+
+def script(step_id: str) -> str:
+    (step,) = [step for step in STEPS if step.get("id") == step_id]
+    return step["run"]
+
+
+def run_check_step(folder: Path, **inputs: str) -> tuple[int, dict[str, str], str]:
+    """Runs the step as a runner does. Returns its exit status, its outputs and what it printed."""
+    environment = {
+        "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}",
+        "HOME": str(folder),
+        "RUNNER_TEMP": str(folder),
+        "GITHUB_OUTPUT": str(folder / "output"),
+        "GITHUB_STEP_SUMMARY": str(folder / "summary"),
+        "INPUT_PATH": str(ROOT / "examples/ros2_ws"),
+        "INPUT_TARGETS": "",
+        "INPUT_BASE": "",
+        "INPUT_FAIL_ON": "",
+        "INPUT_ARGUMENTS": "",
+    } | {f"INPUT_{name.upper()}": value for name, value in inputs.items()}
+    command = ["bash", "--noprofile", "--norc", "-e", "-o", "pipefail", "-c", script("check")]
+    result = subprocess.run(command, env=environment, capture_output=True, text=True)
+    lines = (folder / "output").read_text().splitlines()
+    return result.returncode, dict(line.split("=", 1) for line in lines), result.stdout
+
+
+@pytest.mark.parametrize(
+    ("inputs", "status"),
+    [
+        ({}, 1),
+        ({"fail_on": "never"}, 0),
+        ({"targets": "humble@2024-03-01 jazzy", "arguments": "--select removed-header"}, 1),
+        ({"targets": "no-such-distro"}, 2),
+    ],
+)
+def test_the_check_step(tmp_path, inputs, status):
+    returned, outputs, _ = run_check_step(tmp_path, **inputs)
+    assert returned == status
+    assert outputs["status"] == str(status)
+
+
+def test_what_the_check_step_leaves(tmp_path):
+    _, outputs, printed = run_check_step(tmp_path)
+    assert json.loads(Path(outputs["sarif-file"]).read_text())["version"] == "2.1.0"
+    assert Path(outputs["html-file"]).read_text().lstrip().lower().startswith("<!doctype html>")
+    assert (tmp_path / "summary").read_text() == (tmp_path / "rosimpact.markdown").read_text()
+    assert re.search(r"^::error ", printed, re.MULTILINE)
+
+
+def test_no_input_is_pasted_into_a_script():
+    assert [step for step in STEPS if "${{" in step.get("run", "")] == []
+
+
+def test_every_input_is_used():
+    used = set(re.findall(r"inputs\.([a-z-]+)", (ROOT / "action.yml").read_text(encoding="utf-8")))
+    assert used == set(ACTION["inputs"])
+
+
+@pytest.mark.parametrize("hook", HOOKS, ids=lambda hook: hook["id"])
+def test_hooks_know_their_options(hook):
+    program, command, *options = shlex.split(hook["entry"])
+    assert (program, hook["language"], hook["pass_filenames"]) == ("rosimpact", "python", False)
+    known = subprocess.run([PROGRAM, command, "--help"], capture_output=True, text=True, env=os.environ | {"COLUMNS": "200"})
+    assert [option for option in options if option not in known.stdout] == []

@@ -1,0 +1,63 @@
+"""What the code imports is what pyproject.toml asks for, no more and no less."""
+
+import ast
+import re
+import sys
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).parents[2]
+ROOMS = ("impact", "corpus", "classifier")
+# Asked for by the design and used by a room that is still to come, or never imported by name.
+AHEAD = {"beautifulsoup4", "pygithub", "requests", "rich", "rosdistro", "scikit-learn"}
+
+
+def declared() -> set[str]:
+    """Distributions that pyproject.toml asks for, in their normal form."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    return {normal(re.split(r"[\s<>=!~;\[]", requirement)[0]) for requirement in project["dependencies"]}
+
+
+def normal(name: str) -> str:
+    """A distribution's name as PEP 503 compares it."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def imported() -> dict[str, str]:
+    """Top-level names of other people's modules that the rooms import, each with a file that does."""
+    found = {}
+    for room in ROOMS:
+        for path in (ROOT / room).rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_bytes())):
+                names = []
+                if isinstance(node, ast.Import):
+                    names = [alias.name for alias in node.names]
+                elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
+                    names = [node.module]
+                for name in names:
+                    top = name.partition(".")[0]
+                    if top not in sys.stdlib_module_names:
+                        found.setdefault(top, str(path.relative_to(ROOT)))
+    return found
+
+
+def test_every_import_is_asked_for():
+    known = packages_distributions()
+    asked = declared()
+    missing = {
+        name: where
+        for name, where in imported().items()
+        if name not in {"rosimpact", "tomllib"} and not {normal(d) for d in known.get(name, [name])} & asked
+    }
+    assert missing == {}
+
+
+def test_nothing_is_asked_for_in_vain():
+    known = packages_distributions()
+    used = {normal(d) for name in imported() for d in known.get(name, [name])}
+    assert declared() - used - AHEAD == set()
