@@ -25,6 +25,9 @@ class Found(msgspec.Struct, frozen=True, array_like=True, gc=False):
     ament_auto_find_build_dependencies), `pkg_check_modules`, `find_library`, `find_path`, `find_program`.
     version: as asked for, empty when not; components: of find_package, catkin excepted (each is its own Found).
     conditions: everything the call stands under, outermost first. at is the argument's own place.
+    prefix: the variable or variable prefix of pkg_check_modules and find_library; its further names are in
+    optional_components. via: the command of another package that looks for it (`moveit_package`), empty when this
+    package asks itself; at is then the call of that command.
     """
 
     name: str
@@ -38,6 +41,7 @@ class Found(msgspec.Struct, frozen=True, array_like=True, gc=False):
     optional_components: tuple[str, ...] = ()
     prefix: str = ""
     conditions: tuple[Condition, ...] = ()
+    via: str = ""
 
 
 class Link(msgspec.Struct, frozen=True, array_like=True, gc=False):

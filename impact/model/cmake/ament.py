@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import posixpath
 
-from ..build import At, Found, GeneratedInterfaces, Install
+from ..build import Found, GeneratedInterfaces, Install
 from .blocks import Call
 from .catkin import sections
 from .interpreter import Interpreter, handles, stands_in_for
+from .names import name_set
 from .targets import add_links, add_sources, known
 from .values import Word, split_words, word
 
@@ -65,7 +66,11 @@ def ament_package(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.add_export(run.tree_path(item), "cfg_extras", item.at, run.under(item))
 
 
-_ROSIDL = frozenset("DEPENDENCIES LIBRARY_NAME SKIP_INSTALL SKIP_GROUP_MEMBERSHIP_CHECK ADD_LINTER_TESTS".split())
+_ROSIDL = name_set(
+    """
+    DEPENDENCIES LIBRARY_NAME SKIP_INSTALL SKIP_GROUP_MEMBERSHIP_CHECK ADD_LINTER_TESTS
+    """
+)
 
 
 @handles("rosidl_generate_interfaces")
@@ -125,7 +130,7 @@ def rclcpp_components_register_node(run: Interpreter, call: Call, args: list[Wor
     """rclcpp_components_register_node(target PLUGIN class EXECUTABLE name): also makes and installs an executable."""
     if not args:
         return
-    given = sections(args[1:], frozenset("PLUGIN EXECUTABLE EXECUTOR RESOURCE_INDEX NO_UNDEFINED_SYMBOLS".split()))
+    given = sections(args[1:], name_set("PLUGIN EXECUTABLE EXECUTOR RESOURCE_INDEX NO_UNDEFINED_SYMBOLS"))
     for item in given.get("PLUGIN", [])[:1]:
         run.add_export(item, "component", item.at, run.under(item), str(args[0]))
     for item in given.get("EXECUTABLE", [])[:1]:
@@ -155,7 +160,8 @@ def ament_python_install_package(run: Interpreter, call: Call, args: list[Word])
     if not args:
         return
     given = sections(
-        args[1:], frozenset("PACKAGE_DIR VERSION SETUP_CFG DESTINATION SCRIPTS_DESTINATION SKIP_COMPILE".split())
+        args[1:],
+        name_set("PACKAGE_DIR VERSION SETUP_CFG DESTINATION SCRIPTS_DESTINATION SKIP_COMPILE"),
     )
     folder = given["PACKAGE_DIR"][0] if given.get("PACKAGE_DIR") else args[0]
     run.add_install(
@@ -182,12 +188,12 @@ def generate_parameter_library(run: Interpreter, call: Call, args: list[Word]) -
     run.new_target(args[0], "generated", args[0].at)
 
 
-_TEST_OPTIONS = frozenset(
+_TEST_OPTIONS = name_set(
     """
     RUNNER TIMEOUT WORKING_DIRECTORY ENV APPEND_ENV APPEND_LIBRARY_DIRS SKIP_LINKING_MAIN_LIBRARIES SKIP_TEST
     SKIP_RETURN_CODE PYTHON_EXECUTABLE COMMAND OUTPUT_FILE RESULT_FILE GENERATE_RESULT_FOR_RETURN_CODE_ZERO ARGS
     LABELS TARGET PROCESSORS EXCLUDE_FROM_ALL
-    """.split()
+    """
 )
 _FLAGS = frozenset({"SKIP_LINKING_MAIN_LIBRARIES", "SKIP_TEST", "EXCLUDE_FROM_ALL"})
 
@@ -272,7 +278,11 @@ def ament_auto_add_target(run: Interpreter, call: Call, args: list[Word]) -> Non
     kind = {"library": "library", "executable": "executable"}.get(call.name.rpartition("_")[2], "test")
     given = sections(
         args[1:],
-        frozenset("DIRECTORY STATIC SHARED MODULE INTERFACE EXCLUDE_FROM_ALL NO_TARGET_LINK_LIBRARIES".split())
+        name_set(
+            """
+    DIRECTORY STATIC SHARED MODULE INTERFACE EXCLUDE_FROM_ALL NO_TARGET_LINK_LIBRARIES
+    """
+        )
         | (_TEST_OPTIONS if kind == "test" else frozenset()),
     )
     if "INTERFACE" in given:
@@ -300,8 +310,10 @@ def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     """ament_auto_package(): installs what ament_auto_add_*() made, include/, and INSTALL_TO_SHARE folders."""
     given = sections(
         args,
-        frozenset(
-            "INSTALL_TO_PATH INSTALL_TO_SHARE CONFIG_EXTRAS CONFIG_EXTRAS_POST USE_SCOPED_HEADER_INSTALL_DIR".split()
+        name_set(
+            """
+    INSTALL_TO_PATH INSTALL_TO_SHARE CONFIG_EXTRAS CONFIG_EXTRAS_POST USE_SCOPED_HEADER_INSTALL_DIR
+    """
         ),
     )
     at = run.place(call.at)
@@ -332,7 +344,8 @@ def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
 def autoware_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     """autoware_package() of autoware_cmake: C++17, ament_cmake_auto, all declared dependencies, Eigen."""
     _wrapper_standard(run, call, 17)
-    find_quietly(run, call.at, "ament_cmake_auto", "eigen3_cmake_module", "Eigen3")
+    for name in ("ament_cmake_auto", "eigen3_cmake_module", "Eigen3"):
+        run.add_found(Found(name, "find_package", run.place(call.at), conditions=run.conditions, via=call.name))
     ament_auto_find_build_dependencies(run, call, [])
 
 
@@ -352,12 +365,6 @@ def ros2_control_defaults(run: Interpreter, call: Call, args: list[Word]) -> Non
 def _wrapper_standard(run: Interpreter, call: Call, number: int) -> None:
     if run.get("CMAKE_CXX_STANDARD") is None and not run.silent:
         run.standards.append((number, run.place(call.at), True))
-
-
-def find_quietly(run: Interpreter, at: At, *names: str) -> None:
-    """Packages that a wrapper finds by itself and that its own package exports: they count as found, not as asked for."""
-    for name in names:
-        run.add_found(Found(name, "ament_auto", run.place(at), conditions=run.conditions))
 
 
 @handles("ament_lint_auto_find_test_dependencies")

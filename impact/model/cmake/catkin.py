@@ -10,6 +10,7 @@ import posixpath
 from ..build import At, GeneratedInterfaces, Install
 from .blocks import Call
 from .interpreter import Interpreter, handles
+from .names import name_set
 from .targets import add_links, add_sources
 from .values import Value, Word, split_words, word
 
@@ -26,9 +27,11 @@ def sections(args: list[Word], keywords: frozenset[str]) -> dict[str, list[Word]
     return found
 
 
-_PACKAGE = frozenset(
-    "INCLUDE_DIRS LIBRARIES CATKIN_DEPENDS DEPENDS CFG_EXTRAS EXPORTED_TARGETS SKIP_CMAKE_CONFIG_GENERATION "
-    "SKIP_PKG_CONFIG_GENERATION".split()
+_PACKAGE = name_set(
+    """
+    INCLUDE_DIRS LIBRARIES CATKIN_DEPENDS DEPENDS CFG_EXTRAS EXPORTED_TARGETS SKIP_CMAKE_CONFIG_GENERATION
+    SKIP_PKG_CONFIG_GENERATION
+    """
 )
 _PROMISES = {
     "INCLUDE_DIRS": "include_dirs",
@@ -73,7 +76,7 @@ def catkin_metapackage(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 _MESSAGE_FOLDERS = {"add_message_files": "msg", "add_service_files": "srv", "add_action_files": "action"}
-_ADD_FILES = frozenset("DIRECTORY FILES PACKAGE BASE_DIR NOINSTALL".split())
+_ADD_FILES = name_set("DIRECTORY FILES PACKAGE BASE_DIR NOINSTALL")
 
 
 @handles(*_MESSAGE_FOLDERS)
@@ -146,7 +149,7 @@ def catkin_install_python(run: Interpreter, call: Call, args: list[Word]) -> Non
         )
 
 
-_TEST_OPTIONS = frozenset("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARGS".split())
+_TEST_OPTIONS = name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARGS")
 
 
 @handles(

@@ -1,7 +1,7 @@
 """The tests of if(), elseif() and while(), three-valued: True, False, or None when it cannot be known.
 
-Source of the rules: cmake-commands(7), if(): parentheses first, then unary tests, binary tests, NOT, and then AND and OR
-from left to right.
+Source of the rules: cmake-commands(7), if(): parentheses first, then unary tests, binary tests, NOT, and then AND
+and OR from left to right.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple, Protocol
 
+from .names import name_set
 from .regex import match
 from .values import Value, split_list
 
@@ -18,14 +19,18 @@ _TRUE = frozenset({"1", "ON", "YES", "TRUE", "Y"})
 _FALSE = frozenset({"", "0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND"})
 _NUMBER = re.compile(r"\s*[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?\s*\Z")
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*\Z")
-_UNARY = frozenset(
-    "COMMAND POLICY TARGET TEST DEFINED EXISTS IS_DIRECTORY IS_SYMLINK IS_ABSOLUTE IS_READABLE IS_WRITABLE "
-    "IS_EXECUTABLE".split()
+_UNARY = name_set(
+    """
+    COMMAND POLICY TARGET TEST DEFINED EXISTS IS_DIRECTORY IS_SYMLINK IS_ABSOLUTE IS_READABLE IS_WRITABLE
+    IS_EXECUTABLE
+    """
 )
-_BINARY = frozenset(
-    "EQUAL LESS GREATER LESS_EQUAL GREATER_EQUAL STREQUAL STRLESS STRGREATER STRLESS_EQUAL STRGREATER_EQUAL "
-    "VERSION_EQUAL VERSION_LESS VERSION_GREATER VERSION_LESS_EQUAL VERSION_GREATER_EQUAL MATCHES IN_LIST "
-    "PATH_EQUAL IS_NEWER_THAN".split()
+_BINARY = name_set(
+    """
+    EQUAL LESS GREATER LESS_EQUAL GREATER_EQUAL STREQUAL STRLESS STRGREATER STRLESS_EQUAL STRGREATER_EQUAL
+    VERSION_EQUAL VERSION_LESS VERSION_GREATER VERSION_LESS_EQUAL VERSION_GREATER_EQUAL MATCHES IN_LIST PATH_EQUAL
+    IS_NEWER_THAN
+    """
 )
 _COMPARISONS = {
     "EQUAL": lambda one, other: one == other,

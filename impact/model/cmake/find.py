@@ -8,21 +8,24 @@ from ..build import At, Found
 from .blocks import Call
 from .interpreter import Interpreter, handles
 from .language import add_module
+from .names import name_set, names
 from .values import REFERENCE, Value, Word, merge, split_words, word
 
 _VERSION = re.compile(r"\d[\d.]*(?:\.\.\.<?\d[\d.]*)?\Z")
 _PKG_SPEC = re.compile(r"(.+?)\s*(>=|<=|=|>|<)\s*(\d.*)\Z")
 
-_FLAGS = frozenset(
+_FLAGS = name_set(
     """
     EXACT QUIET REQUIRED MODULE CONFIG NO_MODULE NO_POLICY_SCOPE GLOBAL BYPASS_PROVIDER NO_DEFAULT_PATH
     NO_PACKAGE_ROOT_PATH NO_CMAKE_PATH NO_CMAKE_ENVIRONMENT_PATH NO_SYSTEM_ENVIRONMENT_PATH NO_CMAKE_PACKAGE_REGISTRY
     NO_CMAKE_BUILDS_PATH NO_CMAKE_SYSTEM_PATH NO_CMAKE_INSTALL_PREFIX NO_CMAKE_SYSTEM_PACKAGE_REGISTRY
     CMAKE_FIND_ROOT_PATH_BOTH ONLY_CMAKE_FIND_ROOT_PATH NO_CMAKE_FIND_ROOT_PATH
-    """.split()
+    """
 )
-_LISTS = frozenset(
-    "NAMES CONFIGS HINTS PATHS PATH_SUFFIXES REGISTRY_VIEW COMPONENTS OPTIONAL_COMPONENTS DOC ENV VALIDATOR".split()
+_LISTS = name_set(
+    """
+    NAMES CONFIGS HINTS PATHS PATH_SUFFIXES REGISTRY_VIEW COMPONENTS OPTIONAL_COMPONENTS DOC ENV VALIDATOR
+    """
 )
 
 
@@ -59,9 +62,9 @@ def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
             optional.append(item)
         elif section == "COMPONENTS":
             components.append(item)
-        elif not section and index == 0 and _VERSION.match(item):
-            version = str(item)
-        elif not section and not version and _VERSION.match(item):
+        elif (not section and index == 0 and _VERSION.match(item)) or (
+            not section and not version and _VERSION.match(item)
+        ):
             version = str(item)
         elif not section and item.startswith("${") and item.endswith("VERSION}"):
             continue
@@ -157,13 +160,17 @@ def catkin_destinations(run: Interpreter, call: Call, args: list[Word]) -> None:
     _catkin(run, call)
 
 
-_PKG_FLAGS = frozenset(
-    "REQUIRED QUIET IMPORTED_TARGET GLOBAL NO_CMAKE_PATH NO_CMAKE_ENVIRONMENT_PATH STATIC_TARGET".split()
+_PKG_FLAGS = name_set(
+    """
+    REQUIRED QUIET IMPORTED_TARGET GLOBAL NO_CMAKE_PATH NO_CMAKE_ENVIRONMENT_PATH STATIC_TARGET
+    """
 )
-_PKG_VARIABLES = (
-    "LIBRARIES LINK_LIBRARIES LIBRARY_DIRS LDFLAGS LDFLAGS_OTHER INCLUDE_DIRS CFLAGS CFLAGS_OTHER VERSION PREFIX "
-    "INCLUDEDIR LIBDIR"
-).split()
+_PKG_VARIABLES = names(
+    """
+    LIBRARIES LINK_LIBRARIES LIBRARY_DIRS LDFLAGS LDFLAGS_OTHER INCLUDE_DIRS CFLAGS CFLAGS_OTHER VERSION PREFIX
+    INCLUDEDIR LIBDIR
+    """
+)
 
 
 @handles("pkg_check_modules", "pkg_search_module")
@@ -200,7 +207,7 @@ def pkg_check_modules(run: Interpreter, call: Call, args: list[Word]) -> None:
                 others,
                 prefix,
                 run.under(item),
-            )  # fmt: skip
+            )
         )
     for suffix in _PKG_VARIABLES:
         run.set_unknown(f"{prefix}_{suffix}", call.at)
@@ -210,12 +217,12 @@ def pkg_check_modules(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.new_target(f"PkgConfig::{prefix}", "imported", args[0].at)
 
 
-_LOCATE_STOPS = frozenset(
+_LOCATE_STOPS = name_set(
     """
     HINTS PATHS PATH_SUFFIXES DOC NO_CACHE REQUIRED NO_DEFAULT_PATH NO_PACKAGE_ROOT_PATH NO_CMAKE_PATH
     NO_CMAKE_ENVIRONMENT_PATH NO_SYSTEM_ENVIRONMENT_PATH NO_CMAKE_SYSTEM_PATH NO_CMAKE_INSTALL_PREFIX
     CMAKE_FIND_ROOT_PATH_BOTH ONLY_CMAKE_FIND_ROOT_PATH NO_CMAKE_FIND_ROOT_PATH NAMES_PER_DIR VALIDATOR REGISTRY_VIEW
-    """.split()
+    """
 )
 
 

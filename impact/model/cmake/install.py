@@ -6,16 +6,21 @@ from ...facts.condition import Condition
 from ..build import Install
 from .blocks import Call
 from .interpreter import Interpreter, handles
-from .values import Word, merge, split_words
+from .names import name_set
+from .values import Word, following, merge, split_words
 
-_ARTIFACTS = frozenset("ARCHIVE LIBRARY RUNTIME OBJECTS FRAMEWORK BUNDLE PRIVATE_HEADER PUBLIC_HEADER RESOURCE".split())
-_KEYWORDS = frozenset(
+_ARTIFACTS = name_set(
+    """
+    ARCHIVE LIBRARY RUNTIME OBJECTS FRAMEWORK BUNDLE PRIVATE_HEADER PUBLIC_HEADER RESOURCE
+    """
+)
+_KEYWORDS = name_set(
     """
     DESTINATION PERMISSIONS CONFIGURATIONS COMPONENT RENAME OPTIONAL EXCLUDE_FROM_ALL EXPORT TYPE FILE_PERMISSIONS
     DIRECTORY_PERMISSIONS USE_SOURCE_PERMISSIONS MESSAGE_NEVER FILES_MATCHING PATTERN REGEX EXCLUDE NAMELINK_ONLY
     NAMELINK_SKIP NAMELINK_COMPONENT INCLUDES RUNTIME_DEPENDENCIES RUNTIME_DEPENDENCY_SET FILE_SET NAMESPACE FILE
     CXX_MODULES_BMI CXX_MODULES_DIRECTORY EXPORT_LINK_INTERFACE_LIBRARIES
-    """.split()
+    """
 )
 # cmake-commands(7), install(), "TYPE": where each type goes.
 _TYPES = {
@@ -49,7 +54,7 @@ def install(run: Interpreter, call: Call, args: list[Word]) -> None:
     elif form == "DIRECTORY":
         _directory(run, call, args[1:])
     elif form == "EXPORT" and len(args) > 1:
-        destination = _after(args, "DESTINATION")
+        destination = following(args, "DESTINATION") or ""
         run.add_install(
             Install("export", (str(args[1]),), run.shown(destination), run.place(args[1].at), (), run.under(args[1]))
         )
@@ -64,10 +69,6 @@ def old_install(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.add_install(
             Install(kind, tuple(items), run.shown(args[0].lstrip("/")), run.place(call.at), (), run.conditions)
         )
-
-
-def _after(args: list[Word], keyword: str) -> str:
-    return str(args[args.index(keyword) + 1]) if keyword in args[:-1] else ""
 
 
 def _targets(run: Interpreter, call: Call, args: list[Word]) -> None:
@@ -133,8 +134,8 @@ def _files(run: Interpreter, call: Call, kind: str, args: list[Word]) -> None:
 
 
 def _destination(run: Interpreter, args: list[Word]) -> str:
-    destination = run.shown(_after(args, "DESTINATION"))
-    return destination or _TYPES.get(_after(args, "TYPE"), "")
+    destination = run.shown(following(args, "DESTINATION") or "")
+    return destination or _TYPES.get(following(args, "TYPE") or "", "")
 
 
 def _directory(run: Interpreter, call: Call, args: list[Word]) -> None:

@@ -9,6 +9,8 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Callable, Iterable
 
+from msgspec import structs
+
 from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
 from ..build import At, Build, Exported, Found, GeneratedInterfaces, Install, Use
@@ -28,6 +30,7 @@ from .values import (
     Word,
     join,
     merge,
+    position,
     read_references,
     split_list,
     split_words,
@@ -87,6 +90,7 @@ class Interpreter:
         self.journal: list[tuple[dict[str, Value], str, Value | None]] = []
         self.recording = 0
         self.call_site: At | None = None
+        self.via = ""  # the command of another package that is running
         self.silent = 0
         self.steps = 0
         self.nesting = 0
@@ -426,7 +430,7 @@ class Interpreter:
         if mode == "RANGE":
             rounds = [(word(str(number), block.head.at),) for number in self.numbers(rest[1:], block.head)]
         elif "IN" in args[1:] and ("LISTS" in rest or "ITEMS" in rest or "ZIP_LISTS" in rest):
-            split = args.index("IN")
+            split = position(args, "IN")
             variables = args[:split]
             rounds = self.listed(args[split + 1 :], len(variables))
         else:
@@ -533,9 +537,10 @@ class Interpreter:
         for index, item in enumerate(args[:64]):
             arguments[f"ARGV{index}"] = Value((item,), item.sure)
 
-        overlay, conditions, site = self.overlay, self.conditions, self.call_site
+        overlay, conditions, site, via = self.overlay, self.conditions, self.call_site, self.via
         if site is None and not self.inside(block.head.path):
             self.call_site = at
+            self.via = call.name
         try:
             if block.kind == "macro":
                 self.overlay = arguments
@@ -559,6 +564,7 @@ class Interpreter:
         finally:
             self.overlay = overlay
             self.call_site = site
+            self.via = via
             if block.kind != "macro":
                 self.conditions = conditions
         if signal == RETURN and block.kind == "macro":
@@ -851,7 +857,7 @@ class Interpreter:
     def add_found(self, found: Found) -> None:
         """Collects a package looked for."""
         if not self.silent:
-            self.found[found] = None
+            self.found[structs.replace(found, via=self.via) if self.via else found] = None
 
     def add_install(self, install: Install) -> None:
         """Collects an install rule."""

@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
+import itertools
 import posixpath
 import re
 
 from .blocks import Call
 from .conditions import version_key
 from .interpreter import BREAK, CONTINUE, FATAL, RETURN, Interpreter, handles
-from .names import MODULES, MODULES_WITH
+from .names import MODULES, MODULES_WITH, name_set
 from .regex import usable
 from .standard import note_variable
-from .values import MAX_TEXT, MAX_WORDS, UNSET, Value, Word, split_list, split_words, unsure, with_conditions, word
+from .values import (
+    MAX_TEXT,
+    MAX_WORDS,
+    UNSET,
+    Value,
+    Word,
+    following,
+    position,
+    split_list,
+    split_words,
+    unsure,
+    with_conditions,
+    word,
+)
 
 
 @handles("set")
@@ -25,7 +39,7 @@ def set_(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.assign(run.environment, name[4:].rstrip("}"), Value(tuple(values[:1])))
         return
     if "CACHE" in values:
-        index = values.index("CACHE")
+        index = position(values, "CACHE")
         kind = values[index + 1] if index + 1 < len(values) else ""
         fixed = kind == "INTERNAL" or "FORCE" in values[index + 1 :]
         kept = Value(with_conditions(split_words(values[:index]), run.conditions))
@@ -205,7 +219,7 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
     action = rest[0]
     output = name
     if "OUTPUT_VARIABLE" in rest:
-        index = rest.index("OUTPUT_VARIABLE")
+        index = position(rest, "OUTPUT_VARIABLE")
         output = str(rest[index + 1]) if index + 1 < len(rest) else name
         rest = rest[:index]
     operands = {"APPEND": 1, "PREPEND": 1, "REPLACE": 2}.get(action, 0)
@@ -474,7 +488,7 @@ def get_filename_component(run: Interpreter, call: Call, args: list[Word]) -> No
     elif mode == "NAME_WLE":
         result = posixpath.splitext(base)[0]
     elif mode in ("ABSOLUTE", "REALPATH"):
-        start = args[args.index("BASE_DIR") + 1] if "BASE_DIR" in args[:-1] else None
+        start = following(args, "BASE_DIR")
         result = run.resolve(text, str(start) if start is not None else None)
     else:
         run.set_unknown(name, call.at)
@@ -497,7 +511,7 @@ def cmake_path(run: Interpreter, call: Call, args: list[Word]) -> None:
     held = run.get(name)
     output = name
     if "OUTPUT_VARIABLE" in rest:
-        index = rest.index("OUTPUT_VARIABLE")
+        index = position(rest, "OUTPUT_VARIABLE")
         output = str(rest[index + 1]) if index + 1 < len(rest) else name
         rest = rest[:index] + rest[index + 2 :]
     text = held.text if held is not None else ""
@@ -522,8 +536,8 @@ def cmake_path(run: Interpreter, call: Call, args: list[Word]) -> None:
     elif action == "NORMAL_PATH":
         result = posixpath.normpath(text) if text else ""
     elif action == "ABSOLUTE_PATH":
-        base_index = rest.index("BASE_DIRECTORY") + 1 if "BASE_DIRECTORY" in rest[:-1] else -1
-        result = run.resolve(text, str(rest[base_index]) if base_index >= 0 else None)
+        start = following(rest, "BASE_DIRECTORY")
+        result = run.resolve(text, str(start) if start is not None else None)
     elif action == "REMOVE_FILENAME":
         result = text[: len(text) - len(base)]
     elif action == "REPLACE_FILENAME" and rest:
@@ -611,8 +625,9 @@ def include(run: Interpreter, call: Call, args: list[Word]) -> None:
         return
     name = args[0]
     optional = "OPTIONAL" in args[1:]
-    if "RESULT_VARIABLE" in args[:-1]:
-        run.set_unknown(args[args.index("RESULT_VARIABLE") + 1], call.at)
+    answer = following(args, "RESULT_VARIABLE")
+    if answer is not None:
+        run.set_unknown(answer, call.at)
     if not name.endswith(".cmake") and "/" not in name:
         held = run.get("CMAKE_MODULE_PATH")
         for directory in held.words if held is not None else ():
@@ -700,7 +715,7 @@ def cmake_minimum_required(run: Interpreter, call: Call, args: list[Word]) -> No
     if len(args) < 2 or args[0].upper() != "VERSION":
         return
     lower, _, upper = args[1].partition("...")
-    if not run.silent and (run.minimum is None or run.inside(call.path) and call.path == run.minimum[1].path):
+    if not run.silent and (run.minimum is None or (run.inside(call.path) and call.path == run.minimum[1].path)):
         run.minimum = (str(args[1]), run.place(args[1].at))
     run.minimum_policy = version_key(upper or lower)
 
@@ -732,7 +747,7 @@ def project(run: Interpreter, call: Call, args: list[Word]) -> None:
         f"{name}_SOURCE_DIR": directory,
         f"{name}_BINARY_DIR": binary,
     }
-    version = args[args.index("VERSION") + 1] if "VERSION" in args[:-1] else None
+    version = following(args, "VERSION")
     if version is not None:
         values["PROJECT_VERSION"] = values[f"{name}_VERSION"] = Value((version,), version.sure)
         for part, number in zip(("MAJOR", "MINOR", "PATCH", "TWEAK"), version.split("."), strict=False):
@@ -818,13 +833,15 @@ def execute_process(run: Interpreter, call: Call, args: list[Word]) -> None:
     if call.name in ("try_compile", "try_run"):
         for name in args[:1]:
             run.set_unknown(name, call.at)
-    for keyword, name in zip(args, args[1:], strict=False):
+    for keyword, name in itertools.pairwise(args):
         if keyword in _ANSWERS:
             run.set_unknown(name, call.at)
 
 
-_ANSWERS = frozenset(
-    "RESULT_VARIABLE OUTPUT_VARIABLE ERROR_VARIABLE RESULTS_VARIABLE RETURN_VALUE RUN_OUTPUT_VARIABLE".split()
+_ANSWERS = name_set(
+    """
+    RESULT_VARIABLE OUTPUT_VARIABLE ERROR_VARIABLE RESULTS_VARIABLE RETURN_VALUE RUN_OUTPUT_VARIABLE
+    """
 )
 
 
@@ -856,7 +873,7 @@ def check(run: Interpreter, call: Call, args: list[Word]) -> None:
     if call.name in ("processorcount", "test_big_endian"):
         names = args[:1]
     elif call.name == "check_ipo_supported":
-        names = [name for keyword, name in zip(args, args[1:], strict=False) if keyword in ("RESULT", "OUTPUT")]
+        names = [name for keyword, name in itertools.pairwise(args) if keyword in ("RESULT", "OUTPUT")]
     elif call.name in ("check_include_file", "check_include_file_cxx"):
         names = args[1:2]
     else:
@@ -888,7 +905,7 @@ def set_directory_properties(run: Interpreter, call: Call, args: list[Word]) -> 
 def _property_key(command: str, args: list[Word]) -> str:
     """Where a property is kept: its scope, its owner and its name."""
     if command == "get_property" and "PROPERTY" in args[:-1]:
-        index = args.index("PROPERTY")
+        index = position(args, "PROPERTY")
         return " ".join([*args[1:index], args[index + 1]])
     if command == "get_target_property" and len(args) >= 3:
         return f"TARGET {args[1]} {args[2]}"

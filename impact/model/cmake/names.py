@@ -5,24 +5,36 @@ Source: cmake-commands(7) and cmake-modules(7) up to CMake 3.31, removed command
 
 from __future__ import annotations
 
+
+def names(text: str) -> tuple[str, ...]:
+    """Names written as one text, in their order."""
+    return tuple(text.split())
+
+
+def name_set(text: str) -> frozenset[str]:
+    """Names written as one text, for asking whether one is among them."""
+    return frozenset(text.split())
+
+
 _BUILTIN = """
 add_compile_definitions add_compile_options add_custom_command add_custom_target add_definitions add_dependencies
 add_executable add_library add_link_options add_subdirectory add_test aux_source_directory block break build_command
 build_name cmake_file_api cmake_host_system_information cmake_instrumentation cmake_language cmake_minimum_required
-cmake_parse_arguments cmake_path cmake_pkg_config cmake_policy configure_file continue create_test_sourcelist ctest_build
-ctest_configure ctest_coverage ctest_empty_binary_directory ctest_memcheck ctest_read_custom_files ctest_run_script
-ctest_sleep ctest_start ctest_submit ctest_test ctest_update ctest_upload define_property else elseif enable_language
-enable_testing endblock endforeach endfunction endif endmacro endwhile exec_program execute_process export
-export_library_dependencies file find_file find_library find_package find_path find_program fltk_wrap_ui foreach function
-get_cmake_property get_directory_property get_filename_component get_property get_source_file_property
-get_target_property get_test_property if include include_directories include_external_msproject include_guard
-include_regular_expression install install_files install_programs install_targets link_directories link_libraries list
-load_cache load_command macro make_directory mark_as_advanced math message option output_required_files project
-qt_wrap_cpp qt_wrap_ui remove remove_definitions return separate_arguments set set_directory_properties set_property
-set_source_files_properties set_target_properties set_tests_properties site_name source_group string subdir_depends
-subdirs target_compile_definitions target_compile_features target_compile_options target_include_directories
-target_link_directories target_link_libraries target_link_options target_precompile_headers target_sources try_compile
-try_run unset use_mangled_mesa utility_source variable_requires variable_watch while write_file
+cmake_parse_arguments cmake_path cmake_pkg_config cmake_policy configure_file continue create_test_sourcelist
+ctest_build ctest_configure ctest_coverage ctest_empty_binary_directory ctest_memcheck ctest_read_custom_files
+ctest_run_script ctest_sleep ctest_start ctest_submit ctest_test ctest_update ctest_upload define_property else
+elseif enable_language enable_testing endblock endforeach endfunction endif endmacro endwhile exec_program
+execute_process export export_library_dependencies file find_file find_library find_package find_path find_program
+fltk_wrap_ui foreach function get_cmake_property get_directory_property get_filename_component get_property
+get_source_file_property get_target_property get_test_property if include include_directories
+include_external_msproject include_guard include_regular_expression install install_files install_programs
+install_targets link_directories link_libraries list load_cache load_command macro make_directory mark_as_advanced
+math message option output_required_files project qt_wrap_cpp qt_wrap_ui remove remove_definitions return
+separate_arguments set set_directory_properties set_property set_source_files_properties set_target_properties
+set_tests_properties site_name source_group string subdir_depends subdirs target_compile_definitions
+target_compile_features target_compile_options target_include_directories target_link_directories
+target_link_libraries target_link_options target_precompile_headers target_sources try_compile try_run unset
+use_mangled_mesa utility_source variable_requires variable_watch while write_file
 """
 
 # One module per line: its commands. Find modules are made known by find_package() too.
@@ -123,16 +135,16 @@ MODULE_OF: dict[str, str] = {
 
 COMMANDS = BUILTIN_COMMANDS | frozenset(MODULE_OF)
 
-MODULES = frozenset(MODULE_OF.values()) | frozenset(
+MODULES = frozenset(MODULE_OF.values()) | name_set(
     """
     CMakeBackwardCompatibilityCXX CMakeDetermineVSServicePack CMakeExpandImportedTargets CMakeFindFrameworks
     CMakeFindPackageMode CMakeForceCompiler CMakeGraphVizOptions CMakeParseArguments CMakePrintSystemInformation
     CMakeVerifyManifest CPack CPackDeb CPackRPM CSharpUtilities CTest CTestCoverageCollectGCOV CTestScriptMode
     CTestUseLaunchers Dart DeployQt4 Documentation InstallRequiredSystemLibraries MacroAddFileDependencies
     SquishTestScript TestForANSIForScope TestForANSIStreamHeaders TestForSSTREAM TestForSTDNamespace UseEcos
-    UseJavaClassFilelist UseJavaSymlinks Use_wxWindows UsewxWidgets FindThreads FindBoost FindOpenMP FindOpenGL FindGit
-    FindPythonInterp FindPython FindPython2 FindPython3 FindThreads FindX11 FindCURL FindZLIB
-    """.split()
+    UseJavaClassFilelist UseJavaSymlinks Use_wxWindows UsewxWidgets FindThreads FindBoost FindOpenMP FindOpenGL
+    FindGit FindPythonInterp FindPython FindPython2 FindPython3 FindThreads FindX11 FindCURL FindZLIB
+    """
 )
 
 # What a module includes itself.
@@ -152,10 +164,12 @@ MODULES_WITH: dict[str, tuple[str, ...]] = {
 }
 
 # Defined and empty here: the target platforms are Linux with GCC.
-FALSE_PLATFORMS = (
-    "WIN32 APPLE MSVC ANDROID MINGW CYGWIN MSYS IOS BORLAND WATCOM XCODE QNX CMAKE_HOST_WIN32 CMAKE_HOST_APPLE "
-    "CMAKE_CL_64 MSVC_IDE MSVC10 MSVC11 MSVC12 MSVC14 MSVC90 MSVC80"
-).split()
+FALSE_PLATFORMS = names(
+    """
+    WIN32 APPLE MSVC ANDROID MINGW CYGWIN MSYS IOS BORLAND WATCOM XCODE QNX CMAKE_HOST_WIN32 CMAKE_HOST_APPLE
+    CMAKE_CL_64 MSVC_IDE MSVC10 MSVC11 MSVC12 MSVC14 MSVC90 MSVC80
+    """
+)
 
 # Ends of variable names that a found package sets.
 READ_SUFFIXES = (

@@ -15,7 +15,7 @@ _MAX_STEPS = 2_000_000
 
 @lru_cache(maxsize=512)
 def compiled(pattern: str) -> tuple[re.Pattern[str] | None, int, bool]:
-    """The pattern for Python, None when it is malformed; how many unbounded repeats it has; whether one holds another."""
+    """The pattern for Python, None when it is malformed; how many unbounded repeats it has; whether they nest."""
     out: list[str] = []
     index = 0
     repeats = 0

@@ -8,7 +8,7 @@ from .drafts import TargetDraft
 from .genex import reduced, rejoin
 from .interpreter import Interpreter, handles
 from .standard import feature_standard, flag_standard, is_default, note_options
-from .values import Value, Word, split_words, word
+from .values import Value, Word, following, position, split_words, word
 
 _LIBRARY_KINDS = {
     "STATIC": "library",
@@ -226,7 +226,7 @@ def add_compile_options(run: Interpreter, call: Call, args: list[Word]) -> None:
 def set_target_properties(run: Interpreter, call: Call, args: list[Word]) -> None:
     """set_target_properties()."""
     if "PROPERTIES" in args:
-        split = args.index("PROPERTIES")
+        split = position(args, "PROPERTIES")
         pairs = args[split + 1 :]
         for name in split_words(args[:split]):
             for key, value in zip(pairs[::2], pairs[1::2], strict=False):
@@ -238,7 +238,7 @@ def set_property(run: Interpreter, call: Call, args: list[Word]) -> None:
     """set_property() on targets; others are remembered for get_property()."""
     if "PROPERTY" not in args[:-1]:
         return
-    split = args.index("PROPERTY")
+    split = position(args, "PROPERTY")
     key, values = args[split + 1], args[split + 2 :]
     owners = [item for item in args[1:split] if item not in ("APPEND", "APPEND_STRING")]
     if args[0] == "TARGET":
@@ -281,9 +281,7 @@ def add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
 def generate_export_header(run: Interpreter, call: Call, args: list[Word]) -> None:
     """generate_export_header(): a header in the build folder."""
     if args:
-        base = f"{args[0].lower()}_export.h"
-        if "EXPORT_FILE_NAME" in args[:-1]:
-            base = str(args[args.index("EXPORT_FILE_NAME") + 1])
+        base = following(args, "EXPORT_FILE_NAME") or f"{args[0].lower()}_export.h"
         value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
         run.configured[run.shown(run.resolve(base, value.text if value is not None else None))] = None
 
@@ -327,7 +325,7 @@ def protobuf_generate_cpp(run: Interpreter, call: Call, args: list[Word]) -> Non
 @handles("protobuf_generate")
 def protobuf_generate(run: Interpreter, call: Call, args: list[Word]) -> None:
     """protobuf_generate(TARGET t PROTOS files...)."""
-    target = str(args[args.index("TARGET") + 1]) if "TARGET" in args[:-1] else ""
+    target = str(following(args, "TARGET") or "")
     files = tuple(run.tree_path(item) for item in args if item.endswith(".proto"))
     if not run.silent:
         run.generated.append(GeneratedInterfaces("protobuf", target, files, (), run.place(call.at), run.conditions))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from ...facts.cmake import Argument
 from ...facts.condition import Condition
@@ -132,6 +132,20 @@ def split_word(item: Word) -> tuple[Word, ...]:
     if item.parts:
         return item.parts
     return tuple(word(part, item.at, item.conditions, item.sure) for part in split_list(item))
+
+
+def position(items: Sequence[Word], keyword: str) -> int:
+    """Where a keyword stands among arguments, -1 when it does not."""
+    for index, item in enumerate(items):
+        if item == keyword:
+            return index
+    return -1
+
+
+def following(items: Sequence[Word], keyword: str) -> Word | None:
+    """The argument after a keyword, None when there is none."""
+    index = position(items, keyword)
+    return items[index + 1] if 0 <= index < len(items) - 1 else None
 
 
 def split_words(items: Iterable[Word]) -> list[Word]:
