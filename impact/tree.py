@@ -21,7 +21,7 @@ import re
 import stat
 import time
 from array import array
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Protocol
 
 import msgspec
@@ -517,9 +517,9 @@ class GitTree:
         self._repo: Any = _open_repository(self.repository)
         commit, tree = _resolve(self._repo, revision, self.repository)
         self.commit: str = commit
-        self._start(revision, tree, folder)
         # folders already read, by id: revisions of one repository share most of theirs
         self._read_folders: dict[Any, tuple[tuple[str, int, Any], ...]] = {}
+        self._start(revision, tree, folder)
 
     def _start(self, revision: str, tree, folder: str) -> None:
         self.revision = revision
@@ -741,6 +741,105 @@ class GitTree:
 
     def memory(self) -> bytes | None:
         return None
+
+
+class JoinedTree:
+    """Several trees under one root, such as a workspace whose repositories stand at different revisions.
+
+    mounts: tree by folder. Where folders contain each other the inner tree hides what the outer one has there.
+    """
+
+    def __init__(self, mounts: Mapping[str, Tree], label: str = ""):
+        self.mounts = dict(sorted(mounts.items(), key=lambda mount: -len(mount[0])))
+        outermost = list(self.mounts.values())[-1] if self.mounts else None
+        self.label = label or ", ".join(f"{folder or '.'} at {tree.label}" for folder, tree in sorted(mounts.items()))
+        self.name = outermost.name if outermost is not None and "" in self.mounts else ""
+        self.problems: list[PathProblem] = []
+        self.skipped: list[PathProblem] = []
+        self.aliases: dict[str, str] = {}
+        self._entries: list[Entry] | None = None
+
+    @property
+    def repositories(self) -> dict[str, str]:
+        found = {}
+        for mount, tree in self.mounts.items():
+            for folder, place in tree.repositories.items():
+                if self._mount(_join(mount, folder)) == mount:
+                    found[_join(mount, folder) if folder else mount] = place
+        return found
+
+    def _mount(self, path: str) -> str | None:
+        return next((mount for mount in self.mounts if _within(path, mount)), None)
+
+    def _inner(self, path: str) -> tuple[Tree, str]:
+        mount = self._mount(path)
+        if mount is None:
+            raise FileNotFoundError(2, "in none of the trees", path)
+        return self.mounts[mount], path[len(mount) + 1 :] if mount else path
+
+    def entries(self) -> list[Entry]:
+        if self._entries is None:
+            found = []
+            for mount, tree in self.mounts.items():
+                inner = [other for other in self.mounts if other != mount and _within(other, mount)]
+                prefix = mount + "/" if mount else ""
+
+                def kept(path: str, inner: list[str] = inner) -> bool:
+                    return not any(_within(path, other) for other in inner)
+
+                found += [Entry(prefix + e.path, e.size) for e in tree.entries() if kept(prefix + e.path)]
+                for own, theirs in ((self.problems, tree.problems), (self.skipped, tree.skipped)):
+                    own += [PathProblem(prefix + p.path, p.message) for p in theirs if kept(prefix + p.path)]
+                for link, target in tree.aliases.items():
+                    if kept(prefix + link):
+                        self.aliases[prefix + link] = target if target.startswith("/") else prefix + target
+            found.sort(key=lambda entry: entry.path)
+            self._entries = found
+        return self._entries
+
+    def known_id(self, path: str) -> str | None:
+        tree, inner = self._inner(path)
+        return tree.known_id(inner)
+
+    def content_id(self, path: str) -> str:
+        tree, inner = self._inner(path)
+        return tree.content_id(inner)
+
+    def read(self, path: str) -> bytes:
+        tree, inner = self._inner(path)
+        return tree.read(inner)
+
+    def read_with_id(self, path: str) -> tuple[bytes, str]:
+        tree, inner = self._inner(path)
+        return tree.read_with_id(inner)
+
+    def exists(self, path: str) -> bool:
+        clean = inside(path)
+        if clean is None:
+            return False
+        if any(_within(mount, clean) for mount in self.mounts):
+            return True
+        mount = self._mount(clean)
+        return mount is not None and self._inner(clean)[0].exists(self._inner(clean)[1])
+
+    def is_dir(self, path: str) -> bool:
+        clean = inside(path)
+        if clean is None:
+            return False
+        if any(_within(mount, clean) for mount in self.mounts):
+            return True
+        mount = self._mount(clean)
+        return mount is not None and self._inner(clean)[0].is_dir(self._inner(clean)[1])
+
+    def memory_key(self) -> bytes | None:
+        return self.mounts[""].memory_key() if "" in self.mounts else None
+
+    def recall(self, memory: bytes) -> None:
+        if "" in self.mounts:
+            self.mounts[""].recall(memory)
+
+    def memory(self) -> bytes | None:
+        return self.mounts[""].memory() if "" in self.mounts else None
 
 
 _FILE, _FOLDER = 1, 2

@@ -145,14 +145,14 @@ class Store:
             try:
                 self._db = self._connect()
                 break
-            except sqlite3.OperationalError as error:
-                self._give_up_writing("opened", error)
-                self._db = self._connect_to_read()
-                break
             except OSError as error:
                 self._give_up_writing("opened", error)
                 break
-            except sqlite3.DatabaseError as error:
+            except sqlite3.Error as error:
+                if _is_of_the_disk(error):
+                    self._give_up_writing("opened", error)
+                    self._db = self._connect_to_read()
+                    break
                 if attempt == 2 or not self._discard(error):
                     self._give_up_writing("opened", error)
                     break
@@ -226,7 +226,7 @@ class Store:
 
     def _failed(self, error: sqlite3.Error) -> None:
         """After an error of a statement: mends what can be mended, so that the next statement may work."""
-        if isinstance(error, sqlite3.OperationalError) and "malformed" not in str(error):
+        if _is_of_the_disk(error):
             self._give_up_writing("written", error)
         elif self._discard(error):
             self._opened = False
@@ -317,6 +317,7 @@ class Store:
             for row, used, length in db.execute(f"SELECT id, used, length(data) + 80 FROM {table}")
         ]
         rows.sort()
+        surplus *= sum(length for _, _, length, _ in rows) / size  # pages are not filled to the last byte
         doomed: dict[str, list[int]] = {table: [] for table in _TABLES}
         for _, row, length, table in rows:
             if surplus <= 0:
@@ -328,7 +329,16 @@ class Store:
             for part, marks in _parts(ids):
                 db.execute(f"DELETE FROM {table} WHERE id IN ({marks})", part)
             db.execute("COMMIT")
-        db.execute("PRAGMA incremental_vacuum").fetchall()
+        db.executescript("PRAGMA incremental_vacuum;")  # execute() would free one page only
+
+
+# Faults of the disk or of other users of the file, by SQLite's words (Python 3.10 does not give the codes). Everything
+# else means that the file is not what this version wrote.
+_DISK = ("locked", "disk I/O", "disk is full", "readonly", "unable to open", "out of memory", "interrupted")
+
+
+def _is_of_the_disk(error: sqlite3.Error) -> bool:
+    return isinstance(error, sqlite3.OperationalError) and any(words in str(error) for words in _DISK)
 
 
 def _memo_key(table: str, key: bytes) -> bytes:

@@ -113,8 +113,8 @@ class Discovered:
 def discover(tree: Tree, gathered: Gathered) -> Discovered:
     """Finds the packages of a tree from its paths and the facts of its manifests.
 
-    A manifest without a usable name still makes a package, so that what is wrong with it can be reported; one that could
-    not be read at all makes none, and is among the problems of `gathered`.
+    A manifest without a usable name still makes a package, so that what is wrong with it can be reported; one that
+    could not be read at all makes none, and is among the problems of `gathered`.
     """
     return _Search(tree, gathered).run()
 

@@ -1,0 +1,283 @@
+"""The store: what goes in comes out, whatever happens to the disk or to other processes meanwhile."""
+
+import errno
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rosimpact.impact.facts import store as store_module
+from rosimpact.impact.facts.store import Store, cache_folder, fact_key, pack, unpack
+
+
+def key(number, extractor="cpp.1"):
+    return fact_key(f"{number:040x}", extractor)
+
+
+def rows(start, count, size=50):
+    return [(key(n), pack(f"{n}:".encode() + b"x" * size)) for n in range(start, start + count)]
+
+
+def contents(folder):
+    with Store(folder) as store:
+        return store.find([key(n) for n in range(5000)])
+
+
+@given(st.binary(max_size=2000))
+def test_packing(data):
+    assert unpack(pack(data)) == data
+
+
+@pytest.mark.parametrize("data", [b"", b"?", b"z", b"znot deflated", b"\x00\x01"])
+def test_unpacking_what_was_not_packed(data):
+    with pytest.raises(ValueError):
+        unpack(data)
+
+
+def test_what_goes_in_comes_out_of_a_later_run(tmp_path):
+    with Store(tmp_path) as store:
+        assert store.find([key(1)]) == set()
+        store.put(rows(0, 3000))
+        assert dict(store.get([key(7)])) == dict(rows(7, 1))
+    with Store(tmp_path) as store:
+        wanted = [key(n) for n in range(2500, 3500)]
+        assert store.find(wanted) == set(wanted[:500])
+        assert dict(store.get(wanted)) == dict(rows(2500, 500))
+        assert store.notes == []
+
+
+def test_another_version_of_an_extractor_is_another_row(tmp_path):
+    with Store(tmp_path) as store:
+        store.put([(key(1, "cpp.1"), pack(b"old")), (key(1, "cpp.2"), pack(b"new")), (key(1, "python.1"), pack(b"py"))])
+        assert dict(store.get([key(1, "cpp.2")])) == {key(1, "cpp.2"): pack(b"new")}
+        assert store.find([key(1, "cpp.3")]) == set()
+
+
+def test_memo(tmp_path):
+    with Store(tmp_path) as store:
+        store.remember("digest", [(b"k", b"v"), (b"l", b"w" * 1000)])
+        store.remember("other", [(b"k", b"else")])
+    with Store(tmp_path) as store:
+        assert store.memo("digest", b"k") == b"v"
+        assert store.memo("other", b"k") == b"else"
+        assert store.memo("digest", b"m") is None
+        assert store.memos("digest", [b"k", b"l", b"m"]) == {b"k": b"v", b"l": b"w" * 1000}
+        store.remember("digest", [(b"k", b"newer")])
+        assert store.memo("digest", b"k") == b"newer"
+
+
+def test_a_closed_store_opens_itself_again(tmp_path):
+    store = Store(tmp_path)
+    store.put(rows(0, 1))
+    store.close()
+    assert store.find([key(0)]) == {key(0)}
+    store.close()
+
+
+DAMAGE = {
+    "no database": lambda path: path.write_bytes(b"this is text, and more than a header of it" * 10),
+    "cut off": lambda path: path.write_bytes(path.read_bytes()[:6000]),
+    "zeros inside": lambda path: path.write_bytes(path.read_bytes()[:4096] + b"\0" * (path.stat().st_size - 4096)),
+    "made by a newer version": lambda path: sqlite3.connect(path).execute("PRAGMA user_version = 99").close(),
+    "other tables": lambda path: (
+        path.unlink(),
+        sqlite3.connect(path).executescript("CREATE TABLE facts (a); PRAGMA user_version = 1;").close(),
+    ),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
+def test_a_damaged_file_is_started_anew_with_one_line(tmp_path, damage):
+    with Store(tmp_path) as store:
+        store.put(rows(0, 2000))
+    for suffix in ("-wal", "-shm"):
+        (tmp_path / f"facts.sqlite{suffix}").unlink(missing_ok=True)
+    damage(tmp_path / "facts.sqlite")
+    with Store(tmp_path) as store:
+        store.find([key(n) for n in range(2000)])
+        list(store.get([key(n) for n in range(2000)]))
+        store.put(rows(0, 10))
+        assert store.find([key(3)]) == {key(3)}
+        assert dict(store.get([key(3)])) == dict(rows(3, 1))
+        assert len(store.notes) == 1 and "damaged" in store.notes[0] and "\n" not in store.notes[0]
+    with Store(tmp_path) as store:
+        assert store.find([key(3)]) == {key(3)}
+        assert store.notes == []
+
+
+def test_an_empty_file_is_a_new_store(tmp_path):
+    (tmp_path / "facts.sqlite").write_bytes(b"")
+    with Store(tmp_path) as store:
+        store.put(rows(0, 1))
+        assert store.notes == []
+
+
+def test_deleted_while_open(tmp_path):
+    with Store(tmp_path) as store:
+        store.put(rows(0, 10))
+        for file in tmp_path.iterdir():
+            file.unlink()
+        store.put(rows(10, 10))
+        assert store.find([key(0), key(15)]) == {key(0), key(15)}
+    with Store(tmp_path) as store:
+        store.put(rows(0, 1))
+        assert store.find([key(0)]) == {key(0)}
+
+
+def test_a_full_disk(tmp_path):
+    with Store(tmp_path) as store:
+        store.put(rows(0, 10))
+        store._db.execute("PRAGMA max_page_count = 1")
+        store.put(rows(100, 500, size=3000))
+        store.put(rows(700, 10))
+        wanted = [key(n) for n in (3, 100, 599, 705)]
+        assert store.find(wanted) == set(wanted)
+        assert {k for k, _ in store.get(wanted)} == set(wanted)
+        assert len(store.notes) == 1 and "full" in store.notes[0] and "ROSIMPACT_CACHE" in store.notes[0]
+    assert contents(tmp_path) == {key(n) for n in range(10)}, "all of a put, or nothing"
+
+
+def test_a_folder_that_cannot_be_made(tmp_path):
+    (tmp_path / "file").write_text("")
+    with Store(tmp_path / "file" / "cache") as store:
+        store.put(rows(0, 5))
+        assert store.find([key(n) for n in range(9)]) == {key(n) for n in range(5)}
+        store.remember("t", [(b"k", b"v")])
+        assert store.memo("t", b"k") == b"v"
+        assert len(store.notes) == 1
+
+
+@pytest.mark.parametrize("error", [errno.EACCES, errno.EROFS, errno.ENOSPC])
+def test_a_folder_that_cannot_be_written(tmp_path, monkeypatch, error):
+    def refuse(*_, **__):
+        raise OSError(error, os.strerror(error))
+
+    monkeypatch.setattr(store_module.os, "makedirs", refuse)
+    with Store(tmp_path / "cache") as store:
+        store.put(rows(0, 5))
+        assert dict(store.get([key(4)])) == dict(rows(4, 1))
+        assert len(store.notes) == 1 and os.strerror(error).lower() in store.notes[0]
+
+
+def test_a_file_that_can_only_be_read_is_read(tmp_path, monkeypatch):
+    with Store(tmp_path) as store:
+        store.put(rows(0, 10))
+    connect = sqlite3.connect
+
+    def read_only(place, *arguments, **options):
+        if options.get("uri"):
+            return connect(place, *arguments, **options)
+        raise sqlite3.OperationalError("attempt to write a readonly database")
+
+    monkeypatch.setattr(store_module.sqlite3, "connect", read_only)
+    with Store(tmp_path) as store:
+        assert store.find([key(3), key(11)]) == {key(3)}
+        store.put(rows(10, 5))
+        assert store.find([key(3), key(11)]) == {key(3), key(11)}
+        assert len(store.notes) == 1 and "readonly" in store.notes[0]
+
+
+def test_another_process_that_keeps_the_file_locked(tmp_path, monkeypatch):
+    monkeypatch.setattr(store_module, "_BUSY_MS", 50)
+    with Store(tmp_path) as store:
+        store.put(rows(0, 10))
+        other = sqlite3.connect(tmp_path / "facts.sqlite", isolation_level=None)
+        other.execute("BEGIN IMMEDIATE")
+        store.put(rows(10, 10))
+        assert store.find([key(5), key(15)]) == {key(5), key(15)}
+        assert len(store.notes) == 1 and "locked" in store.notes[0]
+        other.execute("ROLLBACK")
+        other.close()
+
+
+WRITER = """
+import sys
+from rosimpact.impact.facts.store import Store, fact_key, pack
+folder, start, count = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+store = Store(folder)
+print("ready", flush=True)
+sys.stdin.readline()
+for n in range(start, start + count):
+    store.put([(fact_key(f"{n:040x}", "cpp.1"), pack(f"{n}:".encode() + b"x" * 50))])
+    print(n, flush=True)
+print(store.notes, flush=True)
+store.close()
+"""
+
+
+def writer(folder, start, count):
+    process = subprocess.Popen(
+        [sys.executable, "-c", WRITER, str(folder), str(start), str(count)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout.readline() == "ready\n"
+    return process
+
+
+def test_processes_that_write_at_once(tmp_path):
+    processes = [writer(tmp_path, start, 200) for start in (0, 100, 1000)]
+    for process in processes:
+        process.stdin.write("\n")
+        process.stdin.flush()
+    for process in processes:
+        output, _ = process.communicate(timeout=60)
+        assert output.endswith("[]\n"), "no notes"
+    assert contents(tmp_path) == {key(n) for n in [*range(300), *range(1000, 1200)]}
+
+
+def test_a_process_killed_in_the_middle(tmp_path):
+    process = writer(tmp_path, 0, 100_000)
+    process.stdin.write("\n")
+    process.stdin.flush()
+    stored = 0
+    while stored < 50:
+        stored = int(process.stdout.readline())
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    with Store(tmp_path) as store:
+        assert store.find([key(n) for n in range(51)]) == {key(n) for n in range(51)}
+        store.put(rows(200_000, 1))
+        assert store.notes == []
+
+
+def test_the_least_recently_used_go_first(tmp_path, monkeypatch):
+    limit = 400_000
+    day = 86_400
+    now = time.time()
+    for age, start in ((30, 0), (20, 1000), (10, 2000)):
+        monkeypatch.setattr(store_module.time, "time", lambda age=age: now - age * day)
+        with Store(tmp_path, limit=10**9) as store:
+            store.put([(key(n), b"-" + os.urandom(1500)) for n in range(start, start + 100)])
+    monkeypatch.setattr(store_module.time, "time", lambda: now)
+    with Store(tmp_path, limit=limit) as store:
+        used_again = [key(n) for n in range(50)]
+        assert store.find(used_again) == set(used_again)
+        store.put([(key(3000), b"-new")])
+    left = contents(tmp_path)
+    assert key(3000) in left and set(used_again) <= left
+    assert not {key(n) for n in range(50, 100)} & left, "the oldest that nobody used"
+    assert (tmp_path / "facts.sqlite").stat().st_size <= limit
+    assert len(left) > 100, "no more than needed"
+
+
+def test_a_run_that_writes_nothing_drops_nothing(tmp_path):
+    with Store(tmp_path) as store:
+        store.put([(key(n), b"-" + os.urandom(1500)) for n in range(100)])
+    with Store(tmp_path, limit=1000) as store:
+        assert len(store.find([key(n) for n in range(100)])) == 100
+    assert len(contents(tmp_path)) == 100
+
+
+def test_where_the_cache_lies(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "here"))
+    assert cache_folder() == str(tmp_path / "here")
+    monkeypatch.delenv("ROSIMPACT_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    assert "rosimpact" in os.path.basename(cache_folder())
