@@ -7,7 +7,9 @@ into segments, and names are collected per segment. Nothing is expanded: what a 
 import re
 import sys
 from bisect import bisect_right
+from collections.abc import Callable, Iterator
 from itertools import accumulate
+from typing import NamedTuple
 
 import msgspec
 
@@ -195,11 +197,19 @@ def _guard(directives: list[tuple[int, int, str, str]], visible: str) -> tuple[i
     return None
 
 
-def extract(data: bytes) -> CppFile:
-    """The facts of one C or C++ file. Never raises; what could not be read is in `problems`.
+class _Scan(NamedTuple):
+    """A file with comments, literals and includes blanked out, cut into stretches that stand under equal conditions."""
 
-    Undecodable bytes become replacement characters, so columns are those of an editor that shows them so.
-    """
+    text: str
+    visible: str
+    place: Callable[[int], tuple[int, int]]
+    segments: list[tuple[int, int, tuple[Condition, ...]]]
+    found: list[tuple[int, bool, str]]
+    defined: dict[str, None]
+    problems: list[Problem]
+
+
+def _scan(data: bytes) -> _Scan:
     text = _decode(data)
     problems: list[Problem] = []
     # Where each line starts, for places.
@@ -274,7 +284,26 @@ def extract(data: bytes) -> CppFile:
     segments.append((position, len(visible), conditions))
     if blocks.open:
         problems.append(Problem(len(starts) - 1, f"{len(blocks.open)} `#if` without `#endif`"))
+    return _Scan(text, visible, place, segments, found, defined, problems)
 
+
+def places_of(data: bytes, word: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
+    """Line, column and preprocessor conditions of every use of a bare identifier outside comments and literals."""
+    scan = _scan(data)
+    pattern = re.compile(rf"(?<![\w]){re.escape(word)}(?!\w)")
+    for start, end, conditions in scan.segments:
+        for match in pattern.finditer(scan.visible, start, end):
+            yield (*scan.place(match.start()), conditions)
+
+
+def extract(data: bytes) -> CppFile:
+    """The facts of one C or C++ file. Never raises; what could not be read is in `problems`.
+
+    Undecodable bytes become replacement characters, so columns are those of an editor that shows them so.
+    """
+    scan = _scan(data)
+    text, visible, place, segments = scan.text, scan.visible, scan.place, scan.segments
+    found, defined, problems = scan.found, scan.defined, scan.problems
     words: set[str] = set()
     qualified: list[Name] = []
     seen: dict[tuple[Condition, ...], set[str]] = {}

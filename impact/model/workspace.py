@@ -14,13 +14,16 @@ from functools import cached_property
 
 import msgspec
 
+from ..facts.kinds import EXTRACTORS
 from ..facts.manifest import Manifest
 from ..gather import Gathered
 from .build import Build, interpret
 from .discovery import Discovered, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
+# Raise with every change of what a digest or the CMake interpreter says.
 DIGEST_VERSION = "1"
+_VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 
 class Package:
@@ -261,7 +264,7 @@ class _Linker:
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
-        digest = hashlib.sha1(f"{DIGEST_VERSION} {self.watched.version} {self.ros} {place.path}\n".encode())
+        digest = hashlib.sha1(f"{_VERSIONS} {self.watched.version} {self.ros} {place.path}\n".encode())
         digest.update(
             "\n".join([f"{path} {ids.get(path, '')}" for path in self.paths_of[place.path]]).encode("utf-8", "surrogateescape")
         )

@@ -99,7 +99,8 @@ def _end_of_day(day: str) -> int:
     return int((start + _DAY).timestamp()) - 1
 
 
-def _version_key(version: str) -> list[int]:
+def version_key(version: str) -> list[int]:
+    """Numbers of a version, for ordering: `2.10.1-1` → [2, 10, 1, 1]."""
     return [int(part) for part in re.findall(r"\d+", version)]
 
 
@@ -316,8 +317,8 @@ class DistroTarget(Target):
         )
         if not rows:
             return None
-        wanted = _version_key(version)
-        keyed = [(_version_key(known), entries, build) for known, entries, build in rows]
+        wanted = version_key(version)
+        keyed = [(version_key(known), entries, build) for known, entries, build in rows]
         keyed.sort(key=lambda row: row[0])
         chosen = next((row for row in reversed(keyed) if row[0] <= wanted), keyed[0])
         return chosen[1] or "", chosen[2] or ""
@@ -375,21 +376,46 @@ class DistroTarget(Target):
     def resolve(self, key: str) -> Resolution | None:
         if key not in self._keys:
             os_name, release = split_platform(self.platform)
-            # Some keys stand for every operating system under the name `*`.
-            self._keys[key] = self._resolve(key, os_name, release) or self._resolve(key, "*", release)
+            found = self._resolve(key, os_name, release, self._rule_ts)
+            if found is None and self.end_of_life and self.end_of_life < self.date:
+                # rosdistro drops the rules of old releases; machines of an ended distro were set up when they stood.
+                found = self._resolve(key, os_name, release, _end_of_day(self.end_of_life))
+            self._keys[key] = found
         return self._keys[key]
 
-    def _resolve(self, key: str, os_name: str, release: str) -> Resolution | None:
-        row = self._data.row(
-            "SELECT rule FROM rule WHERE key = ? AND os = ? AND ts <= ? ORDER BY ts DESC LIMIT 1",
-            (key, os_name, self._rule_ts),
-        )
-        return resolve_rule(decode_rule(row[0]), os_name, release, self.python_major) if row else None
+    def _resolve(self, key: str, os_name: str, release: str, ts: int) -> Resolution | None:
+        # Some keys stand for every operating system under the name `*`.
+        for system in (os_name, "*"):
+            row = self._data.row(
+                "SELECT rule FROM rule WHERE key = ? AND os = ? AND ts <= ? ORDER BY ts DESC LIMIT 1",
+                (key, system, ts),
+            )
+            if row and row[0] is not None:
+                return resolve_rule(decode_rule(row[0]), os_name, release)
+        return None
 
     def known_key(self, key: str) -> bool:
         if self._known is None:
             self._known = frozenset(name for (name,) in self._data.rows("SELECT DISTINCT key FROM rule"))
         return key in self._known
+
+    def key_names(self) -> frozenset[str]:
+        """Every rosdep key that any platform has, or had."""
+        self.known_key("")
+        return self._known or frozenset()
+
+    def last_distro(self, package: str) -> str:
+        """The newest distro of the same generation that has released a package, empty when none has."""
+        names = [
+            name
+            for (name,) in self._data.rows(
+                "SELECT d.name FROM home h JOIN package p ON p.id = h.package JOIN distro d ON d.id = h.distro"
+                " WHERE p.name = ? AND d.ros = ?",
+                (package, self.ros),
+            )
+        ]
+        order = {known.name: place for place, known in enumerate(known_distros(self._data))}
+        return max(names, key=lambda name: order.get(name, -1), default="")
 
     def keys_of(self, debian_package: str) -> tuple[str, ...]:
         """rosdep keys that install this system package on the platform, sorted; shortest names first."""
@@ -399,7 +425,7 @@ class DistroTarget(Target):
             for key, rule, _ in self._data.rows(
                 "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key", (os_name, self._rule_ts)
             ):
-                resolution = resolve_rule(decode_rule(rule), os_name, release, self.python_major)
+                resolution = resolve_rule(decode_rule(rule), os_name, release)
                 if resolution and resolution.manager in ("apt", "dnf", "yum"):
                     for name in resolution.packages:
                         found.setdefault(name, []).append(key)
