@@ -297,11 +297,23 @@ def _glob_pattern(glob: str) -> re.Pattern[str]:
     pieces = re.findall(r"\*\*/|/?\*\*$|\*\*|\*|\?|\[!?[^\]/]+\]|.", glob.removeprefix("./").rstrip("/"), re.DOTALL)
     table = {"**/": "(?:.*/)?", "/**": "/.*", "**": ".*", "*": "[^/]*", "?": "[^/]"}
     pattern = "".join(
-        table.get(piece)
-        or (f"[{piece[1:-1].replace('!', '^', 1)}]" if len(piece) > 2 and piece[0] == "[" else re.escape(piece))
+        table.get(piece) or (_glob_class(piece[1:-1]) if len(piece) > 2 and piece[0] == "[" else re.escape(piece))
         for piece in pieces
     )
     return re.compile(rf"(?s:{pattern})(?:/(?s:.*))?\Z")
+
+
+def _glob_class(content: str) -> str:
+    """`[ab]`, `[a-z]` or `[!a]` of a glob; one that is no class (`[z-a]`) stands for itself."""
+    negated = content.startswith("!")
+    signs = re.sub(r"[\\\[\]^&~|]", r"\\\g<0>", content[negated:])
+    signs = signs.replace("--", r"\--")
+    pattern = f"[^/{signs}]" if negated else f"[{signs}]"
+    try:
+        re.compile(pattern)
+    except re.error:
+        return re.escape(f"[{content}]")
+    return pattern
 
 
 def suppressed(

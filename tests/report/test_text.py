@@ -1,0 +1,186 @@
+"""The report for a terminal, as a person reads it."""
+
+import io
+import subprocess
+import sys
+
+import pytest
+from rosimpact.impact.report import text
+from rosimpact.impact.report.report import Coverage, ReportedTarget, cells, pointed
+from rosimpact.impact.rules.rule import Finding
+
+TEAM = """\
+targets humble (2026-08-22, ubuntu jammy), jazzy (2026-08-22, ubuntu noble), rolling (2026-08-22, ubuntu noble), \
+robot (humble, 2026-08-22, ubuntu jammy): rosimpact.toml
+
+localizer · src/localizer
+
+error[removed-header] jazzy, rolling: `tf2_geometry_msgs/tf2_geometry_msgs.h` is gone in tf2_geometry_msgs \
+0.36.2 (jazzy), 0.41.0 (rolling)
+  → src/localizer/src/node.cpp:2:11
+  2 | #include <tf2_geometry_msgs/tf2_geometry_msgs.h>
+    |           ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+  help: include `tf2_geometry_msgs/tf2_geometry_msgs.hpp`, present on every target asked for
+
+warning[undeclared-package] all targets: `cv_bridge` is included and not declared
+  → src/localizer/src/node.cpp:3:11
+  3 | #include <cv_bridge/cv_bridge.h>
+    |           ^^^^^^^^^
+  help: add `<depend>cv_bridge</depend>` to `src/localizer/package.xml`
+
+planner · src/planner
+
+error[library-version] robot: `find_package(OpenCV 4.6)` asks for more than opencv 4.5.4
+  → src/planner/CMakeLists.txt:2:14
+  2 | find_package(OpenCV 4.6 REQUIRED)
+    |              ^^^^^^
+  help: ask for `4.5`, which every target asked for has
+
+                  humble  jazzy  rolling  robot
+localizer         ! 1     ✗ 1    ✗ 1      ! 1
+planner           ·       ·      ·        ✗ 1
+3 other packages  ·       ·      ·        ·
+
+2 errors, 1 warning, 1 note (shown with --notes) · 5 packages, 40 of 41 files read, unresolved: 3 includes, 1 topic \
+· 0.42 s
+"""
+
+
+def test_team(team):
+    assert text.render(team) == TEAM
+
+
+def test_ascii_where_the_stream_is_ascii(team):
+    style = text.style_for(io.TextIOWrapper(io.BytesIO(), encoding="ascii"))
+    assert text.render(team, style).isascii()
+
+
+def test_quiet(quiet):
+    assert text.render(quiet).splitlines()[1:] == [
+        "",
+        "nothing found · 5 packages, 40 of 41 files read, unresolved: 3 includes, 1 topic · 0.42 s",
+    ]
+
+
+def last(report, **style):
+    return text.render(report, text.PLAIN._replace(**style)).splitlines()[-1]
+
+
+def test_the_last_line_tells_what_is_not_shown(team):
+    first, *rest = team.findings
+    report = team._replace(
+        findings=(first._replace(new=False), *rest), base="v1.0", suppressed=(first,), known=(first,)
+    )
+    assert last(report).startswith("2 errors, 1 warning, 1 older · 1 suppressed · 1 in the baseline · 5 packages")
+    assert "(new against v1.0)" in text.render(report).splitlines()[0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "start"),
+    [
+        ({"coverage": Coverage()}, "nothing was analysed · 0 packages"),
+        ({"failure": "`x` is no folder\nof yours"}, "failed: `x` is no folder\ufffdof yours · "),
+        ({"coverage": Coverage(1, 3, 3)}, "nothing found · 1 package, all of 3 files read · "),
+    ],
+)
+def test_summary(quiet, changes, start):
+    assert last(quiet._replace(**changes)).startswith(start)
+
+
+def test_notes_are_shown_when_asked_for(team):
+    lines = text.render(team, text.PLAIN._replace(severities=("error", "warning", "note")))
+    assert "note[unused-dependency] all targets: `tf2` is declared and not used" in lines
+    assert lines.splitlines()[-1].startswith("2 errors, 1 warning, 1 note · ")
+
+
+def test_notes_about_targets_follow_the_first_line(quiet):
+    target = ReportedTarget("humble", "humble", "2022-05-23", "ubuntu jammy", "--target", ("date moved to 2022-05-23",))
+    assert text.render(quiet._replace(targets=(target,))).splitlines()[:2] == [
+        "targets humble (2022-05-23, ubuntu jammy): --target",
+        "  humble: date moved to 2022-05-23",
+    ]
+
+
+def test_an_equal_message_is_excerpted_three_times_then_listed(quiet):
+    findings = tuple(
+        Finding("r", "error", "ui", f"src/ui/{number}.cpp", 1, 0, "x", ("jazzy",), "`x` is gone") for number in range(9)
+    )
+    lines = text.render(quiet._replace(findings=findings)).splitlines()
+    assert lines.count("error[r] jazzy: `x` is gone") == 4
+    assert sum(line.startswith("  → src/ui/") for line in lines) == 6
+    assert "  and 3 more places" in lines
+    assert lines[-1].startswith("9 errors · ")
+
+
+def test_nothing_of_the_workspace_reaches_the_terminal_raw(hostile):
+    output = text.render(hostile)
+    assert not set(output) & set("\x1b\x07\u202e\u2028\r\udcff")
+    assert not any(line.startswith("::") for line in output.splitlines())
+    output.encode()
+
+
+# (line, column, subject, (start, width))
+POINTED = [
+    ("#include <a/b.h>", 11, "a/b.h", (10, 5)),
+    ("#include <a/b.h>", 10, "a/b.h", (10, 5)),
+    ("find_package(foo)", 14, "bar", (13, 3)),
+    ("  <depend>x</depend>", 0, "x", (10, 1)),
+    ("  <depend>x</depend>", 0, "y", (0, 0)),
+    ("abc", 9, "abc", (0, 0)),
+    ("", 1, "x", (0, 0)),
+    ("x = (1)", 5, "q", (4, 1)),
+    ("a b a b", 7, "b", (6, 1)),
+]
+
+
+@pytest.mark.parametrize(("line", "column", "subject", "expected"), POINTED)
+def test_pointed(line, column, subject, expected):
+    assert pointed(line, column, subject)[1:] == expected
+
+
+@pytest.mark.parametrize(
+    ("line", "column"),
+    [("\tfoo(x);", 6), ("名前 = x", 6), ("e\u0301 = x", 6), ("x" * 500 + " x", 502), ("  " * 200 + "x", 401)],
+)
+def test_the_caret_stands_under_the_subject_whatever_is_before_it(quiet, line, column):
+    finding = Finding("r", "error", "ui", "a.cpp", 1, column, "x", ("jazzy",), "m")
+    report = quiet._replace(findings=(finding,), excerpt=lambda path, number: [line])
+    rows = text.render(report, text.PLAIN._replace(width=80)).splitlines()
+    caret = next(index for index, row in enumerate(rows) if set(row.strip()) == set("| ^"))
+    shown, under = rows[caret - 1], rows[caret]
+    offset = under.index("^")
+    before = next(end for end in range(len(shown)) if cells(shown[:end]) == offset and shown[end : end + 1] == "x")
+    assert shown[before] == "x"
+    assert cells(shown) <= 80
+
+
+class Terminal(io.StringIO):
+    encoding = "UTF-8"  # type: ignore[assignment]
+
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize(
+    ("stream", "environment", "coloured"),
+    [
+        (Terminal(), {}, True),
+        (Terminal(), {"NO_COLOR": "1"}, False),
+        (Terminal(), {"TERM": "dumb"}, False),
+        (io.StringIO(), {}, False),
+        (io.StringIO(), {"FORCE_COLOR": "1"}, True),
+    ],
+)
+def test_colour_only_for_a_terminal(team, monkeypatch, stream, environment, coloured):
+    for name in ("NO_COLOR", "FORCE_COLOR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    assert ("\x1b[" in text.render(team, text.style_for(stream))) is coloured
+
+
+def test_the_text_report_loads_nothing_heavy():
+    code = "import sys, rosimpact.impact.report.text; print({'rich', 'typer', 'yaml', 'joblib'} & set(sys.modules))"
+    heavy = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert heavy == "set()\n"

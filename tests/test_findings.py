@@ -1,0 +1,378 @@
+"""From hits to findings: merging over targets, fingerprints, comparison, selection, suppression, baseline."""
+
+import json
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rosimpact.impact.config import PathSetting
+from rosimpact.impact.facts.place import Allow
+from rosimpact.impact.findings import (
+    SettingsError,
+    baseline,
+    checked,
+    chosen,
+    fails,
+    glob_matches,
+    joined,
+    known_from,
+    marked_new,
+    merge,
+    pruned,
+    suppressed,
+    with_settings,
+    without_known,
+)
+from rosimpact.impact.model.build import At
+from rosimpact.impact.rules.rule import Edit, Finding, Hit, Rule
+
+TARGETS = ("humble", "jazzy", "rolling")
+RULES = {
+    name: Rule(name, family, severity, preview, True, lambda: iter(()), "")
+    for name, family, severity, preview in (
+        ("removed-header", "api", "error", False),
+        ("deprecated-name", "api", "note", True),
+        ("undeclared-package", "packages", "error", False),
+        ("unused-dependency", "packages", "note", False),
+        ("unused-suppression", "sources", "note", False),
+    )
+}
+FAMILIES = {name: rule.family for name, rule in RULES.items()}
+FIX = (Edit("a.xml", 0, 0, "x"),)
+
+
+def hit(message="gone", *, line=1, column=1, subject="x.h", path="a.cpp", **rest) -> Hit:
+    return Hit(At(path, line, column), subject, message, package="p", **rest)
+
+
+def merged(*hits, line_text=lambda path, line: f"line {line}", targets=TARGETS) -> list[Finding]:
+    named = [(rule, target, each) for rule, target, each in hits]
+    return merge(named, targets=targets, rules=RULES, line_text=line_text)
+
+
+def brief(findings):
+    return [(finding.severity, finding.line, finding.targets, finding.message) for finding in findings]
+
+
+# (hits as (target, hit), what is found)
+MERGED = [
+    # one fact on all targets, asked order whatever order the hits come in
+    ([("rolling", hit()), ("humble", hit()), ("jazzy", hit())], [("error", 1, TARGETS, "gone")]),
+    # an empty target name stands for all
+    ([("", hit())], [("error", 1, TARGETS, "gone")]),
+    ([("", hit()), ("jazzy", hit())], [("error", 1, TARGETS, "gone")]),
+    # the versions where they differ
+    ([("jazzy", hit("gone in tf2 0.36")), ("rolling", hit("gone in tf2 0.41"))],
+     [("error", 1, ("jazzy", "rolling"), "gone in tf2 0.36 (jazzy), 0.41 (rolling)")]),
+    # another line, another subject, another severity: another finding
+    ([("jazzy", hit()), ("rolling", hit(line=2))],
+     [("error", 1, ("jazzy",), "gone"), ("error", 2, ("rolling",), "gone")]),
+    ([("jazzy", hit(severity="warning")), ("rolling", hit()), ("humble", hit(severity="warning"))],
+     [("error", 1, ("rolling",), "gone"), ("warning", 1, ("humble", "jazzy"), "gone")]),
+    # two things said of one target in one place stay two
+    ([("jazzy", hit("one")), ("jazzy", hit("two"))],
+     [("error", 1, ("jazzy",), "one"), ("error", 1, ("jazzy",), "two")]),
+    # twice on one line is one finding
+    ([("jazzy", hit(column=9)), ("jazzy", hit(column=20))], [("error", 1, ("jazzy",), "gone")]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("hits", "expected"), MERGED)
+def test_merge(hits, expected):
+    assert brief(merged(*(("removed-header", target, each) for target, each in hits))) == expected
+
+
+@pytest.mark.parametrize(
+    ("fixes", "expected"),
+    [
+        ({"humble": FIX, "jazzy": FIX, "rolling": FIX}, FIX),
+        ({"": FIX}, FIX),
+        ({"humble": FIX, "jazzy": FIX}, ()),
+        ({"humble": FIX, "jazzy": FIX, "rolling": ()}, ()),
+        ({"humble": FIX, "jazzy": FIX, "rolling": (Edit("a.xml", 1, 1, "x"),)}, ()),
+    ],
+)
+def test_a_fix_is_kept_when_every_target_asked_for_yields_it(fixes, expected):
+    (finding,) = merged(*(("removed-header", target, hit(fix=fix)) for target, fix in fixes.items()))
+    assert finding.fix == expected
+
+
+def test_findings_come_in_file_order_and_a_hit_without_place_is_kept():
+    findings = merged(
+        ("removed-header", "", hit(path="b.cpp")),
+        ("removed-header", "", hit(line=7)),
+        ("unused-dependency", "", Hit(None, "", "nothing was read")),
+    )
+    assert [(finding.path, finding.line) for finding in findings] == [("", 0), ("a.cpp", 7), ("b.cpp", 1)]
+
+
+# (texts by target, one text)
+JOINED = [
+    ({"a": "same", "b": "same"}, "same"),
+    ({"a": "", "b": "only here"}, "only here"),
+    ({"a": "", "b": ""}, ""),
+    ({"a": "needs x 1.0, has 2.0", "b": "needs x 1.0, has 2.1"}, "needs x 1.0, has 2.0 (a), 2.1 (b)"),
+    ({"a": "x 1.0 is older than 2", "b": "x 1.1 is older than 2"}, "x 1.0 (a), 1.1 (b) is older than 2"),
+    ({"a": "gone in t 1", "b": "gone in t 2", "c": "gone in t 1"}, "gone in t 1 (a, c), 2 (b)"),
+    # a name already said is not said again
+    ({"jazzy": "not released in jazzy", "rolling": "not released in rolling"}, "not released in jazzy, rolling"),
+    # code in backticks is never cut
+    ({"a": "use `x y z` now and then", "b": "use `x y w` now and then"},
+     "use `x y z` (a), `x y w` (b) now and then"),
+    # too little in common to weave
+    ({"a": "gone", "b": "renamed to y"}, "gone (a); renamed to y (b)"),
+    ({"a": "it is gone", "b": "it was renamed to y in the release before last, " + "w" * 60},
+     "it is gone (a); it was renamed to y in the release before last, " + "w" * 60 + " (b)"),
+    ({"a": "x is gone", "b": "x is gone now"}, "x is gone (a), gone now (b)"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("texts", "expected"), JOINED)
+def test_joined(texts, expected):
+    assert joined(list(texts.items())) == expected
+
+
+@given(st.dictionaries(st.sampled_from(["jazzy", "rolling", "robot"]), st.text("ab` ,;1.", max_size=12), min_size=1))
+def test_joined_drops_no_word(texts):
+    result = joined(list(texts.items()))
+    for text in texts.values():
+        assert all(word in result for word in re.findall(r"\w+", text))
+
+
+def lines_of(text):
+    rows = text.split("\n")
+    return lambda path, line: rows[line - 1] if 0 < line <= len(rows) else ""
+
+
+def test_fingerprints_stand_still_when_lines_move():
+    before = merged(
+        *(("removed-header", "", hit(line=line)) for line in (1, 2, 3)), line_text=lines_of("#include <x.h>\ny\ny")
+    )
+    after = merged(
+        *(("removed-header", "", hit(line=line)) for line in (3, 6, 7)),
+        line_text=lines_of("\n\n  #include   <x.h>\n\n\ny\ny"),
+    )
+    assert [finding.fingerprint for finding in before] == [finding.fingerprint for finding in after]
+    assert len({finding.fingerprint for finding in before}) == 3, "equal lines are told apart"
+
+
+@pytest.mark.parametrize("change", [{"path": "b.cpp"}, {"subject": "y.h"}, {"line": 2}])
+def test_fingerprints_differ_with_what_they_identify(change):
+    (first,) = merged(("removed-header", "", hit()))
+    (second,) = merged(("removed-header", "", hit(**change)))
+    assert first.fingerprint != second.fingerprint
+
+
+def test_a_fingerprint_does_not_depend_on_message_or_targets():
+    (first,) = merged(("removed-header", "", hit()))
+    (second,) = merged(("removed-header", "jazzy", hit("gone in 0.36")))
+    assert first.fingerprint == second.fingerprint
+
+
+def finding(
+    rule="removed-header", *, path="a.cpp", line=1, severity="error", subject="x", targets=("jazzy",), mark="1"
+):
+    return Finding(rule, severity, "p", path, line, 1, subject, targets, "m", fingerprint=mark)
+
+
+# (findings now, findings of the base, which are new)
+COMPARED = [
+    ([finding()], [], [True]),
+    ([finding()], [finding()], [False]),
+    ([finding(line=9)], [finding(line=1)], [False]),
+    # the line was edited, the fact stayed
+    ([finding(mark="2")], [finding(mark="1")], [False]),
+    # the file was moved
+    ([finding(mark="2", path="b.cpp")], [finding(mark="1")], [False]),
+    # one more than before
+    ([finding(mark="1"), finding(mark="2")], [finding(mark="1")], [False, True]),
+    ([finding(mark="3"), finding(mark="1")], [finding(mark="1")], [True, False]),
+    # worse than before, or on more targets
+    ([finding()], [finding(severity="warning")], [True]),
+    ([finding(severity="note")], [finding()], [False]),
+    ([finding(targets=("humble", "jazzy"))], [finding()], [True]),
+    ([finding()], [finding(targets=("humble", "jazzy"))], [False]),
+    ([finding(subject="y", mark="2")], [finding()], [True]),
+]
+
+
+@pytest.mark.parametrize(("now", "base", "expected"), COMPARED)
+def test_what_is_new_against_a_base(now, base, expected):
+    assert [each.new for each in marked_new(now, base)] == expected
+
+
+# (select, ignore, preview, rules that run)
+CHOSEN = [
+    ((), (), False, {"removed-header", "undeclared-package", "unused-dependency", "unused-suppression"}),
+    ((), (), True, set(RULES)),
+    (("packages",), (), False, {"undeclared-package", "unused-dependency"}),
+    (("packages",), ("unused-dependency",), False, {"undeclared-package"}),
+    (("removed-header",), ("api",), False, {"removed-header"}),
+    (("api",), ("api",), True, set()),
+    ((), ("all",), False, set()),
+    (("unused-dependency",), ("all",), False, {"unused-dependency"}),
+    (("deprecated-name",), (), False, {"deprecated-name"}),
+    (("api",), (), False, {"removed-header"}),
+]
+
+
+@pytest.mark.parametrize(("select", "ignore", "preview", "expected"), CHOSEN)
+def test_chosen(select, ignore, preview, expected):
+    assert set(chosen(RULES, select=select, ignore=ignore, preview=preview)) == expected
+
+
+def test_an_unknown_rule_is_named_with_the_nearest():
+    with pytest.raises(SettingsError, match=r"`removed-headers`; did you mean `removed-header`\?"):
+        chosen(RULES, select=("removed-headers",))
+
+
+GLOBS = [
+    ("src/vendor", "src/vendor/a/b.cpp", True),
+    ("src/vendor/", "src/vendor/b.cpp", True),
+    ("src/vendor", "src/vendored/b.cpp", False),
+    ("src/*/test", "src/a/test/x.cpp", True),
+    ("src/*/test", "src/a/b/test/x.cpp", False),
+    ("src/**/test", "src/a/b/test/x.cpp", True),
+    ("src/**/test", "src/test/x.cpp", True),
+    ("**/*.launch", "a.launch", True),
+    ("**/*.launch", "x/y/a.launch", True),
+    ("*.launch", "x/a.launch", False),
+    ("src/**", "src/a", True),
+    ("**", "anything/at/all", True),
+    ("a?.cpp", "ab.cpp", True),
+    ("a?.cpp", "a/.cpp", False),
+    ("[!a]*.cpp", "b.cpp", True),
+    ("[!a]*.cpp", "a.cpp", False),
+    ("a[b", "a[b", True),
+    ("[b-a]", "[b-a]", True),
+    ("[a-c].cpp", "b.cpp", True),
+    ("a[!b]c", "a/c", False),
+    ("./src", "src/a", True),
+    ("a+(b)", "a+(b)", True),
+]
+
+
+@pytest.mark.parametrize(("glob", "path", "expected"), GLOBS)
+def test_globs(glob, path, expected):
+    assert glob_matches(glob, path) is expected
+
+
+@given(st.text("ab/*?[]!.-^\\&", max_size=12), st.text("ab/.", max_size=8))
+def test_any_glob_can_be_asked(glob, path):
+    assert glob_matches(glob, path) in (True, False)
+
+
+# (settings, severities of [removed-header in src/v, unused-dependency in src/v, removed-header in src/w])
+SETTINGS = [
+    ([], ["error", "note", "error"]),
+    ([PathSetting("src/v", ignore=("all",))], ["error"]),
+    ([PathSetting("src/v", ignore=("*",), select=("removed-header",))], ["error", "error"]),
+    ([PathSetting("src/v", select=("packages",))], ["note", "error"]),
+    ([PathSetting("src/v", severity={"api": "note"})], ["note", "note", "error"]),
+    ([PathSetting("src/v", severity={"api": "note", "removed-header": "warning"})], ["warning", "note", "error"]),
+    ([PathSetting("**", severity={"packages": "off"})], ["error", "error"]),
+    ([PathSetting("**", severity={"api": "note"}), PathSetting("src/w", severity={"api": "error"})],
+     ["note", "note", "error"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("settings", "expected"), SETTINGS)
+def test_settings_by_path(settings, expected):
+    findings = [
+        finding(path="src/v/a.cpp"),
+        finding("unused-dependency", path="src/v/package.xml", severity="note"),
+        finding(path="src/w/a.cpp"),
+    ]
+    assert [each.severity for each in with_settings(findings, settings, FAMILIES)] == expected
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        (PathSetting("src", ignore=("removed-heade",)), "did you mean `removed-header`"),
+        (PathSetting("src", severity={"api": "fatal"}), "severity of `api` is `fatal`; write note"),
+    ],
+)
+def test_settings_that_cannot_be_obeyed_are_named(setting, message):
+    with pytest.raises(SettingsError, match=message) as error:
+        checked([setting], RULES)
+    assert '[paths."src"]' in str(error.value)
+
+
+# (comments of a.cpp, lines of findings that stay, comments without effect)
+ALLOWED = [
+    ([Allow(3, ("removed-header",), False)], [2, 4], []),
+    ([Allow(2, ("removed-header",), True)], [4], []),
+    ([Allow(3, ("api",), False)], [2, 4], []),
+    ([Allow(3, ("*",), False)], [2, 4], []),
+    ([Allow(3, ("unused-dependency",), False)], [2, 3, 4], [("a.cpp", 3, "unused-dependency")]),
+    ([Allow(3, ("removed-header", "undeclared-package"), False)], [2, 4], [("a.cpp", 3, "undeclared-package")]),
+    # a rule that did not run cannot have used its comment; a name that is no rule never will
+    ([Allow(3, ("deprecated-name",), False)], [2, 3, 4], []),
+    ([Allow(3, ("removed-heade",), False)], [2, 3, 4], [("a.cpp", 3, "removed-heade")]),
+    # a block of comments reaches the line behind it
+    ([Allow(1, ("removed-header",), True), Allow(2, ("undeclared-package",), True)], [2, 4],
+     [("a.cpp", 2, "undeclared-package")]),
+    # line 0: the whole file
+    ([Allow(0, ("removed-header",), True)], [], []),
+    ([], [2, 3, 4], []),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("comments", "stay", "unused"), ALLOWED)
+def test_suppression(comments, stay, unused):
+    findings = [finding(line=line) for line in (2, 3, 4)]
+    ran = {"removed-header", "undeclared-package", "unused-dependency"}
+    outcome = suppressed(findings, {"a.cpp": comments}, families=FAMILIES, ran=ran)
+    assert [each.line for each in outcome.kept] == stay
+    assert len(outcome.kept) + len(outcome.suppressed) == 3
+    assert outcome.unused == unused
+
+
+def test_a_comment_holds_for_its_own_file_only():
+    outcome = suppressed([finding()], {"b.cpp": [Allow(1, ("*",), False)]}, families=FAMILIES, ran=set(RULES))
+    assert outcome.kept == [finding()]
+    assert outcome.unused == [("b.cpp", 1, "*")]
+
+
+def test_baseline_knows_by_content_and_count():
+    old = [finding(mark="1"), finding(mark="1"), finding(mark="2")]
+    known = known_from(baseline(old))
+    now = [finding(mark="1", line=40), finding(mark="1"), finding(mark="1"), finding(mark="3")]
+    fresh, seen = without_known(now, known)
+    assert [each.fingerprint for each in fresh] == ["1", "3"]
+    assert len(seen) == 2
+    text, gone = pruned(known, now)
+    assert gone == 1
+    assert known_from(text) == {"1": 2}, "what is cured goes, what is new is not added"
+
+
+def test_baseline_is_the_same_for_the_same_findings_in_any_order():
+    findings = [finding(mark=str(mark), path=f"{mark % 3}.cpp\udcff") for mark in range(9)]
+    text = baseline(findings)
+    assert text == baseline(findings[::-1])
+    assert json.loads(text.encode())["schema"] == 1
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{}", "null", '{"schema": 2, "findings": []}', '{"schema": 1, "findings": [1]}', "[" * 9999]
+)
+def test_what_is_no_baseline_is_refused_with_advice(text):
+    with pytest.raises(SettingsError, match="baseline"):
+        known_from(text)
+
+
+@pytest.mark.parametrize(
+    ("severity", "new", "fail_on", "expected"),
+    [
+        ("error", True, "error", True),
+        ("warning", True, "error", False),
+        ("warning", True, "warning", True),
+        ("error", False, "note", False),
+        ("note", True, "note", True),
+        ("error", True, "never", False),
+    ],
+)
+def test_fail_on(severity, new, fail_on, expected):
+    assert fails([finding(severity=severity)._replace(new=new)], fail_on) is expected
