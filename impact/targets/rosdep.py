@@ -5,50 +5,48 @@ import msgspec
 from .target import Resolution
 
 INSTALLERS: dict[str, tuple[str, ...]] = {
-    "ubuntu": ("apt", "pip", "gem", "source", "snap", "npm"),
-    "debian": ("apt", "pip", "gem", "source", "npm"),
-    "fedora": ("dnf", "yum", "pip", "gem", "source"),
-    "rhel": ("dnf", "yum", "pip", "gem", "source"),
-    "centos": ("dnf", "yum", "pip", "gem", "source"),
+    "ubuntu": ("apt", "pip", "gem", "npm", "source"),
+    "debian": ("apt", "pip", "gem", "npm", "source"),
+    "fedora": ("pip", "dnf", "yum", "source"),
+    "rhel": ("pip", "dnf", "yum", "source"),
 }
-"""Package managers of an operating system, the default one first. Source: rosdep's documentation of its installers."""
+"""Package managers of an operating system, in the order in which rosdep looks for them. Source: rosdep 0.27."""
 
-_ANY = ("apt", "pip", "gem", "source", "dnf", "yum", "homebrew", "macports", "pacman", "portage", "npm", "snap")
+_DEFAULT = {"ubuntu": "apt", "debian": "apt", "fedora": "dnf", "rhel": "dnf", "centos": "yum"}
+_ANY = ("apt", "dnf", "yum", "pip", "gem", "npm", "source", "homebrew", "macports", "pacman", "portage", "snap")
 
 
-def resolve_rule(rule: object, os_name: str, release: str, python_major: int = 3) -> Resolution | None:
+def resolve_rule(rule: object, os_name: str, release: str) -> Resolution | None:
     """What a key installs there, None when it is not to be had.
 
     rule: the value below the operating system's name in a rosdep file (text, list, or mapping by installer or release;
     None means "not available"). release: codename (`jammy`) or version (`9`). A release named in the mapping wins over
     `*`; a null there means "not on this release" and does not fall back to `*`. An empty list means nothing is needed.
     """
-    installers = INSTALLERS.get(os_name, _ANY)
-    manager = installers[0]
+    manager = _default_manager(os_name, release)
     if isinstance(rule, dict):
-        chosen = _installer(rule, installers)
+        chosen = _installer(rule, os_name)
         if chosen is None:
-            # rosdep tries `jammy_python3` where ROS_PYTHON_VERSION is 3.
-            for name in (*([f"{release}_python3"] if python_major == 3 else []), release, "*"):
-                if name in rule:
-                    rule = rule[name]
-                    break
-            else:
+            if release not in rule and "*" not in rule:
                 return None
-            if isinstance(rule, dict):
-                chosen = _installer(rule, installers)
-                if chosen is None:
-                    return None
+            rule = rule[release if release in rule else "*"]
+            chosen = _installer(rule, os_name) if isinstance(rule, dict) else None
         if chosen is not None:
             manager, rule = chosen, rule[chosen]  # type: ignore[index]
-            if isinstance(rule, dict):
-                rule = rule.get("packages", [])
+        if isinstance(rule, dict):
+            rule = rule.get("packages", [])
     names = _names(rule)
     return None if names is None else Resolution(manager, names)
 
 
-def _installer(rule: dict, installers: tuple[str, ...]) -> str | None:
-    return next((name for name in installers if name in rule), next((name for name in _ANY if name in rule), None))
+def _default_manager(os_name: str, release: str) -> str:
+    if os_name in ("rhel", "fedora") and release.isdigit() and int(release) < (8 if os_name == "rhel" else 22):
+        return "yum"
+    return _DEFAULT.get(os_name, "")
+
+
+def _installer(rule: dict, os_name: str) -> str | None:
+    return next((name for name in INSTALLERS.get(os_name, _ANY) if name in rule), None)
 
 
 def _names(value: object) -> tuple[str, ...] | None:

@@ -1,0 +1,163 @@
+"""`rosimpact data`: build the snapshot from git repositories, refresh it from the network, tell its date."""
+
+import datetime
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from .build.git import BuildError, Report
+from .build.write import DistroRow, Sync
+
+__all__ = ["BuildError", "Built", "build"]
+
+_SAVE_EVERY = 2000
+
+
+class Built(NamedTuple):
+    """What a build gave: sizes in bytes and counts, and per distro how many file versions could not be read."""
+
+    date: str
+    packed: int
+    unpacked: int
+    releases: int
+    manifests: int
+    rules: int
+    unreadable: dict[str, int]
+
+
+def build(
+    rosdistro: Path,
+    output: Path,
+    work: Path,
+    meta_ros: Path | None = None,
+    report: Report | None = None,
+) -> Built:
+    """Builds the snapshot from a clone of ros/rosdistro (bare or not, with its tags) and, where given, of ros/meta-ros.
+
+    output: the data folder to write into. work: a folder for what was read so far; a second run with it continues, also
+    with a newer clone. Raises BuildError when a repository is unusable.
+    """
+    from .build import git, keys, manifests, releases, write
+    from .distro import version_key
+
+    tell = report or (lambda what, done, total: None)
+    repository = git.open_repository(rosdistro)
+    if repository.head_is_unborn:
+        raise BuildError(f"{rosdistro} has no commits")
+    head = repository[repository.head.target]
+    distros = _index(repository, head, rosdistro)
+    line = git.first_parents(repository, head)
+    wanted = {row.name: releases.distribution_paths(row.name) for row in distros}
+    wanted.update({path: (path,) for path in keys.FILES})
+    versions = git.file_versions(repository, line, wanted, tell)
+    syncs = _syncs(repository, line, versions, wanted)
+
+    def blob(oid: str) -> bytes:
+        return repository[oid].data
+
+    work.mkdir(parents=True, exist_ok=True)
+    histories = {}
+    for row in distros:
+        path = work / f"{row.name}.history"
+        history = _load(path, releases.History)
+        total = len(versions[row.name])
+        while history is None or history.read != total or history.last != _last(versions[row.name]):
+            tell(f"reading {row.name}", history.read if history else 0, total)
+            history = releases.read_history(versions[row.name], blob, history, _SAVE_EVERY)
+            _save(path, history)
+            if history.read >= total:
+                break
+        histories[row.name] = history or releases.History()
+    rule_files = {path: versions[path] for path in keys.FILES}
+    count = sum(map(len, rule_files.values()))
+    rules = keys.read_rules(rule_files, blob, lambda done: tell("reading rosdep rules", done, count))
+    declared: list[manifests.Declared] = []
+    sources = {"ros/rosdistro": str(head.id)}
+    if meta_ros is not None:
+        caches = git.open_repository(meta_ros)
+        sources["ros/meta-ros"] = str(caches.revparse_single("HEAD").id)
+        found = manifests.cache_blobs(caches, lambda done: tell("reading commits of meta-ros", done, 0))
+        for number, (distro, blobs) in enumerate(sorted(found.items())):
+            tell(f"reading caches of {distro}", number, len(found))
+            declared.extend(manifests.read_caches(distro, (caches[oid].data for oid in blobs)))
+    known = manifests.changes_only(declared, version_key)
+    date = _day(head.commit_time)
+    gathered = write.Gathered(date, sources, distros, histories, syncs, rules, known)
+    tell("writing", 0, 0)
+    raw = write.database(gathered)
+    packed = write.write_snapshot(raw, date, sources, output)
+    return Built(
+        date,
+        packed,
+        len(raw),
+        sum(len(history.events) for history in histories.values()),
+        len(known),
+        len(rules),
+        {name: len(history.unreadable) for name, history in histories.items() if history.unreadable},
+    )
+
+
+def _syncs(repository, line, versions: dict, wanted: dict) -> list[Sync]:
+    """The syncs that tags such as `humble/2024-03-01` name; what was tagged beside the line is put into `versions`."""
+    from .build import git
+
+    cuts = dict(line.commits)
+    syncs = []
+    for name, oid, ts in git.tags(repository):
+        distro, _, day = name.partition("/")
+        if distro not in wanted or not day:
+            continue
+        cut = git.place_on_line(repository, oid, cuts)
+        if cut is not None and oid not in cuts:
+            versions[distro] = git.with_side_version(repository, versions[distro], oid, cut, wanted[distro])
+        # `noetic/final` names no day.
+        syncs.append(Sync(distro, day[:10] if _is_day(day) else _day(ts), ts if cut is None else cut))
+    return sorted(syncs)
+
+
+def _last(versions: list) -> str:
+    return versions[-1].blob if versions else ""
+
+
+def _load(path: Path, kind: type):
+    try:
+        return msgspec.msgpack.decode(path.read_bytes(), type=kind)
+    except (OSError, msgspec.MsgspecError):
+        return None
+
+
+def _save(path: Path, value: object) -> None:
+    part = path.with_suffix(".part")
+    part.write_bytes(msgspec.msgpack.encode(value))
+    part.replace(path)
+
+
+def _day(ts: int) -> str:
+    return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
+
+
+def _is_day(text: str) -> bool:
+    try:
+        datetime.date.fromisoformat(text[:10])
+    except ValueError:
+        return False
+    return True
+
+
+def _index(repository, head, path: Path) -> list[DistroRow]:
+    """The distros of rosdistro's index-v4.yaml."""
+    import yaml
+
+    if "index-v4.yaml" not in head.tree:
+        raise BuildError(f"{path} has no index-v4.yaml: a clone of ros/rosdistro is needed")
+    index = yaml.safe_load(head.tree["index-v4.yaml"].data)
+    return [
+        DistroRow(
+            name,
+            2 if entry.get("distribution_type") == "ros2" else 1,
+            int(entry.get("python_version") or 3),
+            str(entry.get("distribution_status") or ""),
+        )
+        for name, entry in sorted(index["distributions"].items())
+    ]
