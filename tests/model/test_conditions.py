@@ -253,9 +253,10 @@ def test_all_hold_is_false_as_soon_as_one_is():
     assert all_hold((open_, no, yes), HUMBLE) is False
 
 
-PIECES = st.sampled_from(
-    ["(", ")", "<", ">", "!", "&", "|", '"', "'", "$", ",", "[", "]", "{", "}", ":", ".", "=", "+", "-", "*", "/", "%", "?", "~", "&&", "||", "AND", "OR", "NOT", "defined", "__has_include(<a>)", "STREQUAL", "MATCHES", "${", "$ENV{ROS_DISTRO}", "VERSION_LESS", "1.2", "999999999999999999999999", "<<", "sys.version_info", "and", "not", "(3,", "rclcpp_VERSION", "==", "RCLCPP_VERSION_GTE", "PCL_VERSION_COMPARE(", ">=", "DEFINED", "$ROS_VERSION", "'a'.startswith(", "int("]
-)
+SPELT = """( ) < > ! & | " ' $ , [ ] { } : . = + - * / % ? ~ && || AND OR NOT defined __has_include(<a>) STREQUAL
+MATCHES ${ $ENV{ROS_DISTRO} VERSION_LESS 1.2 999999999999999999999999 << sys.version_info and not (3, == >= int(
+RCLCPP_VERSION_GTE PCL_VERSION_COMPARE( rclcpp_VERSION DEFINED $ROS_VERSION 'a'.startswith("""
+PIECES = st.sampled_from(SPELT.split())
 
 
 @given(
