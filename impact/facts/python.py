@@ -39,10 +39,14 @@ class Attribute(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """python2_only: (line, what) of syntax that Python 3 refuses (print statement, except X, e, backticks ...), found
-    when the file does not parse. needs: the highest minor version of Python 3 its syntax asks for, with line and reason
-    (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3 has and Python 2 has not), or None.
-    executable: has a `python` shebang; interpreter: that line. main: has an `if __name__ == '__main__'` block."""
+    """imports, attributes and references in the order of the source.
+
+    python2_only: (line, what) of syntax that Python 3 refuses (print statement, except X, e, backticks ...), found when
+    the file does not parse, and `print >>f`, which parses and then fails. needs: the highest minor version of Python 3
+    its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
+    has and Python 2 has not), or None. interpreter: the first line when it is a `#!` that names python. main: has an
+    `if __name__ == '__main__'` block.
+    """
 
     imports: tuple[Import, ...]
     attributes: tuple[Attribute, ...]
@@ -249,7 +253,7 @@ def extract(data: bytes) -> PythonFile:
                 imports=tuple(reader.imports),
                 attributes=reader.attributes(),
                 references=reader.all_references(),
-                python2_only=old,
+                python2_only=old or tuple(reader.python2_only),
                 needs=None if old else reader.needs,
                 interpreter=interpreter,
                 main=reader.main,
@@ -325,6 +329,7 @@ class _Reader:
         self.calls: list[tuple[_Scope, str, ast.Call, bool]] = []
         self.defining: tuple[_Scope, str] | None = None
         self.needs: tuple[int, int, str] | None = None
+        self.python2_only: list[Problem] = []
         self.main = False
         self.scope = _Scope(None, False)
         self.function = False
@@ -753,6 +758,8 @@ class _Reader:
             self.path(node)
         elif node.op.__class__ is ast.MatMult:
             self.need(5, node, "`@` operator")
+        elif node.op.__class__ is ast.RShift and getattr(node.left, "id", "") == "print":
+            self.python2_only.append(Problem(node.lineno, "print statement"))
         self.visit(node.left)
         self.visit(node.right)
 
