@@ -47,8 +47,9 @@ class Found(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class Link(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One item given to a target. how: `link` (target_link_libraries), `ament` (ament_target_dependencies),
     `include` (target_include_directories), `order` (add_dependencies), `interfaces` (rosidl_target_interfaces).
-    item: as written with variables expanded; an unset `X_LIBRARIES`, `X_INCLUDE_DIRS`, `X_EXPORTED_TARGETS`, `X_TARGETS`
-    stays as `${X_LIBRARIES}` so that what it stands for can still be told. visibility: PUBLIC, PRIVATE, INTERFACE or empty.
+    item: as written with variables expanded; an unset X_LIBRARIES, X_INCLUDE_DIRS, X_EXPORTED_TARGETS or X_TARGETS
+    stays as `${X_LIBRARIES}` so that what it stands for can still be told, and so does any other variable that nothing
+    sets. visibility: PUBLIC, PRIVATE, INTERFACE or empty.
     """
 
     item: str
@@ -136,8 +137,9 @@ class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What the CMake of a package says. `minimum`: cmake_minimum_required's version and place. standard: the highest C++
-    standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), 0 when none, with its place.
+    """What the CMake of a package says. minimum: cmake_minimum_required's version and place. standard: the highest C++
+    standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with its
+    place. standard_default_only: it is only set where the user or a toolchain has not chosen one.
     message_files: (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told.
     files: the CMake files read, relative to the root."""
 
@@ -190,8 +192,11 @@ def interpret(
 
 
 def extras_of(package_path: str, glob: Callable[[str, bool], list[str]]) -> tuple[str, ...]:
-    """The files from which dependants of a package get its functions and macros: all CMake files in its `cmake` folder
-    and beside its CMakeLists.txt, templates included. The caller reads templates (`.cmake.in`, `.cmake.em`) as CMake."""
+    """The files from which dependants of a package get its functions and macros.
+
+    These are all CMake files in its `cmake` folder and beside its CMakeLists.txt, templates included. The caller reads
+    templates (`.cmake.in`, `.cmake.em`) as CMake.
+    """
     base = f"{package_path}/" if package_path else ""
     found: dict[str, None] = {}
     for ending in (".cmake", ".cmake.in", ".cmake.em"):

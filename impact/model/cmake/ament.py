@@ -50,8 +50,8 @@ def ament_export(run: Interpreter, call: Call, args: list[Word]) -> None:
     for item in split_words(args):
         if item in ("HAS_LIBRARY_TARGET", "NAMESPACE"):
             continue
-        text = run.tree_path(item) if how == "ament_export_include_directories" else str(item)
-        run.add_export(text, how, item.at, run.under(item))
+        # Folders are relative to the install prefix here, unlike in catkin_package().
+        run.add_export(item, how, item.at, run.under(item))
 
 
 @handles("ament_package")
@@ -134,8 +134,7 @@ def rclcpp_components_register_node(run: Interpreter, call: Call, args: list[Wor
     for item in given.get("PLUGIN", [])[:1]:
         run.add_export(item, "component", item.at, run.under(item), str(args[0]))
     for item in given.get("EXECUTABLE", [])[:1]:
-        draft = run.new_target(item, "executable", item.at)
-        add_links(run, draft, [word("rclcpp", call.at), word("class_loader", call.at)], "generated")
+        run.new_target(item, "executable", item.at)
         run.add_install(
             Install("targets", (str(item),), f"lib/{package_name(run)}", run.place(item.at), (), run.under(item))
         )
@@ -327,7 +326,7 @@ def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     include = run.tree_path("include/")
     if run.exists(include.rstrip("/")):
         run.add_install(Install("directory", (include,), "include", at, (), run.conditions))
-        run.add_export(include.rstrip("/"), "ament_export_include_directories", call.at, run.conditions)
+        run.add_export("include", "ament_export_include_directories", call.at, run.conditions)
     share = split_words([*given.get("INSTALL_TO_SHARE", []), *given.get("USE_SCOPED_HEADER_INSTALL_DIR", [])])
     for item in share:
         run.add_install(

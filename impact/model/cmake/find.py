@@ -44,6 +44,11 @@ def find_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     _find(run, call, args[0], args[1:])
 
 
+def is_unknown(text: str) -> bool:
+    """True for a text that holds a variable nobody could read."""
+    return "${" in text or "$ENV{" in text
+
+
 def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
     flags: set[str] = set()
     components: list[Word] = []
@@ -66,10 +71,14 @@ def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
             not section and not version and _VERSION.match(item)
         ):
             version = str(item)
-        elif not section and item.startswith("${") and item.endswith("VERSION}"):
+        elif not section and is_unknown(item):
             continue
         elif not section and flags:
             components.append(item)
+    if is_unknown(name):
+        run.give_up(name.at, f"find_package({name}): its name is not known")
+        return
+    components = [item for item in components if not is_unknown(item)]
     required = "REQUIRED" in flags
     quiet = "QUIET" in flags
     conditions = run.under(name)
@@ -184,6 +193,9 @@ def pkg_check_modules(run: Interpreter, call: Call, args: list[Word]) -> None:
     required = "REQUIRED" in flags
     entries: list[tuple[Word, str, str, bool]] = []
     for item in modules:
+        if is_unknown(item):
+            run.give_up(item.at, f"{call.name}({item}): its name is not known")
+            continue
         spec = _PKG_SPEC.match(item)
         if spec is None:
             entries.append((item, str(item), "", False))
@@ -242,6 +254,9 @@ def locate(run: Interpreter, call: Call, args: list[Word]) -> None:
             break
     run.set_unknown(variable, call.at)
     if not names or call.name == "find_file":
+        return
+    names = [name for name in names if not is_unknown(name)]
+    if not names:
         return
     first = names[0]
     run.add_found(

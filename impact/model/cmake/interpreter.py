@@ -99,6 +99,7 @@ class Interpreter:
         self.parsed: dict[str, list[Call | Block] | None] = {}
         self.including: list[str] = []
         self.extended: set[str] = set()
+        self.exported: dict[str, str] = {}  # folder of CMake files -> the package it belongs to
         self.modules: set[str] = set()
         self.guarded: set[str] = set()
         self.configured: dict[str, None] = {}
@@ -368,6 +369,10 @@ class Interpreter:
                 touched[key] = where
         for (key, name), where in touched.items():
             left = [changes[(key, name)][1] if (key, name) in changes else where.get(name) for changes in outcomes]
+            if None in left and name.endswith(READ_SUFFIXES):
+                # Where no branch has set it, a found package may have.
+                unknown = Value((word(f"${{{name}}}", self.here(), (), False),), False)
+                left = [value if value is not None else unknown for value in left]
             value = join(left)
             if value is not None:
                 self.assign(where, name, value)
@@ -585,6 +590,9 @@ class Interpreter:
         }
         conditions, overlay = self.conditions, self.overlay
         self.overlay = {}
+        site, via = self.call_site, self.via
+        if site is None and not self.inside(path):
+            self.call_site, self.via = at, f"include({posixpath.basename(path)})"
         self.including.append(path)
         kept = {name: self.scope.get(name) for name in listing}
         try:
@@ -598,6 +606,7 @@ class Interpreter:
             signal = self.run_body(body)
         finally:
             self.including.pop()
+            self.call_site, self.via = site, via
             self.overlay = overlay
             self.conditions = conditions
             if subdirectory is not None:
@@ -614,7 +623,13 @@ class Interpreter:
         if package in self.extended or package == self.package:
             return
         self.extended.add(package)
-        for path in self.extras(package):
+        paths = self.extras(package)
+        if paths:
+            # Installed, a package's CMake files lie together in the folder that <package>_DIR names.
+            folder = next((posixpath.dirname(path) for path in paths if "/cmake/" in path), posixpath.dirname(paths[0]))
+            self.exported[self.absolute(folder)] = package
+            self.assign(self.scope, f"{package}_DIR", Value((word(self.absolute(folder), at),)))
+        for path in paths:
             self.silent += 1
             try:
                 name = posixpath.basename(path)
@@ -627,10 +642,10 @@ class Interpreter:
             finally:
                 self.silent -= 1
 
-    def exported_file(self, package: str, name: str) -> str | None:
-        """The file that `${package_DIR}/name` stands for, when the package is in the workspace."""
+    def exported_file(self, name: str) -> str | None:
+        """The file in the tree from which `<package>_DIR/name` is installed, for a package of the workspace."""
         base = posixpath.basename(name)
-        for path in self.extras(package):
+        for path in self.extras(self.exported.get(posixpath.dirname(name), "")):
             if posixpath.basename(path) in (base, f"{base}.in", f"{base}.em"):
                 return path
         return None
@@ -731,6 +746,8 @@ class Interpreter:
                 if value is None:
                     self.use_variable(name, template.at)
                     return Value((word(f"${{{name}}}", template.at, (), False),), False)
+        if not value.sure:
+            value = _placed(value, f"${{{name}}}", template.at)
         return _flat(value)
 
     def expand_one(self, template: Template, head: Call | None) -> tuple[Word, ...]:
@@ -787,7 +804,7 @@ class Interpreter:
 
     def matched(self, groups: tuple[str, ...]) -> None:
         """Sets CMAKE_MATCH_<n>."""
-        at = self.call_site or At(self.including[-1] if self.including else "", 1)
+        at = self.here()
         for index, text in enumerate(groups[:10]):
             self.set_text(f"CMAKE_MATCH_{index}", text, at)
 
@@ -848,11 +865,14 @@ class Interpreter:
         """The conditions that hold for a word here."""
         return merge(self.conditions, item.conditions)
 
+    def here(self) -> At:
+        """A place for what has none of its own."""
+        return self.call_site or At(self.including[-1] if self.including else "", 1)
+
     def give_up(self, at: At | None, reason: str) -> None:
         """Notes what could not be told."""
         if not self.silent:
-            here = at or At(self.including[-1] if self.including else "", 1)
-            self.unresolved[(self.place(here), reason)] = None
+            self.unresolved[(self.place(at or self.here()), reason)] = None
 
     def add_found(self, found: Found) -> None:
         """Collects a package looked for."""
@@ -889,6 +909,18 @@ def _listing(args: list[Word]) -> Value:
         else:
             words.append(item)
     return Value(tuple(words), all(item.sure for item in words))
+
+
+def _placed(value: Value, unknown: str, at: At) -> Value:
+    """The value with what is not known of it standing where it is read."""
+    if unknown not in value.words:
+        return value
+    here = word(unknown, at, (), False)
+    made = Value(tuple(here if item == unknown else item for item in value.words), False, value.defined)
+    if value.chosen is not value.words:
+        made.chosen = tuple(here if item == unknown else item for item in value.chosen)
+        made.text = value.text
+    return made
 
 
 def _flat(value: Value) -> Value:

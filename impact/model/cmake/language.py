@@ -639,15 +639,15 @@ def include(run: Interpreter, call: Call, args: list[Word]) -> None:
             run.give_up(name.at, f"include({run.shown(name)}) is not in the tree")
         return
     path = run.relative(run.resolve(name))
-    if path is None and name.startswith("${") and "_DIR}/" in name:
-        # Another package's folder: its macros are known through the extras it exports.
-        package, _, rest = name[2:].partition("_DIR}/")
-        path = run.exported_file(package, rest)
-    if path is not None:
-        if run.run_file(path, name.at) is None and not optional:
-            run.give_up(name.at, f"include({run.shown(name)}) is not in the tree")
-    elif not optional:
-        run.give_up(name.at, f"include({run.shown(name)}) is outside the tree")
+    if path is None:
+        if not optional:
+            run.give_up(name.at, f"include({run.shown(name)}) is outside the tree")
+        return
+    if run.run_file(path, name.at) is not None:
+        return
+    installed = run.exported_file(name)
+    if (installed is None or run.run_file(installed, name.at) is None) and not optional:
+        run.give_up(name.at, f"include({run.shown(name)}) is not in the tree")
 
 
 def add_module(run: Interpreter, name: str) -> None:
