@@ -312,8 +312,8 @@ def test_odd_files_still_give_their_imports(data, problems):
 
 
 PIECES = st.sampled_from([
-    "import a\n", "from b import c\n", "try:\n", " pass\n", "except A, e:\n", "print 'x'\n", "if PY2:\n", " ", "\n", "\t",
-    "(", ")", "[", "]", "'", '"""', "#", "\\", "f'{a}'", "é", "\0", "Node(package='p', executable='e')\n", ", ", "x = ",
+    "import a\n", "from b import c\n", "try:\n", " pass\n", "except A, e:\n", "print 'x'\n", "if PY2:\n", " ", "\n",
+    "\t", "(", ")", "[", "]", "'", '"""', "#", "\\", "f'{a}'", "é", "\0", "Node(package='p', executable='e')\n", ", ", "x = ",
     "share + ", "'/a'", "os.path.join(", "FindPackageShare('p')", "lambda a: ", "def f(a, (b, c)):\n", "a.b.c", "0777",
     "`a`", "<>", "@", "with (a as b): pass\n", "'package://p/a'", ":=", "match x:\n", "class C: ", "\r\n", "get_path(",
     "global a\n", ".find('p')",
