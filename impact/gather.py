@@ -11,9 +11,11 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
+from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 # Starting workers and importing the parsers in each costs about as much as parsing this many bytes here.
 ALONE_BYTES = 400_000
 _CHUNK_BYTES = 256_000
-_PARSE_CACHE = "stat"
+_WAVE_PER_JOB = 8
 _LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 
 # (path, content id, kind, bytes) of a file to extract; (content id, kind, packed facts, failure) of one extracted
@@ -116,7 +118,7 @@ def gather(
     key = tree.memory_key()
     entries = tree.entries()
     if key is not None:
-        memory = store.memo(_PARSE_CACHE, key)
+        memory = store.memo("stat", key)
         if memory is not None:
             tree.recall(memory)
     gathered.problems.extend(tree.problems)
@@ -168,7 +170,7 @@ def _version(kind: str) -> str:
 def _remember(tree: Tree, store: Store, key: bytes | None) -> None:
     memory = tree.memory() if key is not None else None
     if key is not None and memory is not None:
-        store.remember(_PARSE_CACHE, [(key, memory)])
+        store.remember("stat", [(key, memory)])
 
 
 def _cores() -> int:
@@ -305,17 +307,16 @@ def _extracted(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[
             for item in chunk:
                 yield [item], _extract([item])
         return
-    everything = _chain(first, chunks)
-    if sys.platform == "linux" and not _scheduler_chosen():
+    everything = chain(first, chunks)
+    if _may_fork() and not _scheduler_chosen():
         yield from _in_forks(everything, jobs)
     else:
         yield from _by_joblib(everything, jobs)
 
 
-def _chain(first: list[list[_Item]], rest: Iterator[list[_Item]]) -> Iterator[list[_Item]]:
-    while first:
-        yield first.pop(0)
-    yield from rest
+def _may_fork() -> bool:
+    # macOS has fork, and libraries there that do not survive it
+    return sys.platform == "linux"
 
 
 def _scheduler_chosen() -> bool:
@@ -324,18 +325,20 @@ def _scheduler_chosen() -> bool:
         return False
     from joblib.parallel import get_active_backend
 
-    return type(get_active_backend()[0]).__name__ not in ("LokyBackend", "ThreadingBackend", "SequentialBackend")
+    return type(get_active_backend()[0]).__name__ not in ("LokyBackend", "SequentialBackend")
 
 
 def _by_joblib(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_Item], list[_Result]]]:
-    from joblib import Parallel, delayed
+    """Chunks in whatever joblib runs. In waves: joblib would take from the iterator in a thread of its own, and reading
+    and storing belong to this one."""
+    from joblib import Parallel, delayed, effective_n_jobs
 
-    parallel: Any = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)  # pyright: ignore
-    yield from parallel(delayed(_with_chunk)(chunk) for chunk in chunks)
-
-
-def _with_chunk(chunk: list[_Item]) -> tuple[list[_Item], list[_Result]]:
-    return chunk, _extract(chunk)
+    if _scheduler_chosen():
+        jobs = effective_n_jobs(-1)
+    with Parallel(n_jobs=jobs) as parallel:
+        while wave := list(islice(chunks, _WAVE_PER_JOB * jobs)):
+            results: Any = parallel(delayed(_extract)(chunk) for chunk in wave)
+            yield from zip(wave, results, strict=True)
 
 
 def _in_forks(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_Item], list[_Result]]]:
@@ -397,11 +400,21 @@ def _pool(jobs: int) -> ProcessPoolExecutor:
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("fork"), initializer=_start_worker)
+    context = multiprocessing.get_context("fork")
+    return ProcessPoolExecutor(jobs, mp_context=context, initializer=_start_worker, initargs=(os.getpid(),))
 
 
-def _start_worker() -> None:
+def _start_worker(parent: int) -> None:
     import signal
+    import threading
 
     # Ctrl-C goes to every process of the terminal; the parent alone decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_die_with, args=(parent,), daemon=True).start()
+
+
+def _die_with(parent: int) -> None:
+    # A parent that is killed cannot tell its workers, and they would wait for work for ever.
+    while os.getppid() == parent:
+        time.sleep(0.5)
+    os._exit(1)

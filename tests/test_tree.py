@@ -152,7 +152,7 @@ UNTRACKED = {
         {"build/p/y": "", "install/y": "", "log/y": "", "devel/y": "", "src/p/build/y": ""},
         ["src/p/build/y", "src/p/x"],
     ),
-    "tracked products": ({"log/package.xml": "", "build/x": ""}, {"log/y": ""}, ["build/x", "log/package.xml", "log/y"]),
+    "tracked products": ({"log/p.xml": "", "build/x": ""}, {"log/y": ""}, ["build/x", "log/p.xml", "log/y"]),
     "new files count": ({"a": ""}, {"b": "", "new_package/package.xml": ""}, ["a", "b", "new_package/package.xml"]),
     "hidden folders": ({".github/x": "", ".docker/x": ""}, {".cache/y": ""}, [".docker/x", ".github/x"]),
     "virtual environments": ({"a": "", "env/x": ""}, {"venv/pyvenv.cfg": "", "venv/x.py": ""}, ["a", "env/x"]),

@@ -1,0 +1,371 @@
+"""From a tree to facts: each content parsed once, whatever fails named, whatever was parsed kept."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pygit2
+import pytest
+from rosimpact.impact import gather as gather_module
+from rosimpact.impact import tree as tree_module
+from rosimpact.impact.facts import kinds
+from rosimpact.impact.facts.store import Store
+from rosimpact.impact.gather import gather
+from rosimpact.impact.tree import GitTree, PathProblem, WorkingTree
+
+MANIFEST = "<package format='3'><name>p</name><version>1.0.0</version></package>"
+FILES = {
+    "p/package.xml": MANIFEST,
+    "p/CMakeLists.txt": "cmake_minimum_required(VERSION 3.8)\nproject(p)\n",
+    "p/src/node.cpp": "#include <rclcpp/rclcpp.hpp>\nint main() {}\n",
+    "p/src/same.cpp": "#include <rclcpp/rclcpp.hpp>\nint main() {}\n",
+    "p/msg/A.msg": "int32 a\n",
+    "p/mesh.stl": "solid\n",
+}
+
+
+def write(root, files):
+    for path, text in files.items():
+        (root / path).parent.mkdir(parents=True, exist_ok=True)
+        (root / path).write_text(text)
+    return root
+
+
+def sources(count):
+    return {f"src/f{n}.cpp": f"#include <a{n}.h>\n" + f"int f{n}() {{ return {n}; }}\n" * 40 for n in range(count)}
+
+
+@pytest.fixture(autouse=True)
+def later(monkeypatch):
+    """Lets the tree believe that time has passed since the files were written, so that it remembers their ids."""
+    monkeypatch.setattr(tree_module.time, "time_ns", lambda: int((time.time() + 100) * 1e9))
+
+
+@pytest.fixture
+def small_chunks(monkeypatch):
+    """Work in processes, in many chunks, for little input."""
+    monkeypatch.setattr(gather_module, "ALONE_BYTES", 0)
+    monkeypatch.setattr(gather_module, "_CHUNK_BYTES", 3000)
+
+
+def test_facts_by_path(tmp_path):
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(write(tmp_path / "ws", FILES)), store)
+        assert list(gathered.kinds) == sorted(FILES.keys() - {"p/mesh.stl"})
+        assert gathered.facts("p/package.xml").facts.name == "p"
+        assert gathered.facts("p/src/node.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
+        assert gathered.facts("p/msg/A.msg").facts.sections[0].fields[0].name == "a"
+        assert gathered.paths("cpp", "msg") == ["p/msg/A.msg", "p/src/node.cpp", "p/src/same.cpp"]
+        assert gathered.problems == []
+        with pytest.raises(KeyError):
+            gathered.facts("p/mesh.stl")
+
+
+def test_equal_contents_are_parsed_once_and_shared(tmp_path):
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(write(tmp_path / "ws", FILES)), store)
+        assert gathered.extracted == 4
+        assert gathered.facts("p/src/node.cpp") is gathered.facts("p/src/same.cpp")
+
+
+def test_a_second_run_reads_and_parses_nothing(tmp_path, monkeypatch):
+    write(tmp_path / "ws", FILES)
+    with Store(tmp_path / "cache") as store:
+        first = gather(WorkingTree(tmp_path / "ws"), store)
+    monkeypatch.setattr(kinds, "extract", None)
+    tree = WorkingTree(tmp_path / "ws")
+    monkeypatch.setattr(tree, "read_with_id", None)
+    monkeypatch.setattr(tree, "read", None)
+    with Store(tmp_path / "cache") as store:
+        second = gather(tree, store)
+        second.preload(["p/package.xml", "p/mesh.stl", "nowhere"])
+        assert second.extracted == 0 and second.ids == first.ids and second.kinds == first.kinds
+        assert second.facts("p/package.xml") == first.facts("p/package.xml")
+
+
+def test_only_what_changed_is_parsed(tmp_path):
+    write(tmp_path / "ws", FILES)
+    with Store(tmp_path / "cache") as store:
+        gather(WorkingTree(tmp_path / "ws"), store)
+    write(tmp_path / "ws", {"p/src/node.cpp": "#include <new.h>\n", "p/src/more.cpp": "#include <more.h>\n"})
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        assert gathered.extracted == 2
+        assert gathered.facts("p/src/node.cpp").facts.includes[0].path == "new.h"
+        assert gathered.facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
+
+
+def test_a_commit_and_a_directory_share_their_facts(tmp_path):
+    repo = pygit2.init_repository(str(write(tmp_path / "ws", FILES)))
+    repo.index.add_all()
+    who = pygit2.Signature("t", "t@example.org", 1_600_000_000, 0)
+    repo.create_commit("HEAD", who, who, "all", repo.index.write_tree(), [])
+    with Store(tmp_path / "cache") as store:
+        assert gather(WorkingTree(tmp_path / "ws"), store).extracted == 4
+        gathered = gather(GitTree(tmp_path / "ws"), store)
+        assert gathered.extracted == 0
+        assert gathered.facts("p/package.xml").facts.name == "p"
+
+
+def test_a_new_version_of_an_extractor_parses_its_files_again(tmp_path, monkeypatch):
+    write(tmp_path / "ws", FILES)
+    with Store(tmp_path / "cache") as store:
+        gather(WorkingTree(tmp_path / "ws"), store)
+    version_of = kinds.version_of
+    monkeypatch.setattr(kinds, "version_of", lambda kind: version_of(kind) + (".next" if kind == "cpp" else ""))
+    gather_module._version.cache_clear()
+    try:
+        with Store(tmp_path / "cache") as store:
+            assert gather(WorkingTree(tmp_path / "ws"), store).extracted == 1
+    finally:
+        gather_module._version.cache_clear()
+
+
+@pytest.mark.parametrize("forks", [True, False])
+def test_processes_find_what_one_process_finds(tmp_path, monkeypatch, small_chunks, forks):
+    write(tmp_path / "ws", sources(30) | FILES)
+    monkeypatch.setattr(gather_module, "_may_fork", lambda: forks)
+    with Store(tmp_path / "one") as one, Store(tmp_path / "two") as two:
+        alone = gather(WorkingTree(tmp_path / "ws"), one, jobs=1)
+        together = gather(WorkingTree(tmp_path / "ws"), two, jobs=2)
+        assert together.kinds == alone.kinds and together.ids == alone.ids
+        assert together.extracted == alone.extracted == 34
+        for path in alone.kinds:
+            assert together.facts(path) == alone.facts(path)
+
+
+def test_a_scheduler_chosen_through_joblib_is_used(tmp_path, small_chunks, monkeypatch):
+    import joblib
+
+    write(tmp_path / "ws", sources(30))
+    monkeypatch.setattr(gather_module, "_in_forks", None)
+    with Store(tmp_path / "cache") as store, joblib.parallel_config(backend="threading", n_jobs=2):
+        assert gather(WorkingTree(tmp_path / "ws"), store, jobs=2).extracted == 30
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_progress_rises_to_the_end(tmp_path, small_chunks, jobs):
+    seen = []
+    files = sources(20)
+    files["src/broken.cpp"] = "version https://git-lfs.github.com/spec/v1\noid sha256:0\n"
+    write(tmp_path / "ws", files)
+    with Store(tmp_path / "cache") as store:
+        gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs, progress=lambda done, total: seen.append((done, total)))
+    total = sum(len(text) for text in files.values())
+    assert seen == sorted(seen) and len(seen) > 3
+    assert seen[-1] == (total, total)
+
+
+def test_a_large_file_is_not_read(tmp_path, monkeypatch):
+    write(tmp_path / "ws", FILES)
+    with open(tmp_path / "ws/p/src/generated.hpp", "wb") as file:
+        file.truncate(50_000_000)
+    tree = WorkingTree(tmp_path / "ws")
+    read = tree.read_with_id
+    monkeypatch.setattr(tree, "read_with_id", lambda path: pytest.fail(path) if "generated" in path else read(path))
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(tree, store)
+    assert "p/src/generated.hpp" not in gathered.kinds
+    assert [problem.path for problem in gathered.problems] == ["p/src/generated.hpp"]
+    assert "larger than 8 MB" in gathered.problems[0].message
+    assert len(gathered.kinds) == 5
+
+
+def test_a_git_lfs_pointer_is_no_source(tmp_path):
+    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n"
+    write(tmp_path / "ws", {**FILES, "p/src/data.cpp": pointer})
+    for _ in ("cold", "warm"):
+        with Store(tmp_path / "cache") as store:
+            gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        assert "p/src/data.cpp" not in gathered.kinds and "p/src/data.cpp" not in gathered.ids
+        assert [problem.path for problem in gathered.problems] == ["p/src/data.cpp"]
+        assert "git lfs pull" in gathered.problems[0].message
+
+
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [
+        (PermissionError(13, "Permission denied"), "cannot be read: permission denied"),
+        (FileNotFoundError(2, "No such file or directory"), "cannot be read: no such file or directory"),
+        (OSError(5, "Input/output error"), "cannot be read: input/output error"),
+    ],
+)
+def test_a_file_that_cannot_be_read(tmp_path, monkeypatch, error, message):
+    tree = WorkingTree(write(tmp_path / "ws", FILES))
+    read = tree.read_with_id
+
+    def refuse(path):
+        if path == "p/src/node.cpp":
+            raise error
+        return read(path)
+
+    monkeypatch.setattr(tree, "read_with_id", refuse)
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(tree, store)
+        assert gathered.problems == [PathProblem("p/src/node.cpp", message)]
+        assert gathered.facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
+        assert "p/src/node.cpp" not in gathered.kinds
+
+
+def failing(how):
+    extract = kinds.extract
+
+    def fail(kind, data):
+        if b"POISON" in data:
+            how()
+        return extract(kind, data)
+
+    return fail
+
+
+def raises():
+    raise ValueError("odd input")
+
+
+def dies():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+@pytest.mark.parametrize(
+    ("how", "jobs", "message"),
+    [(raises, 1, "odd input"), (raises, 2, "odd input"), (dies, 2, "crashed on this file")],
+)
+def test_a_file_that_its_extractor_fails_on(tmp_path, monkeypatch, small_chunks, how, jobs, message):
+    files = sources(25)
+    files["src/f5.cpp"] = files["src/copy.cpp"] = "// POISON 1"
+    files["src/f9.cpp"] = "// POISON 2"
+    write(tmp_path / "ws", files)
+    monkeypatch.setattr(kinds, "extract", failing(how))
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
+        poisoned = ["src/copy.cpp", "src/f5.cpp", "src/f9.cpp"]
+        assert [problem.path for problem in gathered.problems] == poisoned
+        assert all(message in problem.message for problem in gathered.problems)
+        assert sorted(gathered.kinds) == sorted(files.keys() - set(poisoned)) == sorted(gathered.ids)
+        assert gathered.extracted == 23
+        assert gathered.facts("src/f6.cpp").facts.includes[0].path == "a6.h"
+
+
+def test_facts_that_the_store_lost_are_made_again(tmp_path):
+    write(tmp_path / "ws", FILES)
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        store.close()
+        for file in (tmp_path / "cache").iterdir():
+            file.unlink()
+        assert gathered.facts("p/package.xml").facts.name == "p"
+
+
+def test_stored_facts_of_another_shape_are_made_again(tmp_path):
+    write(tmp_path / "ws", FILES)
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        row = gather_module._key(gathered.ids["p/package.xml"], "manifest")
+        for data in (b"-\x93\x01\x02\x03", b"z rubbish", b""):
+            store.put([(row, data)])
+            gathered.forget(["p/package.xml"])
+            assert gathered.facts("p/package.xml").facts.name == "p"
+
+
+def test_without_a_cache_folder(tmp_path, small_chunks):
+    write(tmp_path / "ws", sources(20))
+    write(tmp_path, {"file": ""})
+    with Store(tmp_path / "file/cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=2)
+        assert gathered.facts("src/f3.cpp").facts.includes[0].path == "a3.h"
+        assert len(store.notes) == 1
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_interrupted_and_resumed(tmp_path, small_chunks, jobs):
+    write(tmp_path / "ws", sources(60))
+
+    def interrupt(done, total):
+        if done > total / 2:
+            raise KeyboardInterrupt
+
+    with Store(tmp_path / "cache") as store, pytest.raises(KeyboardInterrupt):
+        gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs, progress=interrupt)
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
+        assert 10 <= gathered.extracted <= 40, "what was parsed stays parsed"
+        assert len(gathered.kinds) == 60
+
+
+SLOW_RUN = """
+import sys, time
+from rosimpact.impact import gather as module
+from rosimpact.impact.facts import kinds
+from rosimpact.impact.facts.store import Store
+from rosimpact.impact.tree import WorkingTree
+module.ALONE_BYTES, module._CHUNK_BYTES = 0, 3000
+extract = kinds.extract
+def slowly(kind, data):
+    time.sleep(0.02)
+    return extract(kind, data)
+kinds.extract = slowly
+with Store(sys.argv[2]) as store:
+    module.gather(WorkingTree(sys.argv[1]), store, jobs=2, progress=lambda done, total: print(done, flush=True))
+print("finished", flush=True)
+"""
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
+def test_killed_and_resumed(tmp_path, how):
+    write(tmp_path / "ws", sources(100))
+    process = subprocess.Popen(
+        [sys.executable, "-c", SLOW_RUN, str(tmp_path / "ws"), str(tmp_path / "cache")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    for _ in range(5):
+        assert process.stdout.readline().strip().isdigit()
+    if how == signal.SIGINT:
+        os.killpg(process.pid, how)  # as a terminal does: the workers get it too
+    else:
+        process.send_signal(how)
+    output, errors = process.communicate(timeout=30)
+    assert "finished" not in output
+    assert errors.count("Traceback") <= (1 if how == signal.SIGINT else 0), errors
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        assert 0 < gathered.extracted < 100, "what was parsed stays parsed"
+        assert gathered.facts("src/f99.cpp").facts.includes[0].path == "a99.h"
+        assert store.notes == []
+
+
+def test_runs_at_once(tmp_path):
+    write(tmp_path / "ws", sources(40))
+    command = [sys.executable, "-c", SLOW_RUN, str(tmp_path / "ws"), str(tmp_path / "cache")]
+    processes = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
+    for process in processes:
+        output, _ = process.communicate(timeout=60)
+        assert output.endswith("finished\n")
+    with Store(tmp_path / "cache") as store:
+        assert gather(WorkingTree(tmp_path / "ws"), store).extracted == 0
+
+
+def test_a_file_edited_while_it_is_read(tmp_path, monkeypatch):
+    """The id under which facts are stored is that of the bytes they were made from."""
+    write(tmp_path / "ws", FILES)
+    with Store(tmp_path / "cache") as store:
+        gather(WorkingTree(tmp_path / "ws"), store)
+    (tmp_path / "ws/p/src/same.cpp").write_text("#include <first.h>\n")
+    tree = WorkingTree(tmp_path / "ws")
+    tree.entries()
+    (tmp_path / "ws/p/src/same.cpp").write_text("#include <second.h>\n")
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(tree, store)
+        assert gathered.facts("p/src/same.cpp").facts.includes[0].path == "second.h"
+        assert gathered.ids["p/src/same.cpp"] == tree_module.blob_id(b"#include <second.h>\n")
+
+
+def test_an_empty_tree(tmp_path):
+    with Store(tmp_path / "cache") as store:
+        (tmp_path / "ws").mkdir()
+        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        assert (gathered.kinds, gathered.ids, gathered.problems, gathered.extracted) == ({}, {}, [], 0)
