@@ -1,0 +1,380 @@
+"""Who provides a header, CMake package, pkg-config file, Python module or program: looked up in the shipped table.
+
+The table (`data/providers.sqlite.zst`, made by build_providers.py) is unpacked once into the user's cache and read as
+SQLite, together with the reviewed facts of `data/providers.yaml` that no index gives. A lookup reads one row and
+remembers it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import sqlite3
+import tempfile
+import threading
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from .snapshot import DATA, SnapshotError, cache_folder
+from .target import Provider
+from .version import parts
+
+__all__ = ["HeaderSpan", "Providers", "default_providers"]
+
+SCHEMA = """
+CREATE TABLE platform(bit INTEGER PRIMARY KEY, name TEXT);
+CREATE TABLE provider(id INTEGER PRIMARY KEY, entries TEXT);
+CREATE TABLE header(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE cmake(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE pkgconfig(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE module(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE program(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE pattern(id INTEGER PRIMARY KEY, spans TEXT);
+CREATE TABLE ros_header(path TEXT, package TEXT, pattern INTEGER, PRIMARY KEY(path, package)) WITHOUT ROWID;
+CREATE TABLE ros_package(name TEXT PRIMARY KEY, pattern INTEGER) WITHOUT ROWID;
+CREATE TABLE ros_module(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
+CREATE TABLE ros_cmake(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
+"""
+"""Tables of the shipped database.
+
+provider.entries: one line for each provider, best first: a rosdep key and, where it differs, the Debian package that it
+installs; an empty line stands for the C library and compiler. platforms: bits of the platforms that have the name.
+pattern.spans: one line for each unbroken run of releases: distro, first version, last version (`-` when the newest
+release known still counts). ros_header: where a package's header is. ros_package: the releases whose trees were read.
+ros_module, ros_cmake: packages, space separated.
+"""
+
+FACT_SCHEMA = "CREATE TABLE fact(kind TEXT, name TEXT, entries TEXT, PRIMARY KEY(kind, name)) WITHOUT ROWID;"
+"""Filled from data/providers.yaml. kind: a table's name. entries: as in provider, `ros:NAME` for a released package."""
+
+_FORMAT = 1
+_LIBC = Provider("system", "", "")
+
+
+class HeaderSpan(NamedTuple):
+    """An unbroken run of a distro's releases of a package that have a header; last is None when it is there to the end."""
+
+    distro: str
+    first: str
+    last: str | None
+
+
+class Providers:
+    """Lookups in the shipped table. data: its folder. cache: where to unpack it, by default the user's cache folder.
+
+    Raises SnapshotError at the first lookup when the table is missing or damaged.
+    """
+
+    def __init__(self, data: Path = DATA, cache: Path | None = None):
+        self._data, self._cache = data, cache
+        self._lock = threading.Lock()
+        self._sets: dict[int, tuple[Provider, ...]] = {}
+        self._spans: dict[int, tuple[HeaderSpan, ...]] = {}
+
+    def __reduce__(self):
+        return Providers, (self._data, self._cache)
+
+    # -- lookups -----------------------------------------------------------------------------------------------------
+
+    def header(self, path: str) -> list[Provider]:
+        """Who installs a header that is included as path (`ros/ros.h`, `opencv2/core.hpp`), best first.
+
+        A provider with an empty name is the C library, the kernel's headers or the compiler. That `pkg/x.h` is of the
+        released package `pkg` is a convention which the caller adds; what is here was seen in a file list. Released
+        packages of both ROS generations are listed; the caller knows which its target has.
+        """
+        found = self._facts("header", path)
+        found += [
+            Provider("ros", name)
+            for (name,) in self._rows(
+                "SELECT h.package FROM ros_header h JOIN pattern p ON p.id = h.pattern WHERE h.path = ?"
+                " ORDER BY length(p.spans) DESC, h.package",
+                path,
+            )
+        ]
+        return _once(found + self._system("header", path))
+
+    def cmake(self, name: str) -> list[Provider]:
+        """Who answers find_package(name), best first. Where only another letter case is known, sure is False.
+
+        An empty provider name: CMake's own find module succeeds on every machine that builds (Threads, PkgConfig).
+        """
+        found = self._facts("cmake", name) + self._ros("ros_cmake", name) + self._system("cmake", name)
+        if not found:
+            # find_package(SDL2) also reads sdl2-config.cmake.
+            found = self._system("cmake", f"{name.lower()}-config")
+        if not found:
+            for other in self._folded_cmake.get(name.lower(), ()):
+                found += self._facts("cmake", other) + self._ros("ros_cmake", other) + self._system("cmake", other)
+            found = [provider._replace(sure=False) for provider in found]
+        return _once(found)
+
+    def pkgconfig(self, name: str) -> list[Provider]:
+        """Who installs `name.pc`, best first."""
+        return _once(self._facts("pkgconfig", name) + self._system("pkgconfig", name))
+
+    def module(self, dotted: str) -> list[Provider]:
+        """Who installs a Python module (`yaml`, `google.protobuf.text_format`), best first.
+
+        The standard library is not here, see stdlib.py. The longest known beginning of the dotted name counts.
+        """
+        parts_ = dotted.split(".")
+        for size in range(min(len(parts_), 2), 0, -1):
+            name = ".".join(parts_[:size])
+            found = self._facts("module", name) + self._ros("ros_module", name) + self._system("module", name)
+            if found:
+                return _once(found)
+        return []
+
+    def executable(self, name: str) -> list[Provider]:
+        """Who installs a program on the PATH, best first. An empty provider name: every Debian or Ubuntu has it."""
+        return _once(self._facts("program", name) + self._system("program", name))
+
+    def header_platforms(self, path: str) -> tuple[str, ...]:
+        """Platforms (`ubuntu jammy`) whose system packages have a header; empty for headers of ROS packages alone."""
+        return self._platforms_of("header", path)
+
+    def cmake_platforms(self, name: str) -> tuple[str, ...]:
+        """Platforms whose system packages bring a CMake configuration or find module of this name."""
+        return self._platforms_of("cmake", name)
+
+    @cached_property
+    def platforms(self) -> tuple[str, ...]:
+        """Platforms whose system packages are in the table."""
+        return tuple(name for (name,) in self._rows("SELECT name FROM platform ORDER BY bit"))
+
+    # -- headers of released packages over time ------------------------------------------------------------------------
+
+    def header_history(self, package: str, header: str) -> tuple[HeaderSpan, ...]:
+        """Releases of a ROS package that have a header (include path), by distro; empty when none is known to.
+
+        Only releases whose source tree was read count; known_releases tells which.
+        """
+        for (number,) in self._rows("SELECT pattern FROM ros_header WHERE path = ? AND package = ?", header, package):
+            return self._pattern(number)
+        return ()
+
+    def known_releases(self, package: str) -> tuple[HeaderSpan, ...]:
+        """Releases of a ROS package whose source trees were read, as spans by distro."""
+        for (number,) in self._rows("SELECT pattern FROM ros_package WHERE name = ?", package):
+            return self._pattern(number)
+        return ()
+
+    def has_header(self, package: str, header: str, distro: str, version: str) -> bool | None:
+        """Whether a package's release in a distro has a header; None when that release's tree is not known."""
+        if not _within(self.known_releases(package), distro, version):
+            return None
+        return _within(self.header_history(package, header), distro, version)
+
+    def headers_of(self, package: str) -> tuple[tuple[str, tuple[HeaderSpan, ...]], ...]:
+        """Every header that a ROS package ever had, with the releases that have it."""
+        rows = self._rows("SELECT path, pattern FROM ros_header WHERE package = ? ORDER BY path", package)
+        return tuple((path, self._pattern(number)) for path, number in rows)
+
+    # -- rows --------------------------------------------------------------------------------------------------------
+
+    def _facts(self, kind: str, name: str) -> list[Provider]:
+        found: list[Provider] = []
+        for (entries,) in self._rows("SELECT entries FROM fact WHERE kind = ? AND name = ?", kind, name):
+            found.extend(_decode(entries))
+        return found
+
+    def _system(self, table: str, name: str) -> list[Provider]:
+        for (number,) in self._rows(f"SELECT provider FROM {table} WHERE name = ?", name):
+            known = self._sets.get(number)
+            if known is None:
+                ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
+                known = self._sets[number] = tuple(_decode(entries))
+            return list(known)
+        return []
+
+    def _ros(self, table: str, name: str) -> list[Provider]:
+        for (packages,) in self._rows(f"SELECT packages FROM {table} WHERE name = ?", name):
+            return [Provider("ros", package) for package in packages.split(" ")]
+        return []
+
+    def _platforms_of(self, table: str, name: str) -> tuple[str, ...]:
+        for (bits,) in self._rows(f"SELECT platforms FROM {table} WHERE name = ?", name):
+            return tuple(platform for place, platform in enumerate(self.platforms) if bits >> place & 1)
+        return ()
+
+    def _pattern(self, number: int) -> tuple[HeaderSpan, ...]:
+        known = self._spans.get(number)
+        if known is None:
+            ((text,),) = self._rows("SELECT spans FROM pattern WHERE id = ?", number)
+            spans = (line.split(" ") for line in text.split("\n"))
+            known = tuple(HeaderSpan(distro, first, None if last == "-" else last) for distro, first, last in spans)
+            self._spans[number] = known
+        return known
+
+    @cached_property
+    def _folded_cmake(self) -> dict[str, list[str]]:
+        found: dict[str, list[str]] = {}
+        for (name,) in self._rows(
+            "SELECT name FROM cmake UNION SELECT name FROM ros_cmake UNION SELECT name FROM fact WHERE kind = 'cmake'"
+        ):
+            found.setdefault(name.lower(), []).append(name)
+        return found
+
+    def _rows(self, sql: str, *arguments: object) -> list[tuple]:
+        connection = self._connection
+        with self._lock:
+            return connection.execute(sql, arguments).fetchall()
+
+    @cached_property
+    def _connection(self) -> sqlite3.Connection:
+        return _open(self._data, self._cache or cache_folder())
+
+
+def _once(providers: list[Provider]) -> list[Provider]:
+    """Each provider once, first mention first; the machine itself (no name) makes all others pointless."""
+    if any(not provider.name for provider in providers):
+        return [_LIBC]
+    found: dict[tuple[str, str], Provider] = {}
+    for provider in providers:
+        found.setdefault((provider.kind, provider.name), provider)
+    return list(found.values())
+
+
+def _decode(entries: str) -> list[Provider]:
+    found = []
+    for line in entries.split("\n"):
+        name, _, package = line.partition(" ")
+        if name.startswith("ros:"):
+            found.append(Provider("ros", name[len("ros:") :]))
+        else:
+            found.append(Provider("system", name, package or name))
+    return found
+
+
+def _within(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
+    wanted = parts(version)
+    return any(
+        span.distro == distro and parts(span.first) <= wanted and (span.last is None or wanted <= parts(span.last))
+        for span in spans
+    )
+
+
+# -- the file ------------------------------------------------------------------------------------------------------------
+
+
+class _Info(msgspec.Struct, frozen=True):
+    sha256: str
+
+
+def _open(data: Path, cache: Path) -> sqlite3.Connection:
+    packed, corrections, info = (data / f"providers.{end}" for end in ("sqlite.zst", "yaml", "json"))
+    try:
+        facts = corrections.read_bytes()
+        sha = msgspec.json.decode(info.read_bytes(), type=_Info).sha256
+    except (OSError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{info}: {error}; install rosimpact again") from None
+    path = cache / f"providers-{_FORMAT}-{sha[:16]}-{hashlib.sha256(facts).hexdigest()[:16]}.sqlite"
+    if path.is_file():
+        with contextlib.suppress(sqlite3.DatabaseError):
+            return _connect(path)
+    raw = _unpack(packed, sha)
+    try:
+        _write(raw, facts, path)
+        return _connect(path)
+    except (OSError, sqlite3.DatabaseError):
+        return _in_memory(raw, facts)
+
+
+def _unpack(packed: Path, sha: str) -> bytes:
+    import zstandard
+
+    try:
+        raw = zstandard.ZstdDecompressor().decompress(packed.read_bytes())
+    except (OSError, zstandard.ZstdError) as error:
+        raise SnapshotError(f"{packed}: {error}; install rosimpact again") from None
+    if hashlib.sha256(raw).hexdigest() != sha:
+        raise SnapshotError(f"{packed}: does not match providers.json; install rosimpact again")
+    return raw
+
+
+def _connect(path: Path) -> sqlite3.Connection:
+    """Opens a finished file; raises sqlite3.DatabaseError when it is not whole."""
+    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True, check_same_thread=False)
+    try:
+        (pages,) = connection.execute("PRAGMA page_count").fetchone()
+        (size,) = connection.execute("PRAGMA page_size").fetchone()
+        connection.execute("SELECT kind FROM fact LIMIT 1").fetchone()
+        if pages * size != path.stat().st_size:
+            raise sqlite3.DatabaseError("truncated")
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _write(raw: bytes, facts: bytes, path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(prefix=".providers-", suffix=".part", dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(raw)
+        with contextlib.closing(sqlite3.connect(name)) as connection:
+            # A crash leaves only a .part file, so no journal is needed.
+            connection.execute("PRAGMA journal_mode=OFF")
+            add_facts(connection, facts)
+        os.replace(name, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(name)
+        raise
+    for old in path.parent.glob("providers-*.sqlite"):
+        if old.name != path.name:
+            with contextlib.suppress(OSError):
+                old.unlink()
+
+
+def _in_memory(raw: bytes, facts: bytes) -> sqlite3.Connection:
+    connection = sqlite3.connect(":memory:", check_same_thread=False)
+    deserialize = getattr(connection, "deserialize", None)  # Python 3.11 and newer
+    if deserialize is not None:
+        deserialize(raw)
+    else:
+        try:
+            with tempfile.NamedTemporaryFile(suffix=".sqlite") as file:
+                file.write(raw)
+                file.flush()
+                with contextlib.closing(sqlite3.connect(file.name)) as disk:
+                    disk.backup(connection)
+        except OSError as error:
+            raise SnapshotError(f"no folder to unpack the provider table into ({error})") from None
+    add_facts(connection, facts)
+    return connection
+
+
+def add_facts(connection: sqlite3.Connection, facts: bytes) -> None:
+    """Loads data/providers.yaml: kind of name, name, then providers (`key`, `key debian-package`, `ros:package`, ``)."""
+    import yaml
+
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    tables = yaml.load(facts, Loader=loader) or {}
+    connection.executescript(FACT_SCHEMA)
+    connection.executemany(
+        "INSERT INTO fact VALUES(?, ?, ?)",
+        (
+            (kind, str(name), "\n".join([providers] if isinstance(providers, str) else providers))
+            for kind, names in tables.items()
+            for name, providers in names.items()
+        ),
+    )
+    connection.commit()
+
+
+_default: Providers | None = None
+
+
+def default_providers() -> Providers:
+    """The shipped table, one for each process."""
+    global _default
+    if _default is None:
+        _default = Providers()
+    return _default

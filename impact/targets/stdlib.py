@@ -1,0 +1,185 @@
+"""Python's standard library: which top-level modules a version has.
+
+Source: the lists of modules in the library references of Python 2.7 and 3.4 to 3.14, with "What's New" of each for
+additions and removals (PEP 594, PEP 632 and others).
+"""
+
+from __future__ import annotations
+
+_ALWAYS_3 = frozenset(
+    "__future__ __main__ _thread abc aifc antigravity argparse array ast atexit base64 bdb binascii bisect builtins bz2 "
+    "cProfile calendar cmath cmd code codecs codeop collections colorsys compileall concurrent configparser contextlib "
+    "copy copyreg crypt csv ctypes curses datetime dbm decimal difflib dis doctest email encodings ensurepip enum errno "
+    "faulthandler fcntl filecmp fileinput fnmatch fractions ftplib functools gc genericpath getopt getpass gettext glob "
+    "grp gzip hashlib heapq hmac html http idlelib imaplib importlib inspect io ipaddress itertools json keyword lib2to3 "
+    "linecache locale logging lzma mailbox marshal math mimetypes mmap modulefinder msvcrt multiprocessing netrc nt "
+    "ntpath nturl2path numbers opcode operator optparse os pathlib pdb pickle pickletools pkgutil platform plistlib "
+    "poplib posix posixpath pprint profile pstats pty pwd py_compile pyclbr pydoc pydoc_data pyexpat queue quopri random "
+    "re readline reprlib resource rlcompleter runpy sched select selectors shelve shlex shutil signal site smtplib socket "
+    "socketserver sqlite3 sre_compile sre_constants sre_parse ssl stat statistics string stringprep struct subprocess "
+    "symtable sys sysconfig syslog tabnanny tarfile tempfile termios test textwrap this threading time timeit tkinter "
+    "token tokenize trace traceback tracemalloc tty turtle turtledemo types unicodedata unittest urllib uuid venv "
+    "warnings wave weakref webbrowser winreg winsound wsgiref xml xmlrpc zipapp zipfile zipimport zlib asyncio".split()
+)
+_ADDED = {"zipapp": 5, "typing": 5, "secrets": 6, "contextvars": 7, "dataclasses": 7, "zoneinfo": 9, "graphlib": 9,
+          "tomllib": 11, "_colorize": 13, "annotationlib": 14, "compression": 14}  # fmt: skip
+"""Module to the minor version of Python 3 that brought it."""
+
+REMOVED: dict[str, tuple[int, str]] = {
+    "formatter": (10, ""),
+    "parser": (10, "ast"),
+    "symbol": (10, ""),
+    "macpath": (8, ""),
+    "dummy_threading": (9, "threading"),
+    "_dummy_thread": (9, "_thread"),
+    "binhex": (11, ""),
+    "asynchat": (12, "asyncio"),
+    "asyncore": (12, "asyncio"),
+    "distutils": (12, "setuptools"),
+    "imp": (12, "importlib"),
+    "smtpd": (12, "aiosmtpd"),
+    "aifc": (13, ""),
+    "audioop": (13, ""),
+    "cgi": (13, "urllib.parse"),
+    "cgitb": (13, "traceback"),
+    "chunk": (13, ""),
+    "crypt": (13, "hashlib"),
+    "imghdr": (13, "filetype"),
+    "lib2to3": (13, ""),
+    "mailcap": (13, "mimetypes"),
+    "msilib": (13, ""),
+    "nis": (13, ""),
+    "nntplib": (13, ""),
+    "ossaudiodev": (13, ""),
+    "pipes": (13, "subprocess"),
+    "sndhdr": (13, "filetype"),
+    "spwd": (13, ""),
+    "sunau": (13, ""),
+    "telnetlib": (13, "telnetlib3"),
+    "uu": (13, "base64"),
+    "xdrlib": (13, ""),
+}
+"""Module to the minor version of Python 3 that lacks it, and what serves instead (empty: nothing)."""
+
+PYTHON_2_ONLY: dict[str, str] = {
+    "BaseHTTPServer": "http.server",
+    "Bastion": "",
+    "CGIHTTPServer": "http.server",
+    "ConfigParser": "configparser",
+    "Cookie": "http.cookies",
+    "DocXMLRPCServer": "xmlrpc.server",
+    "HTMLParser": "html.parser",
+    "MimeWriter": "email",
+    "Queue": "queue",
+    "ScrolledText": "tkinter.scrolledtext",
+    "SimpleHTTPServer": "http.server",
+    "SimpleXMLRPCServer": "xmlrpc.server",
+    "SocketServer": "socketserver",
+    "StringIO": "io",
+    "Tix": "tkinter.tix",
+    "Tkconstants": "tkinter.constants",
+    "Tkinter": "tkinter",
+    "UserDict": "collections",
+    "UserList": "collections",
+    "UserString": "collections",
+    "__builtin__": "builtins",
+    "anydbm": "dbm",
+    "cPickle": "pickle",
+    "cStringIO": "io",
+    "commands": "subprocess",
+    "compiler": "ast",
+    "cookielib": "http.cookiejar",
+    "copy_reg": "copyreg",
+    "dbhash": "dbm",
+    "dircache": "os",
+    "dl": "ctypes",
+    "dumbdbm": "dbm.dumb",
+    "dummy_thread": "_thread",
+    "exceptions": "builtins",
+    "fpformat": "",
+    "future_builtins": "builtins",
+    "gdbm": "dbm.gnu",
+    "hotshot": "cProfile",
+    "htmlentitydefs": "html.entities",
+    "htmllib": "html.parser",
+    "httplib": "http.client",
+    "ihooks": "",
+    "imputil": "importlib",
+    "linuxaudiodev": "",
+    "markupbase": "_markupbase",
+    "md5": "hashlib",
+    "mhlib": "mailbox",
+    "mimetools": "email",
+    "mimify": "email",
+    "multifile": "email",
+    "mutex": "threading",
+    "new": "types",
+    "os2emxpath": "",
+    "popen2": "subprocess",
+    "posixfile": "fcntl",
+    "repr": "reprlib",
+    "rexec": "",
+    "rfc822": "email",
+    "robotparser": "urllib.robotparser",
+    "sets": "builtins",
+    "sgmllib": "html.parser",
+    "sha": "hashlib",
+    "statvfs": "os",
+    "strop": "",
+    "thread": "_thread",
+    "tkColorChooser": "tkinter.colorchooser",
+    "tkCommonDialog": "tkinter.commondialog",
+    "tkFileDialog": "tkinter.filedialog",
+    "tkFont": "tkinter.font",
+    "tkMessageBox": "tkinter.messagebox",
+    "tkSimpleDialog": "tkinter.simpledialog",
+    "toaiff": "",
+    "ttk": "tkinter.ttk",
+    "urllib2": "urllib.request",
+    "urlparse": "urllib.parse",
+    "user": "",
+    "whichdb": "dbm",
+    "xmllib": "xml.sax",
+    "xmlrpclib": "xmlrpc.client",
+}
+"""Module of Python 2.7 to its home in Python 3 (empty: none)."""
+
+_NOT_IN_2 = frozenset(
+    "_thread asyncio builtins concurrent configparser copyreg dbm ensurepip enum faulthandler html http ipaddress lzma "
+    "nt pathlib queue reprlib selectors socketserver statistics tkinter tracemalloc turtledemo venv winreg xmlrpc zipapp".split()
+)
+_TOP_2 = frozenset(name for name in PYTHON_2_ONLY if "." not in name)
+
+
+def stdlib(module: str, minor: int, major: int = 3) -> bool:
+    """True when a module (its first dotted part counts) is in the standard library of Python major.minor.
+
+    minor: 4 to 14 for Python 3; for Python 2 it does not matter, 2.7 stands. A version outside that range is answered
+    as the nearest one.
+    """
+    name = module.partition(".")[0]
+    if major == 2:
+        return name in _TOP_2 or (name in _ALWAYS_3 and name not in _NOT_IN_2) or (
+            name in REMOVED and name not in ("_dummy_thread",)
+        )
+    if name in REMOVED:
+        return minor < REMOVED[name][0]
+    if name in _ADDED:
+        return minor >= _ADDED[name]
+    return name in _ALWAYS_3 or (name.startswith("_") and name in _PRIVATE)
+
+
+def ever_stdlib(module: str) -> bool:
+    """True when any version of Python, 2.7 included, has or had the module in its standard library."""
+    name = module.partition(".")[0]
+    return name in _ALWAYS_3 or name in _ADDED or name in REMOVED or name in _TOP_2 or name in _PRIVATE
+
+
+_PRIVATE = frozenset(
+    "_abc _ast _asyncio _bisect _bootlocale _bz2 _codecs _collections _collections_abc _compat_pickle _compression "
+    "_contextvars _csv _ctypes _curses _curses_panel _datetime _dbm _decimal _elementtree _functools _gdbm _hashlib _heapq "
+    "_imp _io _json _locale _lsprof _lzma _markupbase _multibytecodec _multiprocessing _opcode _operator _osx_support "
+    "_pickle _posixshmem _posixsubprocess _py_abc _pydatetime _pydecimal _pyio _queue _random _signal _sitebuiltins "
+    "_socket _sqlite3 _sre _ssl _stat _statistics _string _strptime _struct _symtable _sysconfigdata _threading_local "
+    "_tkinter _tracemalloc _typing _uuid _warnings _weakref _weakrefset _winapi _zoneinfo".split()
+)
