@@ -1,6 +1,6 @@
 """Python 2 syntax: found in text that Python 3 refuses, and rewritten in place so that the rest can still be read.
 
-Sources: the lists of syntax changes in "What's New In Python 3.0" and PEP 3105, 3109, 3110, 3113, 3127.
+Sources: the lists of syntax changes in "What's New In Python 3.0" and 3.7; PEP 492, 3105, 3109, 3110, 3113, 3127.
 """
 
 import re
@@ -31,6 +31,11 @@ _LONG = re.compile(r"(?<![\w.])(?:0[xX][0-9a-fA-F]+|[0-9]+)([lL])\b")
 _UNICODE_RAW = re.compile(r"\b([uU])[rR](?=[\"'])")
 _BACKTICK = re.compile(r"`[^`\n]*`")
 _TUPLE_PARAMETER = re.compile(r"\bdef[ \t]+\w+[ \t]*\((?:[\w \t\n,]*,)?\s*(\([\w \t\n,]*\))")
+# Names that Python 3 made keywords; `async` and `await` only with 3.7.
+_KEYWORD_NAME = re.compile(
+    r"(?<=\.)(None|True|False|async|await)\b|(?<![\w.])(async|await)(?=[ \t]*(?:[.,)\]]|=(?!=)))"
+    r"|(?:\bdef|\bimport|\bas)[ \t]+(async|await)\b(?![ \t]+\w)"
+)
 
 
 def mask(text: str) -> str:
@@ -94,6 +99,10 @@ def find(text: str) -> tuple[tuple[Problem, ...], str]:
         name = "_" * (match.end(1) - match.start(1))
         if "\n" not in match.group(1):
             replace(match.start(1), match.end(1), name)
+    for match in _KEYWORD_NAME.finditer(visible):
+        group = match.lastindex or 0
+        hits.append((match.start(group), f"`{match.group(group)}` as a name"))
+        replace(match.start(group), match.end(group), match.group(group)[:-1] + "_")
 
     pieces: list[str] = []
     position = 0

@@ -185,6 +185,9 @@ def test_a_reference_stands_where_the_name_does():
         ("x = ur'a'", 1, "ur string"),
         ("x = `a`", 1, "backticks"),
         ("def f(a, (b, c)):\n  pass", 1, "tuple parameter"),
+        ("f(async=True)", 1, "`async` as a name"),
+        ("from a import async", 1, "`async` as a name"),
+        ("x = a.None", 1, "`None` as a name"),
         ("if a:\n        b\n\tc", 3, "tabs mixed with spaces"),
     ],
 )
@@ -313,9 +316,9 @@ def test_odd_files_still_give_their_imports(data, problems):
 
 PIECES = st.sampled_from([
     "import a\n", "from b import c\n", "try:\n", " pass\n", "except A, e:\n", "print 'x'\n", "if PY2:\n", " ", "\n",
-    "\t", "(", ")", "[", "]", "'", '"""', "#", "\\", "f'{a}'", "é", "\0", "Node(package='p', executable='e')\n", ", ", "x = ",
-    "share + ", "'/a'", "os.path.join(", "FindPackageShare('p')", "lambda a: ", "def f(a, (b, c)):\n", "a.b.c", "0777",
-    "`a`", "<>", "@", "with (a as b): pass\n", "'package://p/a'", ":=", "match x:\n", "class C: ", "\r\n", "get_path(",
+    "\t", "(", ")", "[", "]", "'", '"""', "#", "\\", "f'{a}'", "é", "\0", "Node(package='p', executable='e')\n", ", ",
+    "x = ", "share + ", "'/a'", "os.path.join(", "FindPackageShare('p')", "lambda a: ", "def f(a, (b, c)):\n", "a.b.c",
+    "0777", "`a`", "<>", "@", "with (a as b): pass\n", "'package://p/a'", ":=", "match x:\n", "class C: ", "\r\n", "get_path(",
     "global a\n", ".find('p')",
 ])  # fmt: skip
 
