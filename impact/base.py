@@ -14,7 +14,7 @@ from .model.watch import watched
 from .model.workspace import Workspace, link
 from .report.report import Sources
 from .rules.rule import Finding, Rule
-from .tree import GitTree, Tree, TreeError
+from .tree import GitTree, Tree, TreeError, WorkingTree
 
 
 class BaseError(TreeError):
@@ -134,13 +134,12 @@ class CompositeTree:
 
 
 def against_base(
-    tree: Tree, base: Sequence[str], found: list[Finding], workspace: Workspace, views: Sequence[View], rules: dict[str, Rule],
+    before_tree: Tree, found: list[Finding], workspace: Workspace, views: Sequence[View], rules: dict[str, Rule],
     store: Store, sources: Sources, judge,
 ) -> list[Finding]:  # fmt: skip
     """Marks what is new against the base, and adds what the interfaces family says of the change.
 
     judge(workspace, views, sources): findings of a workspace, as check.py makes them."""
-    before_tree = base_tree(tree, base)
     gathered = gather(before_tree, store)
     before = link(before_tree, gathered, store, workspace.ros, watched())
     old_sources = Sources(lambda p: before_tree.read(p) if before_tree.exists(p) else None)
@@ -150,3 +149,12 @@ def against_base(
     names = [view.target.name for view in views]
     changed = after.merge(hits, targets=names, rules=rules, line_text=sources.line)
     return sorted([*marked, *changed], key=lambda f: (f.path, f.line, f.column, f.rule))
+
+
+def compare(path: str | os.PathLike[str], base: str | os.PathLike[str], options=None):
+    """Checks the workspace at path against another folder as its base; returns a Report. For tools that keep both
+    states as folders; `check` with Options(base=...) reads them from git."""
+    from . import check as checking
+
+    options = options or checking.Options()
+    return checking.check(path, options, base_tree=WorkingTree(base))

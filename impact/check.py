@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,8 +18,8 @@ from .model.watch import watched
 from .model.workspace import Workspace, link
 from .report.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
 from .rules.rule import Finding, Hit, Rule, all_rules
-from .targets.providers import Providers
-from .targets.resolve import choose_targets
+from .targets.providers import default_providers
+from .targets.resolve import ChosenTarget, choose_targets
 from .tree import GitTree, Tree, TreeError, WorkingTree
 
 __version__ = "0.1.0"
@@ -44,31 +45,27 @@ class Options(NamedTuple):
     cache: Path | None = None
 
 
-def check(path: str | os.PathLike[str], options: Options = Options(), progress: Callable[[int, int], None] | None = None) -> Report:
+def check(
+    path: str | os.PathLike[str], options: Options = Options(), progress: Callable[[int, int], None] | None = None, *,
+    base_tree: Tree | None = None,
+) -> Report:  # fmt: skip
     """Checks a workspace and says what breaks, and for whom.
 
     path: a workspace, package, or git repository. progress: called with (done, total) bytes while files are parsed.
+    base_tree: the tree to compare with, instead of the revision that the options name.
     Raises CheckError, TreeError, TargetError or ConfigError with a text for the user.
     """
     started = time.perf_counter()
-    root = Path(path)
-    if not root.exists():
-        raise CheckError(f"{path}: there is no such file or folder; give the path of a workspace")
-    config = load(root if root.is_dir() else root.parent, options.config)
-    tree = open_tree(root, options.rev)
-    with Store(options.cache) as store:
-        gathered = gather(tree, store, jobs=options.jobs, progress=progress)
-        workspace = link(tree, gathered, store, None, watched())
-        targets = choose_targets(options.targets, config, workspace, tree)
+    with open_workspace(path, options, progress) as opened:
+        tree, store, gathered, workspace, targets, views, config = opened
         rules = after.chosen(all_rules(), select=options.select or config.select, ignore=options.ignore or config.ignore,
                              preview=options.preview)  # fmt: skip
         sources = Sources(lambda p: tree.read(p) if tree.exists(p) else None)
-        views = [View(workspace, t.target, Providers(t.target.ros), config) for t in targets]
         found, suppression = judge(workspace, views, rules, sources, config)
-        if options.base:
-            from .base import against_base
+        if options.base or base_tree is not None:
+            from .base import against_base, base_tree as tree_of_base
 
-            found = against_base(tree, options.base, found, workspace, views, rules, store, sources,
+            found = against_base(base_tree or tree_of_base(tree, options.base), found, workspace, views, rules, store, sources,
                                  lambda w, v, s: judge(w, v, rules, s, config))  # fmt: skip
         known: Sequence[Finding] = ()
         if options.baseline:
@@ -93,6 +90,36 @@ def check(path: str | os.PathLike[str], options: Options = Options(), progress: 
         base=" ".join(options.base),
         failure="" if workspace.packages else f"{path}: no package found (no package.xml outside ignored folders)",
     )
+
+
+class Opened(NamedTuple):
+    """A workspace ready to be asked: its files, facts, model, and how each target sees it."""
+
+    tree: Tree
+    store: Store
+    gathered: Gathered
+    workspace: Workspace
+    targets: Sequence[ChosenTarget]
+    views: Sequence[View]
+    config: Config
+
+
+@contextmanager
+def open_workspace(
+    path: str | os.PathLike[str], options: Options = Options(), progress: Callable[[int, int], None] | None = None
+) -> Iterator[Opened]:
+    """Reads a workspace up to its views. The store is closed at the end. Raises as check() does."""
+    root = Path(path)
+    if not root.exists():
+        raise CheckError(f"{path}: there is no such file or folder; give the path of a workspace")
+    config = load(root if root.is_dir() else root.parent, options.config)
+    tree = open_tree(root, options.rev)
+    with Store(options.cache) as store:
+        gathered = gather(tree, store, jobs=options.jobs, progress=progress)
+        workspace = link(tree, gathered, store, None, watched())
+        targets = choose_targets(options.targets, config, workspace, tree)
+        views = [View(workspace, t.target, default_providers(), config) for t in targets]
+        yield Opened(tree, store, gathered, workspace, targets, views, config)
 
 
 def open_tree(root: Path, rev: str) -> Tree:

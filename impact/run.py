@@ -157,3 +157,120 @@ def explain(name: str | None) -> int:
         return failed(f"no rule is called `{name}`" + (f"; did you mean `{close[0]}`?" if close else "; `rosimpact explain` lists them"))
     print(rules[name].documentation.rstrip())
     return 0
+
+
+def env_capture(output: Path | None) -> int:
+    """Writes this machine as a target."""
+    from .targets.capture import capture, to_json
+
+    text = to_json(capture())
+    if output is None:
+        _write(text)
+        return 0
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        return failed(f"{output}: cannot be written: {error.strerror}; give another file")
+    print(f"{output}: written; use it with --target {output}", file=sys.stderr)
+    return 0
+
+
+def env_diff(first: str, second: str, path: Path | None, format: str) -> int:
+    """Prints what differs between two targets, with what the workspace uses marked and first."""
+    from .config import load
+    from .targets.capture import differences
+    from .targets.resolve import parse_target
+
+    try:
+        config = load(path if path is not None else Path("."))
+        a, b = parse_target(first, config), parse_target(second, config)
+        used = _used(path, (first,)) if path is not None else {}
+    except _OUR_ERRORS as error:
+        return failed(str(error), format)
+    rows = [d._replace(used_by=used.get(d.name, ())) for d in differences(a, b)]
+    rows.sort(key=lambda d: (not d.used_by, d.kind != "library", d.name))
+    if format == "json":
+        import json
+
+        _write(json.dumps([d._asdict() for d in rows], indent=1))
+        return 0
+    width = max((len(d.name) for d in rows), default=0)
+    for d in rows:
+        mark = "*" if d.used_by else " "
+        users = f"  used by {', '.join(d.used_by[:4])}{' …' if len(d.used_by) > 4 else ''}" if d.used_by else ""
+        print(f"{mark} {d.name:{width}s}  {d.first or '-':>14s}  {d.second or '-':>14s}{users}")
+    print(f"{len(rows)} differences" + (f", {sum(bool(d.used_by) for d in rows)} used by {path}" if path is not None else ""))
+    return 0
+
+
+def _used(path: Path, targets: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
+    """Names the workspace declares or uses, to the packages that do."""
+    from .check import open_workspace
+
+    used: dict[str, set[str]] = {}
+    with open_workspace(path, Options(targets=targets)) as opened:
+        for view in opened.views:
+            for package in view:
+                names = set(view.declared(package))
+                for need in view.needs(package):
+                    names.update(p.name for p in need.providers[:1])
+                for name in names:
+                    used.setdefault(name, set()).add(package.name)
+                    for library in view.libraries_of(name):
+                        used.setdefault(library, set()).add(package.name)
+    return {name: tuple(sorted(packages)) for name, packages in used.items()}
+
+
+def why(name: str, path: Path, targets: tuple[str, ...], format: str) -> int:
+    """Prints who provides a name on each target, in which version, since when, and who in the workspace uses it."""
+    from .why import answers, as_text
+
+    try:
+        found = answers(name, path, targets)
+    except _OUR_ERRORS as error:
+        return failed(str(error), format)
+    if format == "json":
+        import json
+
+        _write(json.dumps([a._asdict() for a in found], indent=1))
+    else:
+        _write(as_text(name, found))
+    return 0 if any(a.offers for a in found) else 1
+
+
+def data_status() -> int:
+    """Prints the date and contents of the shipped data."""
+    from .targets.build_data import status
+
+    _write(status())
+    return 0
+
+
+def data_build(rosdistro: Path, output: Path, caches: Path | None) -> int:
+    """Builds the snapshot from git repositories."""
+    from .targets.build_data import build
+
+    try:
+        build(rosdistro, output, caches, progress=_step())
+    except (*_OUR_ERRORS, OSError) as error:
+        return failed(str(error))
+    return 0
+
+
+def data_update() -> int:
+    """Refreshes the snapshot over the network."""
+    from .targets.build_data import update
+
+    try:
+        _write(update(progress=_step()))
+    except (*_OUR_ERRORS, OSError) as error:
+        return failed(str(error))
+    return 0
+
+
+def _step():
+    def show(text: str) -> None:
+        print(text, file=sys.stderr)
+
+    return show

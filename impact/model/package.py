@@ -26,6 +26,9 @@ ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutor
 TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration_tests", "benchmark", "benchmarks"})
 
 
+_ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample)(?:_|\.|\d|$)")
+
+
 class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An include that no file of the package answers. role: build, test or aside; public: stands in an installed header.
     targets: CMake targets that compile it."""
@@ -152,7 +155,7 @@ def role_of_folder(path: str) -> str | None:
     name = path.rsplit("/", 1)[-1].lower()
     if re.match(r"(test_.*|.*_test|conftest)\.\w+$", name) or name.startswith("test_"):
         return "test"
-    if any(part in ASIDE for part in parts):
+    if any(part in ASIDE for part in parts) or _ASIDE_NAME.search(name):
         return "aside"
     return None
 

@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 from ..facts.condition import Condition
 from ..targets.changes import transitive_includes
+from ..targets.library import include_roots
+from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
 from ..config import Config
 from .build import At
@@ -91,7 +93,7 @@ class View:
             return target.version(name) or target.library(name.lower())
 
         return Environment(
-            ros_distro=target.distro, ros_version=str(target.ros), python=(3, target.python) if target.python else (2, 7),
+            ros_distro=target.distro, ros_version=str(target.ros), python=(target.python_major, target.python) if target.python else None,
             codename=target.platform.split(" ")[-1], versions=version, headers=lambda path: None, testing=True,
         )  # fmt: skip
 
@@ -154,6 +156,42 @@ class View:
         """True for headers of the C and C++ standard libraries and of the operating system."""
         return any(not p.name for p in self.providers.header(header))
 
+    def lost_header(self, path: str) -> Misnamed | None:
+        """What is wrong when every released package that has, or had, a header lacks it in its version here."""
+        target = self.target
+        owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
+        if not owners or any(p.kind != "ros" for p in self.header(path)):
+            return None
+        lacking = []
+        for name in owners:
+            version = target.version(name)
+            if version is None:
+                continue
+            has = self.providers.has_header(name, path, target.distro, version)
+            if has is not False:
+                return None
+            lacking.append((name, version))
+        if not lacking:
+            return None
+        name, version = lacking[0]
+        spans = self.providers.header_history(name, path)
+        if not spans:
+            head, _, rest = path.partition("/")
+            if rest.startswith(head + "/") and self.providers.has_header(name, rest, target.distro, version):
+                return Misnamed(f"`{path}` is not installed by {name} {version}", f"include `{rest}`")
+            return None
+        other = self._renamed(name, path, version)
+        return Misnamed(f"`{path}` is not in {name} {version}", f"include `{other}`" if other else "")
+
+    def _renamed(self, name: str, path: str, version: str) -> str:
+        """The same header under another ending that the version has."""
+        stem = path.rpartition(".")[0]
+        for ending in (".hpp", ".h", ".hh"):
+            other = stem + ending
+            if other != path and self.providers.has_header(name, other, self.target.distro, version):
+                return other
+        return ""
+
     def misnamed_interface(self, path: str) -> Misnamed | None:
         """What is wrong with the spelling of a generated header on this target's generation, None when nothing is."""
         head, _, rest = path.partition("/")
@@ -181,6 +219,16 @@ class View:
             return False
         return self.target.version(name) is not None
 
+    def libraries_of(self, name: str) -> list[str]:
+        """Platform libraries whose version a rosdep key or CMake name stands for."""
+        folded = name.lower().removeprefix("lib").removesuffix("-dev").removesuffix("-all")
+        known = self.target.library_names()
+        return [n for n in dict.fromkeys((name.lower(), folded, folded.rstrip("0123456789"))) if n in known]
+
+    def left_python(self, module: str) -> bool:
+        """True for modules that Python's standard library once had and the target's has no longer."""
+        return ever_stdlib(module) and not stdlib(module, self.target.python, self.target.python_major)
+
     @cached_property
     def _changes(self) -> dict[str, list[Change]]:
         found: dict[str, list[Change]] = {}
@@ -200,7 +248,7 @@ class View:
         names = self.closure(package)
         if head in names or any(head in (p.name, p.package) for p in self.cmake(head)) and head in names:
             return True
-        roots = self.providers.include_roots(head)
+        roots = include_roots(head)
         return any(i.path.startswith(roots) for i in package.digest.includes) if roots else head in names
 
     # -- declared dependencies -----------------------------------------------------------------------------------------
@@ -339,6 +387,8 @@ class View:
             if head in owners:
                 owners = [head]
             found = [Provider("ros", o) for o in owners]
+            if not found and stdlib(module, self.target.python or 99, self.target.python_major):
+                found = [Provider("system", "")]
             if not found:
                 found = list(self.providers.module(module))
                 if not any(p.name == head for p in found) and self._is_package(head):

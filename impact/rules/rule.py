@@ -7,6 +7,8 @@ import pkgutil
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from .cure import Declare, Insert, Remove, Replace
+
 SEVERITIES = ("note", "warning", "error")
 
 
@@ -17,6 +19,9 @@ class Edit(NamedTuple):
     start: int
     end: int
     text: str
+
+
+Cure = Edit | Declare | Remove | Replace | Insert
 
 
 class Hit(NamedTuple):
@@ -32,7 +37,7 @@ class Hit(NamedTuple):
     help: str = ""
     package: str = ""
     severity: str = ""
-    fix: tuple[Edit, ...] = ()
+    fix: tuple[Cure, ...] = ()
 
 
 class Finding(NamedTuple):
@@ -50,7 +55,7 @@ class Finding(NamedTuple):
     help: str = ""
     new: bool = True
     fingerprint: str = ""
-    fix: tuple[Edit, ...] = ()
+    fix: tuple[Cure, ...] = ()
 
 
 class Rule(NamedTuple):

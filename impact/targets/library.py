@@ -167,3 +167,46 @@ def default_standard(target: Target) -> int | None:
     if not gcc:
         return None
     return 2017 if at_least(gcc, "11") else 2014 if at_least(gcc, "6") else 1998
+
+
+def _set_by(stem: str, *endings: str) -> frozenset[str]:
+    return frozenset(f"{stem}_{ending}" for ending in (*endings, "FOUND", "VERSION"))
+
+
+# Variables that find_package(X) sets, where their spelling is not X's own. Sources: the packages' configuration files and
+# CMake's find modules.
+_VARIABLES = {
+    "Eigen3": _set_by("EIGEN3", "INCLUDE_DIR", "INCLUDE_DIRS", "DEFINITIONS") | {"Eigen3_FOUND", "Eigen3_VERSION", "Eigen3_DIR"},
+    "Eigen": _set_by("Eigen", "INCLUDE_DIRS") | _set_by("EIGEN", "INCLUDE_DIRS") | {"Eigen_FOUND"},
+    "Boost": _set_by("Boost", "INCLUDE_DIRS", "INCLUDE_DIR", "LIBRARIES", "LIBRARY_DIRS", "LIBRARY_DIR", "LIB_VERSION"),
+    "OpenCV": _set_by("OpenCV", "INCLUDE_DIRS", "LIBS", "LIBRARIES", "LIB_COMPONENTS", "INCLUDE_DIR"),
+    "PCL": _set_by("PCL", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS", "DEFINITIONS"),
+    "octomap": _set_by("OCTOMAP", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS") | {"octomap_FOUND", "octomap_VERSION"},
+    "yaml-cpp": _set_by("YAML_CPP", "INCLUDE_DIR", "INCLUDE_DIRS", "LIBRARIES"),
+    "Bullet": _set_by("BULLET", "INCLUDE_DIRS", "INCLUDE_DIR", "LIBRARIES", "LIBRARY_DIRS"),
+    "assimp": _set_by("ASSIMP", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS") | _set_by("assimp", "INCLUDE_DIRS", "LIBRARIES"),
+    "fcl": _set_by("FCL", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS"),
+    "Ceres": _set_by("CERES", "INCLUDE_DIRS", "LIBRARIES") | _set_by("Ceres", "INCLUDE_DIRS", "LIBRARIES"),
+    "gazebo": _set_by("GAZEBO", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS", "CXX_FLAGS"),
+}  # fmt: skip
+
+
+def variables(package: str) -> frozenset[str] | None:
+    """Variables that find_package(package) sets, None where they are not known."""
+    return _VARIABLES.get(package)
+
+
+# First part of the include paths of a platform library, by its name in platform_versions.yaml.
+_ROOTS = {
+    "opencv": ("opencv2/", "opencv/", "cv.h", "highgui.h", "cv_bridge/"), "boost": ("boost/",), "pcl": ("pcl/", "pcl_"),
+    "ffmpeg-libavcodec": ("libav", "libsws"), "ffmpeg": ("libav", "libsws"), "yaml-cpp": ("yaml-cpp/",), "eigen3": ("Eigen/", "eigen3/", "unsupported/Eigen"),
+    "gazebo": ("gazebo/",), "gazebo-classic": ("gazebo/",), "qt5": ("Q",), "qt6": ("Q",), "qt4": ("Q",), "assimp": ("assimp/",), "fcl": ("fcl/",),
+    "fmt": ("fmt/",), "tinyxml": ("tinyxml",), "tinyxml2": ("tinyxml2",), "ogre": ("Ogre", "OGRE/"), "octomap": ("octomap/",),
+    "protobuf": ("google/protobuf/",), "vtk": ("vtk",), "python3": ("Python.h",), "numpy": ("numpy/",), "bullet": ("bullet/", "btBullet", "LinearMath/"),
+    "ceres": ("ceres/",), "spdlog": ("spdlog/",),
+}  # fmt: skip
+
+
+def include_roots(name: str) -> tuple[str, ...]:
+    """How include paths of a library or package begin, empty where that is not known."""
+    return _ROOTS.get(name, ())

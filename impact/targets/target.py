@@ -54,7 +54,7 @@ class Target:
     """One machine, real or described. Interface only; see distro.py, capture.py for how one is made.
 
     Attributes: name, distro (`humble`), ros (1 or 2), date (ISO day), platform (`ubuntu jammy`), python (minor version),
-    notes (what was adjusted, such as a date moved to the first release), approximate (True before the first sync tag),
+    python_major (2 or 3), data_date (newest day of the data), notes (what was adjusted, such as a date moved to the first release), approximate (True before the first sync tag),
     knows_manifests (released manifests of this distro at this date are known).
     """
 
@@ -64,6 +64,8 @@ class Target:
     date: str
     platform: str
     python: int
+    python_major: int
+    data_date: str
     notes: tuple[str, ...]
     approximate: bool
     knows_manifests: bool
@@ -90,6 +92,18 @@ class Target:
 
     def library(self, name: str) -> str | None:
         """Version of a platform library by the name of platform_versions.yaml (opencv, boost, cmake, gcc, python3 ...)."""
+        raise NotImplementedError
+
+    def released_names(self) -> frozenset[str]:
+        """Every ROS package that is there."""
+        raise NotImplementedError
+
+    def key_names(self) -> frozenset[str]:
+        """Every rosdep key that any platform has, or had."""
+        raise NotImplementedError
+
+    def last_distro(self, package: str) -> str:
+        """The newest distro of the same generation that has released a package, empty when none has."""
         raise NotImplementedError
 
     def changes(self) -> tuple[Change, ...]:

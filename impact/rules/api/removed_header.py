@@ -49,6 +49,10 @@ def removed_header(view: View):
                 yield Hit(include.at, path, f"`{path}` is not there yet in {where}",
                           f"include `{change.old}`, or choose with __has_include", package.name, severity=severity)  # fmt: skip
                 continue
+            lost = view.lost_header(path)
+            if lost is not None:
+                yield Hit(include.at, path, lost.message, lost.help, package.name, severity=severity)
+                continue
             wrong = view.misnamed_interface(path)
             if wrong:
                 yield Hit(include.at, path, wrong.message, wrong.help, package.name, severity=severity)

@@ -21,6 +21,7 @@ Use instead
 
 from ...model.spelling import Names
 from ...model.view import View
+from ...targets.library import variables
 from ..rule import Hit, rule
 
 _SUFFIXES = ("_INCLUDE_DIRS", "_INCLUDE_DIR", "_LIBRARIES", "_LIBRARY", "_LIBS", "_EXPORTED_TARGETS", "_DEFINITIONS", "_VERSION")
@@ -82,7 +83,7 @@ def _variables(view: View, package, found):
         if stem in found or stem.lower() not in folded:
             continue
         meant = folded[stem.lower()]
-        sets = view.providers.variables(meant)
+        sets = variables(meant)
         if sets is None or use.name in sets:
             continue
         right = next((v for v in sets if v.endswith(suffix)), None)

@@ -29,6 +29,10 @@ from ..evidence import name_to_declare, present, weight
 from ..rule import Hit, rule
 
 
+# Whoever starts a launch file has these: the launch tool itself brings them.
+_LAUNCHING = frozenset({"launch", "launch_ros", "launch_xml", "launch_yaml", "roslaunch", "launch_testing", "launch_testing_ros"})
+
+
 @rule(severity="error")
 def undeclared_package(view: View):
     for package in view:
@@ -67,7 +71,9 @@ def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
         return None  # unreleased-package says it
     if need.how in ("find_package", "component") and not need.required:
         return "note"
-    if need.role == "test" or need.how in ("import", "launch", "plugin", "shell"):
+    if need.how in ("launch", "plugin", "shell") or name in _LAUNCHING:
+        return "warning" if need.required and need.role == "run" and name not in _LAUNCHING else "note"
+    if need.role == "test" or need.how == "import":
         return "warning" if need.required else "note"
     if not need.certain:
         return "note"

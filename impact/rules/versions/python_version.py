@@ -28,6 +28,8 @@ _SEVERITY = {"run": "error", "build": "error", "test": "warning", "aside": "note
 
 @rule(severity="error")
 def python_version(view: View):
+    if view.target.python_major < 3:
+        return
     minor = view.target.python
     for package in view:
         told = set()
@@ -43,8 +45,8 @@ def python_version(view: View):
         for item in package.digest.imports:
             if not minor or not view.certain(item.conditions):
                 continue
-            gone = view.providers.stdlib_removed(item.module, minor)
-            if gone and item.module not in view.workspace.modules:
+            if view.left_python(item.module) and item.module.split(".")[0] not in view.workspace.modules:
                 severity = _SEVERITY.get(item.role, "note")
-                yield Hit(item.at, item.module, f"module `{item.module}` is gone in Python 3.{minor}", gone, package.name,
+                yield Hit(item.at, item.module, f"module `{item.module}` is not in Python 3.{minor}",
+                          "use its successor, with an except branch where both must work", package.name,
                           severity="warning" if item.lazy and severity == "error" else severity)  # fmt: skip

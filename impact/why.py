@@ -1,0 +1,124 @@
+"""`rosimpact why NAME`: who provides a name on a target, since when, who uses it, and whether that is safe."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from .check import Options, open_workspace
+from .model.view import View
+
+
+class Offer(NamedTuple):
+    """One way to get a name. kind: workspace, package, key. version and since may be empty where not known."""
+
+    kind: str
+    name: str
+    version: str
+    since: str
+    note: str
+
+
+class Answer(NamedTuple):
+    """What a name is on one target. as_what: header, CMake package, Python module, executable, package or key.
+    used: `path:line` of uses in the workspace with the package. undeclared: packages that use it and do not declare it."""
+
+    target: str
+    as_what: str
+    offers: tuple[Offer, ...]
+    used: tuple[str, ...]
+    undeclared: tuple[str, ...]
+    changes: tuple[str, ...]
+
+
+def answers(name: str, path: Path, targets: tuple[str, ...]) -> list[Answer]:
+    """One answer a target and a meaning of the name. Raises as check() does."""
+    with open_workspace(path, Options(targets=targets)) as opened:
+        return [answer for view in opened.views for answer in _answers(view, name)]
+
+
+def _answers(view: View, name: str) -> list[Answer]:
+    found = []
+    for what, providers in (
+        ("header", view.header(name) if "/" in name or "." in name else ()),
+        ("CMake package", view.cmake(name)),
+        ("Python module", view.module(name)),
+        ("executable", tuple(view.providers.executable(name))),
+    ):
+        offers = tuple(_offer(view, p.name, p.package) for p in providers if p.name)
+        if not offers and any(not p.name for p in providers):
+            offers = (Offer("system", "", "", "", "comes with the compiler, CMake or Python"),)
+        if offers:
+            found.append((what, offers))
+    if view.available(name) or view.target.ever_released(name) or view.target.known_key(name):
+        kind = "package" if view.target.ever_released(name) or name in view.workspace.packages else "rosdep key"
+        found.insert(0, (kind, (_offer(view, name, ""),) if view.available(name) else ()))
+    used, undeclared = _uses(view, name)
+    changes = tuple(
+        f"{c.kind}: `{c.old}`" + (f" → `{c.new}`" if c.new else "") + f" ({c.state}{', since ' + c.since if c.since else ''})"
+        for c in view.target.changes()
+        if name in (c.old, c.new, c.package) or name == c.old.rsplit("::", 1)[-1]
+    )
+    if not found:
+        found = [("name", ())]
+    return [Answer(view.target.name, what, offers, used, undeclared, changes[:12]) for what, offers in found]
+
+
+def _offer(view: View, name: str, package: str) -> Offer:
+    target = view.target
+    here = view.workspace.packages.get(name)
+    if here is not None:
+        return Offer("workspace", name, here.manifest.version, "", here.path)
+    version = target.version(name)
+    if version is not None:
+        return Offer("package", name, version, target.since(name), "")
+    resolution = target.resolve(name)
+    if resolution is not None:
+        libraries = [f"{library} {target.library(library)}" for library in view.libraries_of(name) if target.library(library)]
+        return Offer("key", name, ", ".join(libraries), "", f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}")
+    last = target.last_distro(name)
+    return Offer("absent", name, "", "", f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there")
+
+
+def _uses(view: View, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    used, undeclared = [], []
+    for package in view:
+        closure = None
+        for need in view.needs(package):
+            if need.subject != name and all(p.name != name for p in need.providers):
+                continue
+            used.append(f"{need.at.path}:{need.at.line}")
+            closure = view.closure(package) if closure is None else closure
+            if not view.answered(need.providers, closure) and package.name not in undeclared:
+                undeclared.append(package.name)
+        for dependency in package.manifest.dependencies:
+            if dependency.name == name:
+                place = f"{package.digest.manifest_path}:{dependency.line}"
+                if place not in used:
+                    used.append(place)
+    return tuple(used), tuple(undeclared)
+
+
+def as_text(name: str, found: list[Answer]) -> str:
+    """The answers for people."""
+    lines = []
+    for answer in found:
+        lines.append(f"{answer.target}: `{name}` as {answer.as_what}")
+        for offer in answer.offers:
+            parts = [f"  {offer.kind} {offer.name}".rstrip(), offer.version, f"since {offer.since}" if offer.since else "", offer.note]
+            lines.append("  ".join(p for p in parts if p))
+        if not answer.offers:
+            lines.append("  nobody is known to provide it there")
+        lines += [f"  {change}" for change in answer.changes]
+    if found:
+        used = found[0].used
+        lines.append(f"used at {len(used)} places" + (":" if used else ""))
+        lines += [f"  {place}" for place in used[:12]]
+        if len(used) > 12:
+            lines.append(f"  and {len(used) - 12} more")
+        undeclared = sorted({p for a in found for p in a.undeclared})
+        if undeclared:
+            lines.append("not safe: used and not declared in " + ", ".join(undeclared))
+        elif used:
+            lines.append("safe: every package that uses it declares it, or something that brings it")
+    return "\n".join(lines)
