@@ -133,6 +133,7 @@ class DistroTarget(Target):
         self.distro = distro
         self.data_date = self._data.date
         self._overrides = {key: str(value) for key, value in (versions or {}).items()}
+        self._own_libraries = {library_name(key): value for key, value in self._overrides.items()}
         self._facts = _facts(distro, self._data)
         self.end_of_life = (self._facts.end_of_life or "") if self._facts else ""
         self.lts = bool(self._facts and self._facts.lts)
@@ -148,16 +149,36 @@ class DistroTarget(Target):
         self._names: frozenset[str] | None = None
         self._declared: dict[str, tuple[ReleasedDependency, ...] | None] = {}
         self._keys: dict[str, Resolution | None] = {}
+        self._all_keys: dict[str, Resolution] | None = None
         self._known: frozenset[str] | None = None
         self._ever: frozenset[str] | None = None
         self._by_debian: dict[str, tuple[str, ...]] | None = None
         self._with_manifests: bool | None = None
+        self._library_universe: frozenset[str] | None = None
         self._changes: tuple[Change, ...] | None = None
 
     def __reduce__(self):
         # A target travels to worker processes as its recipe; each opens the shared cache file itself.
         distro, date, platform, versions, name = self._asked
         return DistroTarget, (distro, date, platform, versions, name)
+
+    def changed(
+        self,
+        date: str | None = None,
+        platform: str | None = None,
+        versions: Mapping[str, str] | None = None,
+        name: str | None = None,
+    ) -> "DistroTarget":
+        """This target with another date, platform or name, and further versions on top of its own."""
+        distro, old_date, old_platform, old_versions, old_name = self._asked
+        return DistroTarget(
+            distro,
+            date or old_date,
+            platform or old_platform,
+            {**old_versions, **(versions or {})},
+            name or old_name,
+            self._data,
+        )
 
     def _place_date(self, date: str | None, notes: list[str]) -> str:
         if date is None:
@@ -215,7 +236,7 @@ class DistroTarget(Target):
         return self._released
 
     def version(self, package: str) -> str | None:
-        if package in self._overrides and self.ever_released(package):
+        if package in self._overrides and self._is_package(package):
             return self._overrides[package] or None
         released = self._packages().get(package)
         return _upstream(released.version) if released else None
@@ -225,10 +246,19 @@ class DistroTarget(Target):
         if self._names is None:
             names = set(self._packages())
             for name, version in self._overrides.items():
-                if self.ever_released(name):
+                if self._is_package(name):
                     names.add(name) if version else names.discard(name)
             self._names = frozenset(names)
         return self._names
+
+    def _is_package(self, name: str) -> bool:
+        """Whether an override means a ROS package: one released ever, or a name of no platform library."""
+        return self.ever_released(name) or library_name(name) not in self._all_libraries()
+
+    def _all_libraries(self) -> frozenset[str]:
+        if self._library_universe is None:
+            self._library_universe = frozenset(n for (n,) in self._data.rows("SELECT DISTINCT name FROM library"))
+        return self._library_universe
 
     def ever_released(self, package: str) -> bool:
         if self._ever is None:
@@ -420,17 +450,36 @@ class DistroTarget(Target):
     def keys_of(self, debian_package: str) -> tuple[str, ...]:
         """rosdep keys that install this system package on the platform, sorted; shortest names first."""
         if self._by_debian is None:
-            os_name, release = split_platform(self.platform)
             found: dict[str, list[str]] = {}
-            for key, rule, _ in self._data.rows(
-                "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key", (os_name, self._rule_ts)
-            ):
-                resolution = resolve_rule(decode_rule(rule), os_name, release)
-                if resolution and resolution.manager in ("apt", "dnf", "yum"):
+            for key, resolution in self._resolved_keys().items():
+                if resolution.manager in ("apt", "dnf", "yum"):
                     for name in resolution.packages:
                         found.setdefault(name, []).append(key)
             self._by_debian = {name: tuple(sorted(keys, key=lambda k: (len(k), k))) for name, keys in found.items()}
         return self._by_debian.get(debian_package, ())
+
+    def _resolved_keys(self) -> dict[str, Resolution]:
+        """Every key that resolves here with its resolution, read at once."""
+        if self._all_keys is None:
+            os_name, release = split_platform(self.platform)
+            moments = [self._rule_ts]
+            if self.end_of_life and self.end_of_life < self.date:
+                moments.append(_end_of_day(self.end_of_life))
+            found: dict[str, Resolution] = {}
+            for ts in moments:
+                seen: set[str] = set()
+                for system in (os_name, "*"):
+                    for key, rule, _ in self._data.rows(
+                        "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key", (system, ts)
+                    ):
+                        if rule is None or key in seen:
+                            continue
+                        seen.add(key)
+                        resolution = resolve_rule(decode_rule(rule), os_name, release)
+                        if resolution and key not in found:
+                            found[key] = resolution
+            self._all_keys = found
+        return self._all_keys
 
     def declared_ok(self, name: str) -> str:
         """How a name in a manifest stands here.
@@ -460,17 +509,15 @@ class DistroTarget(Target):
 
     @property
     def python(self) -> int:  # type: ignore[override]
-        """Minor version of the Python that ROS code runs on; distros on Python 2 (python_major 2) have 7."""
+        """Minor version of the Python 3 that ROS code runs on; 0 on Python 2 (python_major 2) and where not known."""
         if self.python_major == 2:
-            return 7
-        minor = python_minor(self.library("python"))
-        return minor if minor is not None else 0
+            return 0
+        return python_minor(self.library("python")) or 0
 
     def library(self, name: str) -> str | None:
         wanted = library_name(name)
-        for spelling in (name, wanted):
-            if spelling in self._overrides:
-                return self._overrides[spelling] or None
+        if wanted in self._own_libraries:
+            return self._own_libraries[wanted] or None
         instead = self._facts.libraries_from.get(wanted) if self._facts else None
         if instead and (version := self.version(instead)):
             return version
@@ -487,7 +534,8 @@ class DistroTarget(Target):
 
     def library_names(self) -> frozenset[str]:
         """Platform libraries whose version is known here."""
-        return frozenset(self._libraries()) | {library_name(name) for name, value in self._overrides.items() if value}
+        own = {name for name, value in self._own_libraries.items() if value and name in self._all_libraries()}
+        return frozenset(self._libraries()) | own
 
     def library_since(self, name: str) -> tuple[str, str] | None:
         """(platform, version) of the oldest platform of the same system that has this library in the same version."""

@@ -1,0 +1,347 @@
+"""From what a person writes after `--target`, or writes nowhere, to targets."""
+
+from __future__ import annotations
+
+import os
+import posixpath
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from . import snapshot as snapshots
+from .distro import DistroTarget, Known, TargetError, known_distros
+from .platform import CODENAMES, normal_platform
+from .snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from ..config import Config
+    from ..tree import Tree
+
+__all__ = ["Chosen", "TargetError", "choose_targets", "default_distros", "distros_named", "parse_target"]
+
+_DPKG = ".dpkg.txt"
+_DOCKER = "docker:"
+_DATE = re.compile(r"\d{4}-\d\d?-\d\d?$")
+_LARGEST = 200_000
+_AT_MOST = 4
+
+
+class Chosen(NamedTuple):
+    """A target and one clause that says why it was chosen."""
+
+    target: DistroTarget
+    reason: str
+
+
+# What a person writes
+
+
+def parse_target(
+    text: str, config: Config | None = None, folder: Path = Path(), data: Snapshot | None = None
+) -> DistroTarget:
+    """One target from its text.
+
+    text: `jazzy`, `humble@2024-03-01`, a target's name in rosimpact.toml (a date may follow it too), a captured
+    machine (`envs/laptop.json`), a listing of `dpkg -l` (`robot.dpkg.txt`), or `docker:osrf/ros:humble-desktop`, told
+    by its tag without network. folder: what file names are relative to. Raises TargetError, which lists what is known.
+    """
+    text = text.strip()
+    if text.startswith(_DOCKER):
+        return _docker(text, data)
+    if text.endswith(_DPKG):
+        return _dpkg(folder / text, text, data)
+    if text.endswith(".json"):
+        return _captured(folder / text, text)
+    named = config.targets if config else {}
+    base, at, date = text.partition("@")
+    for name, day in ((text, None), (base, date if at else None)):
+        if name in named:
+            assert config is not None
+            return _configured(name, named[name], config, day, text, data)
+    if at and not _DATE.match(date):
+        raise TargetError(f"`{text}`: `{date}` is no date: write it as in `{base}@2024-03-01`")
+    if base not in {known.name for known in known_distros(data)}:
+        raise TargetError(_unknown(text, base, named, folder, data))
+    return DistroTarget(base, date if at else None, name=text, data=data)
+
+
+def _unknown(text: str, base: str, named: Mapping[str, Any], folder: Path, data: Snapshot | None) -> str:
+    import difflib
+
+    distros = [known.name for known in known_distros(data)]
+    close = difflib.get_close_matches(base, [*distros, *named], 1)
+    hint = f"; did you mean `{close[0]}`?" if close else "."
+    own = f" Targets of rosimpact.toml: {', '.join(sorted(named))}." if named else ""
+    if (folder / text).exists():
+        hint = f": a file is read as a target when its name ends in `.json` or `{_DPKG}`."
+    return f"unknown target `{text}`{hint} Known distros: {', '.join(distros)}.{own}"
+
+
+def _configured(
+    name: str, table: Mapping[str, Any], config: Config, day: str | None, asked: str, data: Snapshot | None
+) -> DistroTarget:
+    """A [targets.NAME] table. Keys: distro or file, date, platform, versions."""
+    where = f"{config.path or 'rosimpact.toml'}: [targets.{name}]"
+    unknown = sorted(set(table) - {"distro", "file", "date", "platform", "versions"})
+    if unknown:
+        raise TargetError(f"{where} has no `{unknown[0]}`; known are distro, file, date, platform, versions")
+    versions = table.get("versions", {})
+    if not isinstance(versions, Mapping):
+        raise TargetError(f'{where}: `versions` must be a table, such as {{ opencv = "4.9" }}')
+    versions = {str(key): str(value) for key, value in versions.items()}
+    date = day or (str(table["date"]) if "date" in table else None)
+    platform = str(table["platform"]) if "platform" in table else None
+    if "file" in table:
+        folder = config.path.parent if config.path else Path()
+        base = parse_target(str(table["file"]), None, folder, data)
+        return base.changed(date=date, platform=platform, versions=versions, name=asked)
+    distro = str(table.get("distro", ""))
+    if "@" in distro:
+        distro, _, written = distro.partition("@")
+        date = date or written
+    try:
+        return DistroTarget(distro, date, platform, versions, asked, data)
+    except TargetError as error:
+        raise TargetError(f"{where}: {error}") from None
+
+
+def _captured(path: Path, text: str) -> DistroTarget:
+    from .capture import load_capture
+
+    if not path.is_file():
+        raise TargetError(f"{text}: there is no such file; write one with `rosimpact env capture -o {text}`")
+    return load_capture(path)
+
+
+# dpkg listings
+
+_STAMP = re.compile(r"-\d+([a-z]+)\.(\d{4})(\d\d)(\d\d)(?:\.\d+)?$")
+
+
+class DpkgRow(NamedTuple):
+    """An installed Debian package."""
+
+    name: str
+    version: str
+
+
+def parse_dpkg(text: str) -> list[DpkgRow]:
+    """Installed packages of a `dpkg -l` listing (or `dpkg-query -W`, two columns); other lines are left out."""
+    rows = []
+    for line in text.splitlines():
+        words = line.split()
+        if len(words) >= 3 and len(words[0]) in (2, 3) and words[0][:2] in ("ii", "hi"):
+            rows.append(DpkgRow(words[1].split(":")[0], words[2]))
+        elif len(words) == 2 and re.match(r"[a-z0-9][a-z0-9.+-]*(:\w+)?$", words[0]) and words[1][:1].isdigit():
+            rows.append(DpkgRow(words[0].split(":")[0], words[1]))
+    return rows
+
+
+def _dpkg(path: Path, text: str, data: Snapshot | None) -> DistroTarget:
+    """A machine from a listing of its packages. Its day is that of its newest ROS package, told by the build stamp."""
+    from .capture import from_dpkg
+
+    try:
+        listing = path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise TargetError(f"{text}: cannot be read ({error.strerror}); write it with `dpkg -l > {text}`") from None
+    rows = parse_dpkg(listing)
+    if not rows:
+        raise TargetError(f"{text}: lists no installed package; write it with `dpkg -l > {text}`")
+    distro, packages, libraries, _ = from_dpkg(rows)
+    if not distro:
+        raise TargetError(f"{text}: lists no package of a ROS distro (ros-<distro>-...)")
+    stamps = [match for row in rows if row.name.startswith(f"ros-{distro}-") and (match := _STAMP.search(row.version))]
+    date = max(("-".join(match.groups()[1:]) for match in stamps), default=None)
+    codename = Counter(match[1] for match in stamps).most_common(1)
+    platform = normal_platform(codename[0][0]) if codename else None
+    name = posixpath.basename(text).removesuffix(_DPKG)
+    return DistroTarget(distro, date, platform, {**libraries, **packages}, name, data)
+
+
+# Docker images
+
+_WORD = re.compile(r"[a-z0-9.]+")
+
+
+def parse_image(image: str, distros: Sequence[Known]) -> tuple[str, str | None] | None:
+    """(distro, platform or None) that a Docker image's name tells; None when it tells none.
+
+    The official `ros` image without a tag, or with `latest`, is the newest long-term release.
+    """
+    name = image.partition("@")[0].lower()
+    repository, colon, tag = name.rpartition(":")
+    if not colon or "/" in tag:
+        repository, tag = name, "latest"
+    names = {known.name for known in distros}
+    codenames = {platform.split()[1]: platform for platform in CODENAMES.values()}
+    words = _WORD.findall(tag)
+    distro = next((word for word in words if word in names), None)
+    if distro is None:
+        last = repository.rpartition("/")[2]
+        distro = next((word for word in _WORD.findall(last) if word in names), None)
+    if distro is None and tag == "latest" and repository in ("ros", "library/ros", "docker.io/library/ros"):
+        distro = _newest_lts(distros, 2)
+    if distro is None:
+        return None
+    # `jammy` and `22.04` both name Ubuntu's release; `12` alone names nothing.
+    release = next((codenames[word] for word in words if word in codenames), None)
+    release = release or next((CODENAMES[f"ubuntu {word}"] for word in words if f"ubuntu {word}" in CODENAMES), None)
+    return distro, release
+
+
+def _docker(text: str, data: Snapshot | None) -> DistroTarget:
+    distros = known_distros(data)
+    image = text[len(_DOCKER) :]
+    found = parse_image(image, distros)
+    if found is None:
+        names = ", ".join(known.name for known in distros)
+        raise TargetError(
+            f"`{text}`: the image's name tells no distro; write the distro itself, or a tag that names one of {names}"
+        )
+    return DistroTarget(found[0], None, found[1], None, text, data)
+
+
+# What stands when nothing is written
+
+
+class Named(NamedTuple):
+    """A distro and the file (or branch) that names it."""
+
+    distro: str
+    where: str
+
+
+_CI_FILE = re.compile(
+    r"(?:^|/)(?:\.github/workflows/[^/]+\.ya?ml|\.gitlab-ci\.ya?ml|\.gitlab/[^/]+\.ya?ml|\.travis\.ya?ml"
+    r"|\.circleci/config\.ya?ml|azure-pipelines\.ya?ml|Jenkinsfile|\.devcontainer/(?:[^/]+/)?devcontainer\.json"
+    r"|(?:[^/]*\.)?[Dd]ockerfile(?:\.[^/]*)?|(?:docker-)?compose\.ya?ml)$"
+)
+_COMMENT = re.compile(r"^\s*(?:#|//)|\s#\s.*")
+_SAYS_ROS = re.compile(r"(?i)ros|distro")
+_ITEM = re.compile(r"^\s*-\s*[\"']?([a-z]+)[\"']?\s*,?\s*$")
+
+
+def distros_named(text: str, distros: Iterable[str]) -> list[str]:
+    """Distros that a CI file or Dockerfile names, in order of first mention; comments do not count.
+
+    Many names are ordinary words (iron, rolling, crystal), so a line must speak of ROS or a distro, name two distros,
+    or be an item of a list in a file that speaks of ROS.
+    """
+    names = set(distros)
+    speaks_of_ros = re.search(r"(?i)\bros|ros[_-]", text) is not None
+    found: dict[str, None] = {}
+    for line in text.splitlines():
+        line = _COMMENT.sub("", line)
+        words = [word for word in re.findall(r"[a-z]+", line) if word in names]
+        if not words:
+            continue
+        item = _ITEM.match(line)
+        if len(set(words)) > 1 or (item and speaks_of_ros) or _SAYS_ROS.search(re.sub(r"\b\w*\$\{?\w+", "", line)):
+            found.update(dict.fromkeys(words))
+    return list(found)
+
+
+def default_distros(
+    ros: int,
+    texts: Iterable[tuple[str, str, str]],
+    branches: Iterable[tuple[str, str]],
+    distros: Sequence[Known],
+    environment: Mapping[str, str] = os.environ,
+    today: str = "",
+) -> tuple[tuple[str, ...], str]:
+    """Distros to check against when nobody said any, and the reason as a clause.
+
+    ros: generation of the workspace, 1 or 2. texts: (repository, path, text) of CI files and Dockerfiles. branches:
+    (repository, branch). today: ISO day that tells which distros have ended, the data's day.
+
+    The sourced environment comes first; then what the workspace's repositories name in their files, else in their
+    branches: those distros that most repositories name, at most four of them, and no ended one beside a living one; at
+    last the newest long-term distro of the generation.
+    """
+    fitting = {known.name: known for known in distros if known.ros == ros}
+    sourced = environment.get("ROS_DISTRO", "")
+    if sourced in fitting:
+        return (sourced,), "the sourced environment (ROS_DISTRO)"
+    named: dict[str, dict[str, str]] = {}
+    for repository, path, text in texts:
+        for distro in distros_named(text, fitting):
+            named.setdefault(repository, {}).setdefault(distro, path)
+
+    def lives(distro: str) -> bool:
+        return not fitting[distro].end_of_life or fitting[distro].end_of_life > today
+
+    if not any(lives(distro) for found in named.values() for distro in found):
+        # CI files of long ended distros are often left behind; a branch says what is meant now.
+        by_branch: dict[str, dict[str, str]] = {}
+        for repository, branch in branches:
+            for word in re.findall(r"[a-z]+", branch.lower()):
+                if word in fitting:
+                    by_branch.setdefault(repository, {}).setdefault(word, f"branch {branch}")
+        if not named or any(lives(distro) for found in by_branch.values() for distro in found):
+            named = by_branch
+    if named:
+        counts = Counter(distro for found in named.values() for distro in found)
+        most = max(counts.values())
+        chosen = [distro for distro in fitting if counts[distro] == most]
+        chosen = ([distro for distro in chosen if lives(distro)] or chosen)[-_AT_MOST:]
+        places = list(dict.fromkeys(found[distro] for found in named.values() for distro in chosen if distro in found))
+        where = places[0] + (f" and {len(places) - 1} more" if len(places) > 1 else "")
+        return tuple(chosen), f"named by the workspace ({where})"
+    return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, since nothing names another"
+
+
+def _newest_lts(distros: Sequence[Known], ros: int) -> str:
+    return [known.name for known in distros if known.ros == ros and known.lts][-1]
+
+
+def choose_targets(
+    asked: Sequence[str], config: Config, workspace: Any, tree: Tree, data: Snapshot | None = None
+) -> tuple[Chosen, ...]:
+    """The targets of a run, each with the reason for it.
+
+    asked: texts given after `--target`. config: rosimpact.toml. workspace: its `ros` (1 or 2) tells the generation.
+    tree: where CI files are read. Raises TargetError.
+    """
+    if asked:
+        return tuple(Chosen(parse_target(text, config, data=data), "asked for") for text in dict.fromkeys(asked))
+    if config.default_targets:
+        folder = config.path.parent if config.path else Path()
+        reason = f"named in {config.path.name if config.path else 'rosimpact.toml'}"
+        return tuple(Chosen(parse_target(text, config, folder, data), reason) for text in config.default_targets)
+    known = known_distros(data)
+    ros = getattr(workspace, "ros", 2) or 2
+    day = (data or snapshots.default()).date
+    repositories = sorted(tree.repositories, key=len, reverse=True)
+    texts = _ci_texts(tree, repositories)
+    branches = ((folder, branch) for folder, path in tree.repositories.items() if (branch := branch_of(Path(path))))
+    distros, reason = default_distros(ros, texts, branches, known, today=day)
+    return tuple(Chosen(DistroTarget(distro, data=data), reason) for distro in distros)
+
+
+def _ci_texts(tree: Tree, repositories: Sequence[str]) -> Iterable[tuple[str, str, str]]:
+    for entry in tree.entries():
+        if entry.size <= _LARGEST and _CI_FILE.search(entry.path):
+            try:
+                text = tree.read(entry.path).decode("utf-8", "replace")
+            except OSError:
+                continue
+            yield _owner(entry.path, repositories), entry.path, text
+
+
+def _owner(path: str, repositories: Sequence[str]) -> str:
+    return next((folder for folder in repositories if folder in ("", ".") or path.startswith(folder + "/")), "")
+
+
+def branch_of(repository: Path, read: Callable[[Path], str] = Path.read_text) -> str:
+    """The branch checked out in a git repository, empty when none is (a detached or bare one without HEAD)."""
+    git = repository / ".git"
+    try:
+        if git.is_file():
+            git = (repository / read(git).partition("gitdir:")[2].strip()).resolve()
+        head = read((git if git.is_dir() else repository) / "HEAD")
+    except (OSError, UnicodeDecodeError):
+        return ""
+    return head.strip().removeprefix("ref: refs/heads/") if head.startswith("ref: refs/heads/") else ""
