@@ -11,7 +11,7 @@ from hashlib import blake2b
 from typing import TYPE_CHECKING, NamedTuple
 
 from .facts.place import Allow
-from .rules.rule import SEVERITIES, Finding, Hit, Rule
+from .rules.rule import SEVERITIES, Cure, Finding, Hit, Rule
 
 if TYPE_CHECKING:
     from .config import PathSetting
@@ -36,12 +36,17 @@ class SettingsError(ValueError):
     """A setting that cannot be obeyed; the text names it and what to write instead."""
 
 
+def _never(fix: tuple[Cure, ...], target: str) -> bool:
+    return False
+
+
 def merge(
     hits: Iterable[tuple[str, str, Hit]],
     *,
     targets: Sequence[str],
     rules: Mapping[str, Rule],
     line_text: Callable[[str, int], str],
+    holds: Callable[[tuple[Cure, ...], str], bool] = _never,
 ) -> list[Finding]:
     """One fact about several targets becomes one finding.
 
@@ -49,8 +54,9 @@ def merge(
     order. rules: for the severity of hits that name none. line_text: the text of a line, empty when it cannot be read.
 
     Hits of the same rule, path, line, subject and severity are one finding; what two hits say about one target with
-    different words stays apart. The fix is kept when every target asked for yields the same. Sorted by path, line,
-    column, rule; fingerprinted.
+    different words stays apart. The fix is kept when every target asked for yields the same, or where a target yields
+    no such hit, when `holds(fix, target)` says that it is right there as well. Sorted by path, line, column, rule;
+    fingerprinted.
     """
     order = {name: index for index, name in enumerate(targets)}
     groups: dict[tuple, list[dict[str, Hit]]] = {}
@@ -61,12 +67,16 @@ def merge(
         names = (target,) if target else tuple(targets) or ("",)
         _place(groups.setdefault(key, []), names, hit)
     findings = [
-        _finding(rule, severity, path, line, subject, by_target, order)
+        _finding(rule, severity, path, line, subject, by_target, order, holds)
         for (rule, severity, path, line, subject), facts in groups.items()
         for by_target in facts
     ]
-    findings.sort(key=_sort_key)
-    return fingerprinted(findings, line_text)
+    return fingerprinted(in_order(findings), line_text)
+
+
+def in_order(findings: Iterable[Finding]) -> list[Finding]:
+    """Findings by path, line, column, rule and subject, the graver first: the order of every report."""
+    return sorted(findings, key=_sort_key)
 
 
 def _place(facts: list[dict[str, Hit]], names: tuple[str, ...], hit: Hit) -> None:
@@ -80,12 +90,21 @@ def _place(facts: list[dict[str, Hit]], names: tuple[str, ...], hit: Hit) -> Non
 
 
 def _finding(
-    rule: str, severity: str, path: str, line: int, subject: str, by_target: dict[str, Hit], order: dict[str, int]
+    rule: str,
+    severity: str,
+    path: str,
+    line: int,
+    subject: str,
+    by_target: dict[str, Hit],
+    order: dict[str, int],
+    holds: Callable[[tuple[Cure, ...], str], bool],
 ) -> Finding:
     names = sorted(by_target, key=lambda name: order.get(name, len(order)))
     hits = [by_target[name] for name in names]
     first = hits[0]
-    everywhere = all(name in by_target for name in order)
+    right = bool(first.fix) and all(
+        by_target[name].fix == first.fix if name in by_target else holds(first.fix, name) for name in order or by_target
+    )
     return Finding(
         rule=rule,
         severity=severity,
@@ -97,7 +116,7 @@ def _finding(
         targets=tuple(name for name in names if name),
         message=joined([(name, hit.message) for name, hit in zip(names, hits, strict=True)]),
         help=joined([(name, hit.help) for name, hit in zip(names, hits, strict=True)]),
-        fix=first.fix if everywhere and all(hit.fix == first.fix for hit in hits) else (),
+        fix=first.fix if right else (),
     )
 
 

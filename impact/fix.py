@@ -12,7 +12,8 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from .rules.rule import Edit, Finding
+from .rules.cure import Declare, Insert, Remove, Replace
+from .rules.rule import Cure, Edit, Finding
 
 _BOM = b"\xef\xbb\xbf"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*\Z")
@@ -21,6 +22,7 @@ _MARKUP = re.compile(
     rb"""|<(?P<close>/?)(?P<tag>[A-Za-z_][\w:.-]*)(?P<attributes>(?:[^<>"']|"[^"]*"|'[^']*')*?)(?P<empty>/?)>""",
     re.DOTALL,
 )
+_DECLARATION = re.compile(r"\s*<(?:\w+_)?depend>")
 _COMMENTS_ONLY = re.compile(rb"(?:[ \t]*<!--(?:(?!-->|\n).)*-->)*[ \t]*\Z")
 # The order in which REP 149 lists them and most manifests have them.
 _TAG_ORDER = (
@@ -49,16 +51,69 @@ class Applied(NamedTuple):
     refused: list[tuple[Edit, str]]
 
 
+def made(findings: Iterable[Finding], read: Callable[[str], bytes | None]) -> list[Finding]:
+    """Findings whose fixes are byte edits: what rules propose by name and place is looked up in the files.
+
+    read: bytes of a path, None when it cannot be read. A fix of which a part cannot be made, or would change nothing,
+    is dropped. What several findings want of one dependency is declared once, in a form that holds for all.
+    """
+    findings = list(findings)
+    wanted: dict[tuple[str, str], set[str]] = {}
+    for finding in findings:
+        for cure in finding.fix:
+            if isinstance(cure, Declare):
+                wanted.setdefault((cure.path, cure.name), set()).add(cure.tag)
+    content: dict[str, bytes | None] = {}
+
+    def edits(fix: tuple[Cure, ...]) -> tuple[Edit, ...]:
+        result: list[Edit] = []
+        for cure in fix:
+            if cure.path not in content:
+                content[cure.path] = read(cure.path)
+            data = content[cure.path]
+            part = () if data is None else _made(cure, data, wanted)
+            if not part:
+                return ()
+            result += part
+        return tuple(result)
+
+    return [finding._replace(fix=edits(finding.fix)) if finding.fix else finding for finding in findings]
+
+
+def _made(cure: Cure, data: bytes, wanted: dict[tuple[str, str], set[str]]) -> tuple[Edit, ...]:
+    if isinstance(cure, Declare):
+        tags = wanted.get((cure.path, cure.name), {cure.tag})
+        return declare_dependency(data, cure.name, _joint(cure.tag, tags), cure.path)
+    if isinstance(cure, Remove):
+        return remove_dependency(data, cure.name, cure.tag, cure.path)
+    if isinstance(cure, Replace):
+        edit = replace_text(cure.path, data, cure.line, cure.column, cure.old, cure.new)
+        return (edit,) if edit else ()
+    if isinstance(cure, Insert):
+        edit = insert_lines(cure.path, data, cure.line, cure.text)
+        return (edit,) if edit else ()
+    return (cure,)
+
+
+def _joint(tag: str, tags: set[str]) -> str:
+    """The tag to declare where several are wanted for one name: `depend` beside its own parts is an error (REP 140)."""
+    parts = {*_COVERS["depend"], "depend"}
+    if tag in parts and ("depend" in tags or parts - {"depend"} <= tags):
+        return "depend"
+    return "depend" if tag == "test_depend" and "depend" in tags else tag
+
+
 def fixes(findings: Iterable[Finding]) -> list[tuple[Edit, ...]]:
-    """The fixes that findings offer, in their order, each once."""
-    return list(dict.fromkeys(finding.fix for finding in findings if finding.fix))
+    """The fixes that findings offer as byte edits (see `made`), in their order, each once."""
+    edits = (tuple(part for part in finding.fix if isinstance(part, Edit)) for finding in findings)
+    return list(dict.fromkeys(fix for fix in edits if fix))
 
 
 def apply(fixes: Iterable[Sequence[Edit]], read: Callable[[str], bytes | None]) -> Applied:
     """Applies fixes to the bytes of their files. A fix is applied whole or not at all.
 
     read: bytes of a path, None when it cannot be read. Where fixes overlap, the first is kept and the others refused;
-    an edit asked for twice is made once. Insertions at one place keep their order.
+    an edit asked for twice is made once. Insertions at one place keep their order, dependencies of a manifest excepted.
     """
     content: dict[str, bytes] = {}
     accepted: dict[str, list[Edit]] = {}
@@ -104,7 +159,10 @@ def _edited(data: bytes, edits: Iterable[Edit]) -> bytes:
     pieces = []
     position = 0
     # Insertions go before a replacement that starts at the same place; sorting is stable, so they keep their order.
-    for edit in sorted(edits, key=lambda edit: (edit.start, edit.end)):
+    # Dependencies declared at one place are put in alphabetical order, since manifests often are.
+    for edit in sorted(
+        edits, key=lambda edit: (edit.start, edit.end, (_DECLARATION.match(edit.text) and edit.text) or "")
+    ):
         pieces += (data[position : edit.start], edit.text.encode("utf-8", "surrogateescape"))
         position = edit.end
     return b"".join((*pieces, data[position:]))
@@ -173,6 +231,30 @@ def replace_text(path: str, data: bytes, line: int, column: int, old: str, new: 
         return None
     wanted = old.encode()
     return Edit(path, start, start + len(wanted), new) if data.startswith(wanted, start) else None
+
+
+def insert_lines(path: str, data: bytes, line: int, text: str) -> Edit | None:
+    """The edit that puts lines behind a line (0: at the start), indented and ended as that line is; None when there is
+    no such line."""
+    ending = _ending(data, 0)
+    if line == 0:
+        start = len(_BOM) if data.startswith(_BOM) else 0
+        return Edit(path, start, start, text.replace("\n", ending) + ending)
+    try:
+        start = offset_of(data, line)
+    except ValueError:
+        return None
+    if start == len(data):
+        return None
+    end = data.find(b"\n", start)
+    own = data[start : len(data) if end < 0 else end]
+    indent = own[: len(own) - len(own.lstrip(b" \t"))].decode("ascii")
+    if end >= 0:
+        ending = "\r\n" if own.endswith(b"\r") else "\n"
+    lines = ending.join(indent + each if each else each for each in text.split("\n"))
+    if end < 0:
+        return Edit(path, len(data), len(data), ending + lines)
+    return Edit(path, end + 1, end + 1, lines + ending)
 
 
 class _Element(NamedTuple):

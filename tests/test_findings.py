@@ -98,6 +98,20 @@ def test_a_fix_is_kept_when_every_target_asked_for_yields_it(fixes, expected):
     assert finding.fix == expected
 
 
+def test_a_fix_is_kept_where_it_is_right_without_a_hit():
+    hits = [("removed-header", target, hit(fix=FIX)) for target in ("jazzy", "rolling")]
+    asked = []
+
+    def holds(fix, target):
+        asked.append((fix, target))
+        return target == "humble"
+
+    options = {"rules": RULES, "line_text": lambda path, line: ""}
+    assert merge(hits, targets=TARGETS, holds=holds, **options)[0].fix == FIX
+    assert asked == [(FIX, "humble")]
+    assert merge(hits, targets=(*TARGETS, "noetic"), holds=holds, **options)[0].fix == ()
+
+
 def test_findings_come_in_file_order_and_a_hit_without_place_is_kept():
     findings = merged(
         ("removed-header", "", hit(path="b.cpp")),

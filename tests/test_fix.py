@@ -13,12 +13,15 @@ from rosimpact.impact.fix import (
     apply,
     declare_dependency,
     fixes,
+    insert_lines,
+    made,
     offset_of,
     remove_dependency,
     replace_text,
     unified_diff,
     write,
 )
+from rosimpact.impact.rules.cure import Declare, Insert, Remove, Replace
 from rosimpact.impact.rules.rule import Edit, Finding
 
 HEAD = '<package format="{}">\n  <name>p</name>\n  <version>1.0.0</version>\n  <description>d</description>\n'
@@ -103,7 +106,7 @@ def test_declaring_changes_only_the_dependency(version, before, name, tag, after
 
 def test_several_declarations_can_be_made_at_once():
     data = manifest("  <depend>a</depend>\n  <depend>z</depend>\n", 2)
-    outcome = apply([declare_dependency(data, name) for name in ("c", "d", "c", "zz")], {"package.xml": data}.get)
+    outcome = apply([declare_dependency(data, name) for name in ("d", "c", "zz", "d")], {"package.xml": data}.get)
     assert outcome.refused == []
     package = parse_package_string(outcome.files["package.xml"].decode())
     assert [dependency.name for dependency in package.build_depends] == ["a", "c", "d", "z", "zz"]
@@ -291,3 +294,60 @@ def test_fixes_are_taken_once():
     fix = (edit(0, 0, "x"),)
     finding = Finding("r", "error", "p", "f", 1, 1, "s", ("t",), "m", fix=fix)
     assert fixes([finding, finding, finding._replace(fix=())]) == [fix]
+
+
+def wish(*fix):
+    return Finding("r", "error", "p", "f", 1, 1, "s", ("t",), "m", fix=fix)
+
+
+# (what rules propose, one tuple per finding; body of the manifest before and after; how many findings keep a fix)
+PROPOSED = [
+    ([(Declare("package.xml", "c"),)], "", "  <depend>c</depend>\n", 1),
+    # one name wanted in several ways is declared once, in a form that holds for all
+    ([(Declare("package.xml", "c", "build_depend"),), (Declare("package.xml", "c", "depend"),)], "",
+     "  <depend>c</depend>\n", 2),
+    ([(Declare("package.xml", "c", "test_depend"),), (Declare("package.xml", "c", "depend"),)], "",
+     "  <depend>c</depend>\n", 2),
+    ([(Declare("package.xml", "c", "build_depend"),), (Declare("package.xml", "c", "exec_depend"),)],
+     "  <depend>a</depend>\n",
+     "  <build_depend>c</build_depend>\n  <depend>a</depend>\n  <exec_depend>c</exec_depend>\n", 2),
+    # nothing to change, nothing offered
+    ([(Declare("package.xml", "a"),)], "  <depend>a</depend>\n", "  <depend>a</depend>\n", 0),
+    ([(Remove("package.xml", "a"),)], "  <depend>a</depend>\n", "", 1),
+    ([(Remove("package.xml", "b"),)], "  <depend>a</depend>\n", "  <depend>a</depend>\n", 0),
+    # a fix of which a part cannot be made is dropped whole
+    ([(Declare("package.xml", "c"), Replace("gone.cpp", 1, 1, "a", "b"))], "", "", 0),
+    ([(Insert("package.xml", 6, "<depend>c</depend>"),)], "", "  <depend>c</depend>\n", 1),
+    ([(Replace("package.xml", 7, 11, "a", "b"),)], "  <depend>a</depend>\n", "  <depend>b</depend>\n", 1),
+    ([(Replace("package.xml", 7, 11, "x", "b"),)], "  <depend>a</depend>\n", "  <depend>a</depend>\n", 0),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("proposed", "before", "after", "kept"), PROPOSED)
+def test_what_rules_propose_becomes_edits(proposed, before, after, kept):
+    files = {"package.xml": manifest(before)}
+    findings = made([wish(*fix) for fix in proposed], files.get)
+    assert sum(bool(finding.fix) for finding in findings) == kept
+    outcome = apply(fixes(findings), files.get)
+    assert outcome.refused == []
+    result = outcome.files.get("package.xml", files["package.xml"])
+    assert result == manifest(after)
+    parse_package_string(result.decode())
+
+
+@pytest.mark.parametrize(
+    ("data", "line", "text", "expected"),
+    [
+        (b"a\nb\n", 1, "x", b"a\nx\nb\n"),
+        (b"a\r\n  b\r\n", 2, "x\ny", b"a\r\n  b\r\n  x\r\n  y\r\n"),
+        (b"a\n\tb", 2, "x", b"a\n\tb\n\tx"),
+        (b"a\n", 0, "x", b"x\na\n"),
+        (b"\xef\xbb\xbfa\r\n", 0, "x", b"\xef\xbb\xbfx\r\na\r\n"),
+        (b"a\n", 2, "x", None),
+        (b"a\n", 9, "x", None),
+        (b"", 1, "x", None),
+    ],
+)
+def test_insert_lines(data, line, text, expected):
+    change = insert_lines("f", data, line, text)
+    assert (change and apply([(change,)], {"f": data}.get).files["f"]) == expected

@@ -123,7 +123,7 @@ def _result(report: Report, finding: Finding, silent: list[dict[str, str]], inde
         result["baselineState"] = "new" if finding.new else "unchanged"
     if silent:
         result["suppressions"] = silent
-    if finding.fix:
+    if any(isinstance(part, Edit) for part in finding.fix):
         result["fixes"] = [_fix(finding)]
     return result
 
@@ -164,7 +164,8 @@ def _artifact(path: str) -> dict[str, str]:
 def _fix(finding: Finding) -> dict[str, Any]:
     by_path: dict[str, list[Edit]] = {}
     for edit in finding.fix:
-        by_path.setdefault(edit.path, []).append(edit)
+        if isinstance(edit, Edit):
+            by_path.setdefault(edit.path, []).append(edit)
     return {
         "description": {"text": finding.help or "apply the fix"},
         "artifactChanges": [
