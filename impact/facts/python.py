@@ -216,6 +216,25 @@ def _parse(text: str) -> ast.Module:
         return ast.parse(text)
 
 
+def _as_python2(text: str, error: SyntaxError) -> tuple[tuple[Problem, ...], ast.Module | None, str]:
+    """What only Python 2 reads in a refused text, the tree of the text rewritten, when that parses, and that text."""
+    old, rewritten = python2.find(text)
+    tabs = error if isinstance(error, TabError) else None
+    for _ in range(2):
+        if tabs is not None:
+            old = (*old, Problem(tabs.lineno or 1, "tabs mixed with spaces"))
+            rewritten = python2.without_tabs(rewritten)
+        if not old:
+            break
+        try:
+            return old, _parse(rewritten), rewritten
+        except TabError as again:
+            tabs = again
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            break
+    return old, None, text
+
+
 def extract(data: bytes) -> PythonFile:
     """The facts of one Python file, read by this interpreter's own parser. Never raises.
 
@@ -223,6 +242,7 @@ def extract(data: bytes) -> PythonFile:
     read line by line and all else is left out.
     """
     text, problems = _decode(data)
+    rewritten = text
     first_line = text.split("\n", 1)[0]
     interpreter = first_line.strip() if _SHEBANG.match(first_line) else ""
     old: tuple[Problem, ...] = ()
@@ -232,22 +252,13 @@ def extract(data: bytes) -> PythonFile:
         tree = None
         line = min(getattr(error, "lineno", None) or 1, text.count("\n") + 1)
         if isinstance(error, SyntaxError):
-            old, rewritten = python2.find(text)
-            if isinstance(error, TabError):
-                old = (*old, Problem(line, "tabs mixed with spaces"))
-                rewritten = rewritten.expandtabs()
-            if old:
-                try:
-                    tree = _parse(rewritten)
-                    text = rewritten
-                except (SyntaxError, ValueError, RecursionError, MemoryError):
-                    tree = None
+            old, tree, rewritten = _as_python2(text, error)
         if not old:
             what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
             problems = (*problems, Problem(line, f"not parsed: {what}"))
     if tree is not None:
         try:
-            reader = _Reader(text)
+            reader = _Reader(rewritten, text)
             reader.read(tree)
             return PythonFile(
                 imports=tuple(reader.imports),
@@ -314,8 +325,9 @@ def _imports_by_line(text: str) -> tuple[Import, ...]:
 class _Reader:
     """One walk over a syntax tree, in the order of the source."""
 
-    def __init__(self, text: str) -> None:
-        self.text = text
+    def __init__(self, text: str, original: str) -> None:
+        # The two differ where Python 2 syntax was rewritten; lines are the same, indentation may not be.
+        self.original = original.split("\n") if original != text else []
         self.ascii = text.isascii()
         self.lines = text.split("\n")
         self.has_paths = "package://" in text or "$(find" in text
@@ -385,9 +397,13 @@ class _Reader:
 
     def column(self, line: int, offset: int) -> int:
         """A parser's offset in UTF-8 bytes as a column in characters, from 1."""
-        if self.ascii or line > len(self.lines):
+        if line > len(self.lines):
             return offset + 1
-        return len(self.lines[line - 1].encode("utf-8", "replace")[:offset].decode("utf-8", "ignore")) + 1
+        if not self.ascii:
+            offset = len(self.lines[line - 1].encode("utf-8", "replace")[:offset].decode("utf-8", "ignore"))
+        if self.original:
+            offset = max(0, offset - len(self.lines[line - 1]) + len(self.original[line - 1]))
+        return offset + 1
 
     def need(self, minor: int, node, reason: str) -> None:
         if self.needs is None or minor > self.needs[0]:

@@ -15,6 +15,7 @@ _HIDDEN = re.compile(
     r"|'(?:[^'\\\n]+|\\[\s\S])*'?"
     r"|#[^\n]*"
 )
+_INDENTATION = re.compile(r"^[ \t]*\t[ \t]*", re.MULTILINE)
 _NOT_NEWLINE = re.compile(r"[^\n]+")
 _STATEMENT = r"(?:(?<=\n)|(?<=;)|(?<=:)|\A)[ \t]*"
 
@@ -22,7 +23,9 @@ _PRINT = re.compile(
     _STATEMENT + r"(print)(?:[ \t]*(>>)|[ \t]*(?=[\"'`])|[ \t]+(?!(?:in|is|and|or|if|not|for)\b)(?=[A-Za-z_0-9{\[]))"
     r"(?![ \t]*\w+[ \t]*=[^=])"
 )
-_EXCEPT = re.compile(r"except[ \t]+(?:[\w.]+(?:\([^()\n]*\))?|\([^()]*\))[ \t]*(,[ \t]*[\w.\[\]]+)[ \t]*:")
+_EXCEPT = re.compile(
+    r"except[ \t]+(?:[\w.]+(?:\([^()\n]*\))?|\([^()]*\))[ \t]*(,[ \t]*(?:[\w.\[\]]+|\([\w, \t]*\)))[ \t]*:"
+)
 _EXEC = re.compile(_STATEMENT + r"(exec)(?:[ \t]*(?=[\"'])|[ \t]+(?=[A-Za-z_0-9]))")
 _RAISE = re.compile(_STATEMENT + r"(raise)[ \t]+[\w.]+(?:\([^()\n]*\))?[ \t]*,")
 _UNEQUAL = re.compile(r"<>")
@@ -49,6 +52,11 @@ def mask(text: str) -> str:
         return hidden[0] + inside + ("\n" if hidden[-1] == "\n" else hidden[0])
 
     return _HIDDEN.sub(blank, text)
+
+
+def without_tabs(text: str) -> str:
+    """The text with its indentation in spaces, as Python 2 reads it: a tab goes on to the next multiple of eight."""
+    return _INDENTATION.sub(lambda match: match.group().expandtabs(8), text)
 
 
 def find(text: str) -> tuple[tuple[Problem, ...], str]:

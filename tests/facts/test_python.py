@@ -176,6 +176,7 @@ def test_a_reference_stands_where_the_name_does():
         ("if a: print b", 1, "print statement"),
         ("\ntry:\n  pass\nexcept A, e:\n  pass", 4, "`except X, e`"),
         ("try:\n  pass\nexcept (A, B), e:\n  pass", 3, "`except X, e`"),
+        ("try:\n  pass\nexcept E, (a, b):\n  pass", 3, "`except X, e`"),
         ('exec "a = 1"', 1, "exec statement"),
         ("exec code in ns", 1, "exec statement"),
         ('raise E, "m"', 1, '`raise E, "message"`'),
@@ -218,6 +219,12 @@ def test_imports_of_a_python_2_file_are_read():
     facts = extract(b"import a\nif PY2:\n    print 'x', a.b\n    import c\n")
     assert [(i.module, conditions_of(i)) for i in facts.imports] == [("a", []), ("c", ["PY2"])]
     assert [a.text for a in facts.attributes] == ["a.b"]
+
+
+def test_columns_of_a_file_with_mixed_tabs():
+    facts = extract(b"if a:\n        x = 1\n\timport b; print 'x'\n")
+    assert [(i.line, i.column) for i in facts.imports] == [(3, 9)]
+    assert [p.message for p in facts.python2_only] == ["print statement", "tabs mixed with spaces"]
 
 
 def test_imports_of_a_broken_file_are_read_by_their_look():
@@ -318,8 +325,8 @@ PIECES = st.sampled_from([
     "import a\n", "from b import c\n", "try:\n", " pass\n", "except A, e:\n", "print 'x'\n", "if PY2:\n", " ", "\n",
     "\t", "(", ")", "[", "]", "'", '"""', "#", "\\", "f'{a}'", "é", "\0", "Node(package='p', executable='e')\n", ", ",
     "x = ", "share + ", "'/a'", "os.path.join(", "FindPackageShare('p')", "lambda a: ", "def f(a, (b, c)):\n", "a.b.c",
-    "0777", "`a`", "<>", "@", "with (a as b): pass\n", "'package://p/a'", ":=", "match x:\n", "class C: ", "\r\n", "get_path(",
-    "global a\n", ".find('p')",
+    "0777", "`a`", "<>", "@", "with (a as b): pass\n", "'package://p/a'", ":=", "match x:\n", "class C: ", "\r\n",
+    "get_path(", "global a\n", ".find('p')",
 ])  # fmt: skip
 
 
