@@ -28,11 +28,9 @@ class FileFacts(msgspec.Struct, Generic[T], frozen=True, array_like=True, gc=Fal
     allows: tuple[Allow, ...] = ()
 
 
-# kind: (module, struct, version). Raise the version with every change of what an extractor says: it is part of the key
-# under which facts are stored.
 EXTRACTORS: dict[str, tuple[str, str, int]] = {
-    "manifest": ("manifest", "Manifest", 1),
-    "manifest_variant": ("manifest", "Manifest", 1),
+    "manifest": ("manifest", "Manifest", 2),
+    "manifest_variant": ("manifest", "Manifest", 2),
     "cmake": ("cmake", "CMakeFile", 1),
     "msg": ("interface", "Interface", 1),
     "srv": ("interface", "Interface", 1),
@@ -40,18 +38,20 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "idl": ("interface", "Interface", 1),
     "cpp": ("cpp", "CppFile", 1),
     "python": ("python", "PythonFile", 1),
-    "launch_xml": ("launch", "ReferenceFile", 1),
-    "launch_yaml": ("launch", "ReferenceFile", 1),
-    "xacro": ("launch", "ReferenceFile", 1),
-    "plugin_xml": ("launch", "ReferenceFile", 1),
-    "xml": ("launch", "ReferenceFile", 1),
-    "params": ("launch", "ReferenceFile", 1),
-    "shell": ("launch", "ReferenceFile", 1),
-    "setup_py": ("setup", "SetupFile", 1),
-    "setup_cfg": ("setup", "SetupFile", 1),
-    "pyproject": ("setup", "SetupFile", 1),
+    "launch_xml": ("launch", "ReferenceFile", 2),
+    "launch_yaml": ("launch", "ReferenceFile", 2),
+    "xacro": ("launch", "ReferenceFile", 2),
+    "plugin_xml": ("launch", "ReferenceFile", 2),
+    "xml": ("launch", "ReferenceFile", 2),
+    "params": ("launch", "ReferenceFile", 2),
+    "shell": ("launch", "ReferenceFile", 2),
+    "setup_py": ("setup", "SetupFile", 2),
+    "setup_cfg": ("setup", "SetupFile", 2),
+    "pyproject": ("setup", "SetupFile", 2),
     "script": ("", "", 1),
 }
+"""kind: (module, struct, version). Raise the version with every change of what an extractor says: it is part of the key
+under which facts are stored."""
 WITH_KIND = frozenset({"interface", "launch", "setup"})
 
 BY_NAME = {
@@ -83,7 +83,7 @@ BY_ENDING = {
 }
 # Templates that configure_file() fills in; what they mention is mentioned all the same.
 TEMPLATES = {"cmake", "h", "hpp", "cpp", "cc", "launch", "urdf", "xacro", "world", "sdf", "sh", "bash"}
-VARIANT = re.compile(r"package[._-][\w.-]*\.xml$|package\.xml[._-][\w.-]+$")
+VARIANT = re.compile(r"package[._-][\w.-]*\.xml$|package\.xml[._-]?ros[\w.-]*$")
 PLUGIN = re.compile(r"plugin|nodelet|_controllers?\.xml$|_layers?\.xml$")
 # Names without an ending that are prose, data or marks, never scripts.
 PROSE = frozenset({
@@ -205,11 +205,14 @@ def decode(kind: str, data: bytes) -> FileFacts[Any]:
 
     Raises msgspec.DecodeError (its subclass ValidationError where the shape differs) when the bytes are not such facts.
     """
-    if kind == "script":
-        kind = _raw.decode(data).kind
-        if kind not in EXTRACTORS:
-            raise msgspec.ValidationError(f"no kind of facts is called `{kind}`")
-    return _decoder(kind).decode(data)
+    try:
+        if kind == "script":
+            kind = _raw.decode(data).kind
+            if kind not in EXTRACTORS:
+                raise msgspec.ValidationError(f"no kind of facts is called `{kind}`")
+        return _decoder(kind).decode(data)
+    except (UnicodeDecodeError, RecursionError) as error:
+        raise msgspec.DecodeError(f"these bytes are no facts: {error}") from error
 
 
 _raw = msgspec.msgpack.Decoder(FileFacts[msgspec.Raw])

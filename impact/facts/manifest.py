@@ -271,8 +271,12 @@ def _is_plain(
     for dependency in dependencies:
         if dependency.name == own:
             return False
-        if seen.setdefault((dependency.name, dependency.kind), dependency.tag) != dependency.tag:
+        before = seen.setdefault((dependency.name, dependency.kind), dependency.tag)
+        if before != dependency.tag:
             return False
+    generic = [d.name for d in dependencies if d.tag == "depend" and d.kind == "build"]
+    if len(generic) != len(set(generic)):
+        return False
     if format_ == 1:
         tested = {d.name for d in dependencies if d.kind == "test"}
         return not any(d.name in tested for d in dependencies if d.kind in ("build", "exec"))

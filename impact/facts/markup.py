@@ -17,9 +17,11 @@ TOKEN = re.compile(
     r"<!--.*?(?:-->|\Z)"
     r"|<!\[CDATA\[(?P<cdata>.*?)(?:\]\]>|\Z)"
     r"|<\?.*?(?:\?>|\Z)"
-    r"|<!DOCTYPE[^>\[]*(?:\[[^\]]*\]\s*)?>"
+    r"|<!DOCTYPE[^<>\[]*(?:\[.*?(?:\]\s*>|\Z)|>)"
     r"|<(?P<close>/?)(?P<name>[A-Za-z_][\w:.-]*)"
-    r"(?P<rest>[^<>\"']*(?:(?:\"[^\"<]*\"|'[^'<]*')[^<>\"']*)*)>",
+    # XML allows no `<` in a value; some readers do (`type="a::B<c::D>"`), so one may stand there within a line
+    r"(?P<rest>[^<>\"']*(?:(?:\"(?:[^\"<]*|[^\"<\n]{0,400}<[^\"\n]{0,400})\""
+    r"|'(?:[^'<]*|[^'<\n]{0,400}<[^'\n]{0,400})')[^<>\"']*)*)>",
     re.DOTALL,
 )
 ATTRIBUTE = re.compile(r"([A-Za-z_][\w:.-]*)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
