@@ -431,8 +431,7 @@ def _decode_memory(memory: bytes) -> dict[str, tuple[tuple[int, int, int, int], 
     four = iter(stamps)
     rows = zip(four, four, four, four, strict=True)
     return {
-        name: (stamp, digits[40 * at : 40 * at + 40])
-        for at, (name, stamp) in enumerate(zip(names, rows, strict=True))
+        name: (stamp, digits[40 * at : 40 * at + 40]) for at, (name, stamp) in enumerate(zip(names, rows, strict=True))
     }
 
 

@@ -89,7 +89,6 @@ class Store:
     def __exit__(self, *exception: object) -> None:
         self.close()
 
-
     def find(self, keys: Iterable[bytes]) -> set[bytes]:
         """Those of the keys that have facts, without loading them."""
         return self._find("facts", list(keys))
@@ -135,7 +134,6 @@ class Store:
         self._db = None
         self._opened = False
         self._wrote = False
-
 
     def _open(self) -> sqlite3.Connection | None:
         if self._opened:
@@ -234,7 +232,6 @@ class Store:
             self._give_up_writing("read", error)
             self._db = None
 
-
     def _find(self, table: str, keys: Sequence[bytes]) -> set[bytes]:
         memory = self._memory[table]
         present = {key for key in keys if key in memory} if memory else set()
@@ -287,9 +284,7 @@ class Store:
             today = int(time.time()) // _DAY
             try:
                 db.execute("BEGIN IMMEDIATE")
-                db.executemany(
-                    f"INSERT OR REPLACE INTO {table} (key, used, data) VALUES (?, {today}, ?)", rows
-                )
+                db.executemany(f"INSERT OR REPLACE INTO {table} (key, used, data) VALUES (?, {today}, ?)", rows)
                 db.execute("COMMIT")
                 self._wrote = True
                 return
@@ -299,7 +294,6 @@ class Store:
                         db.execute("ROLLBACK")
                 self._failed(error)
         self._memory[table].update(rows)
-
 
     def _bytes(self, db: sqlite3.Connection) -> int:
         pages = db.execute("PRAGMA page_count").fetchone()[0] - db.execute("PRAGMA freelist_count").fetchone()[0]

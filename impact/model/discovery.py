@@ -4,9 +4,10 @@ Source: colcon-core 0.21, colcon-recursive-crawl 0.2.3, colcon-ros 0.5, colcon-c
 colcon-python-setup-py 0.2.9, colcon-defaults 0.2.9, colcon-package-selection 0.2.10. Ignore markers are the tree's
 business: what they hide is in no tree.
 
-Two differences, so that no manifest is overlooked. Colcon does not look below a plain CMake or Python package; catkin
-does, and so do we, and `hidden_by` says where colcon would stop. A folder that holds only package_ROS1.xml and
-package_ROS2.xml, to be copied by a script before the build, is a package.
+Differences, so that no manifest is overlooked: colcon does not look below a plain CMake or Python package; catkin does,
+and so do we, and `hidden_by` says where colcon would stop. A folder that holds only package_ROS1.xml and
+package_ROS2.xml, to be copied by a script before the build, is a package, and so is one whose manifest is broken. A
+package that is reached on two ways is reported where it really lies.
 """
 
 from __future__ import annotations
@@ -345,11 +346,7 @@ class _Search:
         """(folders that are searched, folders that are only looked at themselves)."""
         bases, path = self.defaults.get("base-paths", (None, ""))
         only, _ = self.defaults.get("paths", (None, ""))
-        found_bases = self._folders(bases, path)
-        found_only = set(self._folders(only, path))
-        if not found_bases and not found_only:
-            return [""], set()
-        return found_bases, found_only
+        return self._folders(bases, path) or [""], set(self._folders(only, path))
 
     def _folders(self, patterns: Any, path: str) -> list[str]:
         found = []
