@@ -158,7 +158,11 @@ def _location(report: Report, finding: Finding) -> dict[str, Any]:
 def _artifact(path: str) -> dict[str, str]:
     """A path as a relative URI; one that is empty stands for the root itself."""
     # A first segment with a colon would read as a scheme (RFC 3986, 4.2); quote escapes colons, so that it cannot.
-    return {"uri": quote(path.encode("utf-8", "surrogateescape"), safe="/") or "./", "uriBaseId": _ROOT}
+    try:
+        data = path.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError:
+        data = printable(path).encode()
+    return {"uri": quote(data, safe="/") or "./", "uriBaseId": _ROOT}
 
 
 def _fix(finding: Finding) -> dict[str, Any]:

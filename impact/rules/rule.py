@@ -28,7 +28,8 @@ class Hit(NamedTuple):
     """What a rule yields for one target. check.py merges equal hits of several targets into one Finding.
 
     at: anything with path, line, column. message: one clause, code in backticks. help: the cure, or empty.
-    severity: empty for the rule's own. fix: what cures it, as of cure.py (kept only when every target asked for yields the same).
+    severity: empty for the rule's own. fix: what cures it, see cure.py; kept only when every target asked for yields
+    the same.
     """
 
     at: object

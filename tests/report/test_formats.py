@@ -8,9 +8,11 @@ from urllib.parse import unquote
 
 import jsonschema
 import pytest
-from rosimpact.impact.report import github, markdown, sarif
+from hypothesis import given
+from hypothesis import strategies as st
+from rosimpact.impact.report import github, html, markdown, sarif, text
 from rosimpact.impact.report import json as findings_json
-from rosimpact.impact.report.report import Coverage
+from rosimpact.impact.report.report import Coverage, Report, ReportedTarget
 from rosimpact.impact.rules.rule import Finding
 
 ROOT = Path(__file__).parents[2]
@@ -21,6 +23,26 @@ REPORTS = ("team", "quiet", "hostile", "large")
 @pytest.fixture(params=REPORTS)
 def report(request):
     return request.getfixturevalue(request.param)
+
+
+PLACES = st.integers(0, 5)
+TEXTS = st.text(st.characters(), max_size=20)
+FINDINGS = st.builds(
+    Finding, st.sampled_from(["removed-header", "other"]), st.sampled_from(["error", "warning", "note"]), TEXTS, TEXTS,
+    PLACES, PLACES, TEXTS, st.lists(st.sampled_from(["humble", "jazzy"]), unique=True).map(tuple), TEXTS, TEXTS,
+)  # fmt: skip
+
+
+@given(st.lists(FINDINGS, max_size=5), st.lists(TEXTS, max_size=3))
+def test_every_format_takes_any_text(findings, lines):
+    targets = tuple(ReportedTarget(name, name, "", "") for name in ("humble", "jazzy"))
+    report = Report("0.1.0", "", targets, tuple(findings), Coverage(1, 1, 1), excerpt=lambda path, line: lines)
+    for module in (text, findings_json, sarif, github, markdown, html):
+        module.render(report).encode()
+    assert len(json.loads(findings_json.render(report))["findings"]) == len(findings)
+    assert len(json.loads(sarif.render(report))["runs"][0]["results"]) == len(findings)
+    assert len(github.render(report).split("\n")) == sum(finding.new for finding in findings) + 2
+    assert len(markdown.render(report).split("\n")) <= 11
 
 
 # JSON
@@ -182,8 +204,8 @@ def test_github_says_different_things_first(quiet):
 
 
 def test_nobody_writes_a_command_but_us(hostile):
-    for text in (github.render(hostile), github.render(hostile, "x"), github.render(hostile._replace(findings=()))):
-        for line in text.splitlines():
+    for output in (github.render(hostile), github.render(hostile, "x"), github.render(hostile._replace(findings=()))):
+        for line in output.splitlines():
             assert not line.startswith("::") or re.match(r"::error file=[^:,]*,title=[^:,]*,line=1", line)
 
 
