@@ -294,7 +294,8 @@ def test_shell_conditions():
 PIECES = [
     "<launch>", "</launch>", '<node pkg="a" type="b"', "/>", ">", '<include file="$(find a)/b"', "$(find ", "<robot>",
     "$(find-pkg-share x)", "package://a/b", "<library path='x'>", "<class type='y'>", "<!--", "-->", '"', "'", "\n",
-    "é", "launch:\n", "- node: {pkg: p, exec: e}\n", "- ", "{", "}", "[", "]", "&a ", "*a ", "plugin: a::b\n", "plugins:\n",
+    "é", "launch:\n", "- node: {pkg: p, exec: e}\n", "- ", "{", "}", "[", "]", "&a ", "*a ", "plugin: a::b\n",
+    "plugins:\n",
     "rosrun a b", "; ", "`", "<<E", "if ", "fi\n", "#", "\t", "ros2 launch x y.py", "<!DOCTYPE x [", "<![CDATA[", "]]>",
 ]  # fmt: skip
 

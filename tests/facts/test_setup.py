@@ -183,7 +183,8 @@ def test_pyproject():
 
 PIECES = [
     "setup(", ")", "packages=", "data_files=", "[", "]", "(", "'a'", ",", "\n", "x", " = ", "+", "f'{x}'", "**d", "%",
-    "é", "glob('*')", "entry_points={'console_scripts': ['a = b:c']}", "if x:\n    ", "for a in b:\n    ", ".append(", "#",
+    "é", "glob('*')", "entry_points={'console_scripts': ['a = b:c']}",
+    "if x:\n    ", "for a in b:\n    ", ".append(", "#",
     "[options]\n", "[project]\n", "scripts = ", "packages = find:\n", '"b"', "[[", "os.path.join(", ": ",
 ]  # fmt: skip
 
