@@ -7,7 +7,6 @@ import subprocess
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from rosimpact.impact.facts.cmake import extract
 
 
@@ -111,7 +110,29 @@ def test_many_unclosed_commands_do_not_read_the_file_again_each_time():
 
 
 PIECES = st.sampled_from(
-    ["f", "(", ")", '"', "\\", "\n", " ", "#", "[[", "]]", "[=[", "]=]", "${", "}", "$<", ">", ";", "a b", "é", "\0", "$(X)"]
+    [
+        "f",
+        "(",
+        ")",
+        '"',
+        "\\",
+        "\n",
+        " ",
+        "#",
+        "[[",
+        "]]",
+        "[=[",
+        "]=]",
+        "${",
+        "}",
+        "$<",
+        ">",
+        ";",
+        "a b",
+        "é",
+        "\0",
+        "$(X)",
+    ]
 )
 
 
@@ -131,7 +152,7 @@ def test_never_raises_on_bytes(data):
     extract(data)
 
 
-AGAINST_CMAKE = r'''
+AGAINST_CMAKE = r"""
 set(A a;b "c;d" [[e ${f}]] [=[
 g]] h]=])
 set(B "one \
@@ -145,7 +166,7 @@ if(NOT (A STREQUAL "x" AND (TRUE OR FALSE)))
 endif()
 set(F "multi
 line" $<BUILD_INTERFACE:${A}>)
-'''
+"""
 
 
 def test_same_arguments_as_cmake_traces(tmp_path):

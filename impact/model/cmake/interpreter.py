@@ -711,7 +711,11 @@ class Interpreter:
         if scope == "CACHE":
             return self.cache.get(name)
         value = self.overlay.get(name) if self.overlay else None
-        return value if value is not None else self.get(name)
+        if value is None:
+            value = self.get(name)
+            if value is None and name.startswith("ARGV"):
+                return UNSET  # beyond the last argument
+        return value
 
     def expand(self, templates: Iterable[Template]) -> list[Word]:
         """Arguments after expansion and list splitting."""
@@ -743,6 +747,8 @@ class Interpreter:
             value = self.scope.get(name)
             if value is None:
                 value = self.cache.get(name)
+                if value is None and name.startswith("ARGV"):
+                    return UNSET  # beyond the last argument
                 if value is None:
                     self.use_variable(name, template.at)
                     return Value((word(f"${{{name}}}", template.at, (), False),), False)

@@ -117,7 +117,9 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
     action, name, rest = str(args[0]).upper(), str(args[1]), args[2:]
     held = run.get(name)
     if action in ("APPEND", "PREPEND", "INSERT"):
-        if action == "INSERT":
+        index = 0
+        if action == "INSERT" and rest:
+            index = _integer(rest[0]) or 0
             rest = rest[1:]
         added = with_conditions(split_words(rest), run.conditions)
         if held is None:
@@ -128,7 +130,7 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
         else:
             before = tuple(item for item in held.words if item)
             sure = held.sure
-        words = before + added if action == "APPEND" else added + before
+        words = before + added if action == "APPEND" else before[:index] + added + before[index:]
         if len(words) > MAX_WORDS:
             run.give_up(call.at, f"`{name}` has more than {MAX_WORDS} items")
             words = words[:MAX_WORDS]
@@ -509,6 +511,8 @@ def cmake_path(run: Interpreter, call: Call, args: list[Word]) -> None:
             run.assign(run.scope, name, Value((word(text, rest[0].at, run.conditions, rest[0].sure),), rest[0].sure))
         return
     held = run.get(name)
+    if held is None and action in ("APPEND", "APPEND_STRING"):
+        held = UNSET
     output = name
     if "OUTPUT_VARIABLE" in rest:
         index = position(rest, "OUTPUT_VARIABLE")

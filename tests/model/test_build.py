@@ -1,0 +1,909 @@
+"""The CMake of a package interpreted: small packages in, what they find, build, install and export out."""
+
+import fnmatch
+import json
+import posixpath
+import shutil
+import subprocess
+
+import msgspec
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rosimpact.impact.facts.cmake import extract
+from rosimpact.impact.model.build import Build, extras_of, interpret
+from rosimpact.impact.model.cmake.conditions import Token, evaluate, version_key
+from rosimpact.impact.model.cmake.genex import reduced, rejoin
+from rosimpact.impact.model.cmake.interpreter import Interpreter
+from rosimpact.impact.model.cmake.language import calculate
+from rosimpact.impact.model.cmake.regex import match
+from rosimpact.impact.model.cmake.standard import flag_standard
+from rosimpact.impact.model.cmake.values import split_list, word
+
+
+class Tree:
+    """A workspace in memory: paths to texts."""
+
+    def __init__(self, files):
+        self.files = files
+        self.folders = {parent for path in files for parent in parents(path)}
+
+    def read(self, path):
+        return extract(self.files[path].encode()) if path in self.files else None
+
+    def exists(self, path):
+        return path in self.files or path in self.folders
+
+    def glob(self, pattern, recursive):
+        folder, _, last = pattern.rpartition("/")
+        return [
+            path
+            for path in self.files
+            if fnmatch.fnmatchcase(posixpath.basename(path), last)
+            and (posixpath.dirname(path) == folder or (recursive and path.startswith(folder + "/")))
+        ]
+
+
+def parents(path):
+    while path := posixpath.dirname(path):
+        yield path
+
+
+def build(source, files=None, **options) -> Build:
+    """The Build of a package `pkg` with this CMakeLists.txt and these other files of the workspace."""
+    tree = Tree({"pkg/CMakeLists.txt": source} | (files or {}))
+    return interpret("pkg", tree.read, tree.exists, tree.glob, package="pkg", **options)
+
+
+def guards(thing):
+    return " & ".join(("!" if c.negated else "") + c.text for c in thing.conditions)
+
+
+def found(source, files=None, **options):
+    """Names found, with their conditions in brackets."""
+    return [f.name + (f" [{guards(f)}]" if f.conditions else "") for f in build(source, files, **options).found]
+
+
+FOUND = [
+    ("find_package(A)", ["A"]),
+    ("find_package(catkin REQUIRED COMPONENTS a b)", ["catkin", "a", "b"]),
+    ("find_package(catkin REQUIRED a b)", ["catkin", "a", "b"]),
+    ("set(D a b)\nfind_package(catkin REQUIRED COMPONENTS ${D} c)", ["catkin", "a", "b", "c"]),
+    ("foreach(d a b)\nfind_package(${d} REQUIRED)\nendforeach()", ["a", "b"]),
+    ("set(D a b)\nforeach(d ${D})\nfind_package(${d})\nendforeach()", ["a", "b"]),
+    ("set(D a b)\nforeach(d IN LISTS D ITEMS c)\nfind_package(${d})\nendforeach()", ["a", "b", "c"]),
+    ("foreach(n RANGE 1 3)\nfind_package(p${n})\nendforeach()", ["p1", "p2", "p3"]),
+    ("if(BUILD_TESTING)\nfind_package(A)\nendif()", ["A [BUILD_TESTING]"]),
+    ("if(NOT BUILD_TESTING)\nreturn()\nendif()\nfind_package(A)", ["A [!NOT BUILD_TESTING]"]),
+    ("if(X)\nfind_package(A)\nelse()\nfind_package(B)\nendif()", ["A [X]", "B [!X]"]),
+    (
+        "if(X)\nfind_package(A)\nelseif(Z)\nfind_package(B)\nelse()\nfind_package(C)\nendif()",
+        ["A [X]", "B [!X & Z]", "C [!X & !Z]"],
+    ),
+    ("if(WIN32)\nfind_package(A)\nelseif(UNIX)\nfind_package(B)\nelse()\nfind_package(C)\nendif()", ["B"]),
+    ("if(X)\nif(X)\nfind_package(A)\nelse()\nfind_package(B)\nendif()\nendif()", ["A [X]"]),
+    ("if(X)\nif(NOT X)\nfind_package(A)\nendif()\nendif()", []),
+    ('if("$ENV{ROS_DISTRO}" STREQUAL "noetic")\nfind_package(A)\nendif()', ["A [$ENV{ROS_DISTRO} STREQUAL noetic]"]),
+    ("if(A_FOUND)\nfind_package(B)\nendif()", ["B [A_FOUND]"]),
+    ("find_package(A REQUIRED)\nif(A_FOUND)\nfind_package(B)\nelse()\nfind_package(C)\nendif()", ["A", "B"]),
+    (
+        "find_package(A)\nif(NOT A_FOUND)\nmessage(FATAL_ERROR no)\nendif()\nif(A_FOUND)\nfind_package(B)\nendif()",
+        ["A", "B"],
+    ),
+    ("option(W x ON)\nif(W)\nfind_package(A)\nendif()", ["A [W]"]),
+    ("set(W ON CACHE BOOL x)\nif(W)\nfind_package(A)\nendif()", ["A [W]"]),
+    ("set(W OFF)\nif(W)\nfind_package(A)\nendif()", []),
+    ("set(D a)\nif(X)\nlist(APPEND D b)\nendif()\nforeach(d ${D})\nfind_package(${d})\nendforeach()", ["a", "b [X]"]),
+    ("if(X)\nset(P Qt4)\nelse()\nset(P Qt5)\nendif()\nfind_package(${P})", ["Qt4 [X]", "Qt5 [!X]"]),
+    ("macro(m)\nfind_package(${ARGV0} ${ARGN})\nendmacro()\nm(A REQUIRED)", ["A"]),
+    ("function(f x)\nfind_package(${x})\nendfunction()\nf(A)\nf(B)", ["A", "B"]),
+    ("function(f)\nset(v A PARENT_SCOPE)\nset(v B)\nendfunction()\nf()\nfind_package(${v})", ["A"]),
+    ("function(f)\nreturn()\nfind_package(A)\nendfunction()\nf()\nfind_package(B)", ["B"]),
+    ("while(TRUE)\nfind_package(A)\nbreak()\nendwhile()", ["A"]),
+    ("find_package(A)\nbroken(\nfind_package(B)\n", ["A", "B"]),
+    ("find_package(${UNKNOWN} REQUIRED)", []),
+    ("cmake_language(CALL find_package A)", ["A"]),
+    ("set(a_b X)\nset(k b)\nfind_package(${a_${k}})", ["X"]),
+    ("find_package(A)\nif(0)\n#[[\n]]\nfind_package(B)\nendif()", ["A"]),
+    ("if(FALSE)\nelse()\nfind_package(A)\nendif()", ["A"]),
+    ("if(TARGET x)\nfind_package(A)\nendif()", ["A [TARGET x]"]),
+    ("add_library(x x.c)\nif(TARGET x)\nfind_package(A)\nendif()", ["A"]),
+    ("if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/CMakeLists.txt)\nfind_package(A)\nendif()", ["A"]),
+    ("if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/none)\nfind_package(A)\nendif()", []),
+    ("if(EXISTS /opt/x)\nfind_package(A)\nendif()", ["A [EXISTS /opt/x]"]),
+    ("ament_auto_find_build_dependencies()", ["rclcpp", "tf2"]),
+]
+
+
+@pytest.mark.parametrize(("source", "expected"), FOUND)
+def test_found_under_which_condition(source, expected):
+    assert found(source, dependencies=("rclcpp", "tf2")) == expected
+
+
+SIGNATURES = [
+    ("find_package(X 1.2 EXACT QUIET)", dict(version="1.2", exact=True, quiet=True, required=False)),
+    ("find_package(X 1.2...<2 REQUIRED)", dict(version="1.2...<2", required=True)),
+    ("find_package(X REQUIRED c1 OPTIONAL_COMPONENTS o1)", dict(components=("c1",), optional_components=("o1",))),
+    ("find_package(X COMPONENTS c1 c2 REQUIRED)", dict(components=("c1", "c2"), required=True)),
+    ("find_package(X NO_MODULE)", dict(components=())),
+    ("find_package(X CONFIG HINTS /a /b)", dict(components=())),
+    ("find_package(X ${V} REQUIRED COMPONENTS c)", dict(version="", components=("c",))),
+    ("pkg_check_modules(P REQUIRED X>=1.2)", dict(how="pkg_check_modules", version="1.2", prefix="P", required=True)),
+    ("pkg_check_modules(P QUIET IMPORTED_TARGET X=1.2)", dict(version="1.2", exact=True, quiet=True)),
+    ("pkg_check_modules(P X<2)", dict(version="<2")),
+    ("pkg_search_module(P X Y)", dict(optional_components=("Y",))),
+    ("find_library(V NAMES X Y PATHS /a)", dict(how="find_library", prefix="V", optional_components=("Y",))),
+    ("find_library(V X /a)", dict(how="find_library", prefix="V", optional_components=())),
+    ("find_path(V X PATHS /a)", dict(how="find_path")),
+    ("find_program(V X REQUIRED)", dict(how="find_program", required=True)),
+]
+
+
+@pytest.mark.parametrize(("source", "expected"), SIGNATURES)
+def test_signatures_of_finding(source, expected):
+    (one,) = build(source).found
+    assert one.name == "X"
+    seen = {key: getattr(one, key) for key in expected}
+    if "components" in seen:
+        seen["components"] = tuple(name for name, _ in one.components)
+    assert seen == expected
+
+
+def test_a_found_package_stands_where_its_name_is_written():
+    source = "set(DEPS\n  rclcpp\n  tf2)\nforeach(d ${DEPS})\n  find_package(${d} REQUIRED)\nendforeach()\n"
+    assert [(f.at.path, f.at.line, f.at.column) for f in build(source).found] == [
+        ("pkg/CMakeLists.txt", 2, 3),
+        ("pkg/CMakeLists.txt", 3, 3),
+    ]
+
+
+def targets(source, files=None, **options):
+    return {target.name: target for target in build(source, files, **options).targets}
+
+
+TARGETS = [
+    # source, name, kind, sources
+    ("add_library(x SHARED a.cpp src/b.cpp)", "x", "library", ("pkg/a.cpp", "pkg/src/b.cpp")),
+    ("add_library(x INTERFACE)", "x", "interface", ()),
+    ("add_library(x MODULE a.c)", "x", "module", ("pkg/a.c",)),
+    ("add_library(x SHARED IMPORTED GLOBAL)", "x", "imported", ()),
+    (
+        "add_executable(x a.cpp ${CMAKE_CURRENT_BINARY_DIR}/g.cpp)",
+        "x",
+        "executable",
+        ("pkg/a.cpp", "${CMAKE_BINARY_DIR}/g.cpp"),
+    ),
+    ("project(p)\nadd_executable(${PROJECT_NAME}_node a.cpp)", "p_node", "executable", ("pkg/a.cpp",)),
+    ("file(GLOB S src/*.cpp)\nadd_library(x ${S})", "x", "library", ("pkg/src/one.cpp",)),
+    (
+        "file(GLOB_RECURSE S src/*.cpp)\nadd_library(x ${S})",
+        "x",
+        "library",
+        ("pkg/src/deep/two.cpp", "pkg/src/one.cpp"),
+    ),
+    ("aux_source_directory(src S)\nadd_library(x ${S})", "x", "library", ("pkg/src/one.cpp",)),
+    ("ament_auto_add_library(x SHARED DIRECTORY src)", "x", "library", ("pkg/src/deep/two.cpp", "pkg/src/one.cpp")),
+    (
+        "if(A)\nset(S a.cpp)\nelse()\nset(S b.cpp)\nendif()\nadd_library(x ${S})",
+        "x",
+        "library",
+        ("pkg/a.cpp", "pkg/b.cpp"),
+    ),
+    ("add_library(x a.cpp)\ntarget_sources(x PRIVATE b.cpp)", "x", "library", ("pkg/a.cpp", "pkg/b.cpp")),
+    ("catkin_add_gtest(x t.cpp WORKING_DIRECTORY d)", "x", "test", ("pkg/t.cpp",)),
+    ("add_rostest_gtest(x t.test t.cpp)", "x", "test", ("pkg/t.cpp",)),
+    ("ament_add_gtest(x t.cpp TIMEOUT 10 SKIP_TEST u.cpp)", "x", "test", ("pkg/t.cpp", "pkg/u.cpp")),
+    ("ament_add_pytest_test(x test/t.py)", "x", "test", ("pkg/test/t.py",)),
+    ("add_custom_target(x ALL)", "x", "custom", ()),
+    ("target_link_libraries(x y)", "x", "unknown", ()),
+    ("generate_parameter_library(x p.yaml)", "x", "generated", ()),
+    ("rosidl_generate_interfaces(x msg/A.msg)", "x", "generated", ()),
+]
+
+
+@pytest.mark.parametrize(("source", "name", "kind", "sources"), TARGETS)
+def test_targets(source, name, kind, sources):
+    made = targets(source, {"pkg/src/one.cpp": "", "pkg/src/deep/two.cpp": "", "pkg/src/x.h": ""})[name]
+    assert (made.kind, made.sources) == (kind, sources)
+
+
+LINKS = [
+    ("target_link_libraries(x a PUBLIC b debug c)", ["link a", "link b PUBLIC", "link c PUBLIC"]),
+    ("target_link_libraries(x ${catkin_LIBRARIES})", ["link ${catkin_LIBRARIES}"]),
+    ('target_link_libraries(x "${A_LIBRARIES};b")', ["link ${A_LIBRARIES}", "link b"]),
+    ("set(L a b)\ntarget_link_libraries(x ${L})", ["link a", "link b"]),
+    ("target_link_libraries(x $<BUILD_INTERFACE:a::a> $<INSTALL_INTERFACE:b>)", ["link a::a"]),
+    ("target_link_libraries(x $<$<CONFIG:Debug>:a>)", ["link a [$<CONFIG:Debug>]"]),
+    ("ament_target_dependencies(x SYSTEM PUBLIC rclcpp)", ["ament rclcpp PUBLIC"]),
+    ("add_dependencies(x ${catkin_EXPORTED_TARGETS} y_gencfg)", ["order ${catkin_EXPORTED_TARGETS}", "order y_gencfg"]),
+    (
+        "target_include_directories(x PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>\n"
+        "$<INSTALL_INTERFACE:include> ${A_INCLUDE_DIRS})",
+        ["include pkg/include PUBLIC", "include ${A_INCLUDE_DIRS} PUBLIC"],
+    ),
+    (
+        'rosidl_get_typesupport_target(t p "rosidl_typesupport_cpp")\ntarget_link_libraries(x "${t}")',
+        ["link p__rosidl_typesupport_cpp"],
+    ),
+    ('rosidl_target_interfaces(x p "rosidl_typesupport_cpp")', ["interfaces p"]),
+    ("if(A)\ntarget_link_libraries(x a)\nendif()", ["link a [A]"]),
+    ("set_target_properties(x PROPERTIES INTERFACE_LINK_LIBRARIES a)", ["link a INTERFACE"]),
+    ("add_library(y ALIAS x)\ntarget_link_libraries(y a)", ["link a"]),
+]
+
+
+@pytest.mark.parametrize(("source", "expected"), LINKS)
+def test_what_is_given_to_a_target(source, expected):
+    made = targets(f"add_library(x a.cpp)\n{source}")["x"]
+    assert [
+        " ".join(filter(None, (link.how, link.item, link.visibility, f"[{guards(link)}]" if link.conditions else "")))
+        for link in made.links
+    ] == expected
+
+
+STANDARDS = [
+    ("set(CMAKE_CXX_STANDARD 17)", 17, False),
+    ("if(NOT CMAKE_CXX_STANDARD)\nset(CMAKE_CXX_STANDARD 14)\nendif()", 14, True),
+    ('set(CMAKE_CXX_FLAGS "-std=c++11 ${CMAKE_CXX_FLAGS}")', 11, False),
+    ('set(CMAKE_CXX_FLAGS "${CMAKE_CXX_FLAGS} -std=gnu++1z -Wall")', 17, False),
+    ("add_compile_options(-std=c++0x)", 11, False),
+    ('add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-std=c++17>")', 17, False),
+    ("add_definitions(-std=c++20 -DX)", 20, False),
+    ("add_compile_options(-std=c99)", None, False),
+    ("set(CMAKE_CXX_STANDARD 98)\nset(CMAKE_CXX_STANDARD 11)", 11, False),
+    ("check_cxx_compiler_flag(-std=c++11 HAS11)\nif(HAS11)\nadd_compile_options(-std=c++11)\nendif()", 11, False),
+    ("project(p)", None, False),
+]
+
+
+@pytest.mark.parametrize(("source", "standard", "default_only"), STANDARDS)
+def test_standard_for_everything(source, standard, default_only):
+    made = build(source)
+    assert (made.standard[0] if made.standard else None, made.standard_default_only) == (standard, default_only)
+
+
+@pytest.mark.parametrize(
+    ("source", "standard"),
+    [
+        ("target_compile_features(x PUBLIC cxx_std_17)", 17),
+        ("set_target_properties(x PROPERTIES CXX_STANDARD 14 OUTPUT_NAME y)", 14),
+        ("set_property(TARGET x PROPERTY CXX_STANDARD 20)", 20),
+        ("target_compile_options(x PRIVATE -std=c++11)", 11),
+        ('set_target_properties(x PROPERTIES COMPILE_FLAGS "-std=c++14 -g")', 14),
+    ],
+)
+def test_standard_of_one_target(source, standard):
+    assert targets(f"add_library(x a.cpp)\n{source}")["x"].standard == standard
+
+
+INSTALLS = [
+    (
+        "add_library(l a.c)\nadd_executable(e a.c)\ninstall(TARGETS l e EXPORT x ARCHIVE DESTINATION lib\n"
+        "LIBRARY DESTINATION lib RUNTIME DESTINATION lib/${PROJECT_NAME} INCLUDES DESTINATION include)",
+        [("targets", ("l",), "lib", ()), ("targets", ("e",), "lib/p", ())],
+    ),
+    (
+        "install(FILES a.xml b.xml DESTINATION share/${PROJECT_NAME})",
+        [("files", ("pkg/a.xml", "pkg/b.xml"), "share/p", ())],
+    ),
+    ("install(FILES a.h TYPE INCLUDE)", [("files", ("pkg/a.h",), "include", ())]),
+    (
+        'install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_PREFIX}/include FILES_MATCHING PATTERN "*.h"\n'
+        'PATTERN ".svn" EXCLUDE)',
+        [("directory", ("pkg/include/",), "include", ("*.h", "!.svn"))],
+    ),
+    (
+        "find_package(catkin)\ncatkin_install_python(PROGRAMS s/a.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})",
+        [("programs", ("pkg/s/a.py",), "lib/p", ())],
+    ),
+    ("catkin_python_setup()", [("python", ("pkg/setup.py",), "lib/python3/dist-packages/p", ())]),
+    ("ament_python_install_package(${PROJECT_NAME} PACKAGE_DIR src/p)", [("python", ("pkg/src/p",), "p", ())]),
+    ("install(EXPORT x DESTINATION cmake)", [("export", ("x",), "cmake", ())]),
+    ("install(CODE [[message(x)]])", []),
+    (
+        "pluginlib_export_plugin_description_file(base plugins/x.xml)",
+        [("files", ("pkg/plugins/x.xml",), "share/p/plugins", ())],
+    ),
+    (
+        "ament_auto_add_executable(n a.cpp)\nament_auto_package(INSTALL_TO_SHARE launch)",
+        [("targets", ("n",), "lib/p", ()), ("directory", ("pkg/launch",), "share/p", ())],
+    ),
+]
+
+
+@pytest.mark.parametrize(("source", "expected"), INSTALLS)
+def test_installs(source, expected):
+    made = build("project(p)\n" + source).installs
+    assert [(rule.kind, rule.items, rule.destination, rule.patterns) for rule in made] == expected
+
+
+EXPORTS = [
+    (
+        "catkin_package(INCLUDE_DIRS include LIBRARIES l CATKIN_DEPENDS a b DEPENDS EIGEN3 CFG_EXTRAS x.cmake)",
+        ["include_dirs pkg/include", "libraries l", "catkin_depends a", "catkin_depends b", "system_depends EIGEN3",
+         "cfg_extras pkg/cmake/x.cmake.in"],
+    ),
+    ("ament_export_dependencies(a b)", ["ament_export_dependencies a", "ament_export_dependencies b"]),
+    ("ament_export_include_directories(include/p)", ["ament_export_include_directories include/p"]),
+    ("ament_export_targets(t HAS_LIBRARY_TARGET)", ["ament_export_targets t"]),
+    ('ament_package(CONFIG_EXTRAS "cmake/x.cmake")', ["cfg_extras pkg/cmake/x.cmake"]),
+    ('rclcpp_components_register_nodes(l "a::B" "a::C")', ["component a::B", "component a::C"]),
+    ('rclcpp_components_register_node(l PLUGIN "a::B" EXECUTABLE n)', ["component a::B"]),
+    ("pluginlib_export_plugin_description_file(base x.xml)", ["plugin_description pkg/x.xml"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("source", "expected"), EXPORTS)
+def test_exports(source, expected):
+    made = build(source, {"pkg/cmake/x.cmake.in": ""}).exports
+    assert [f"{promise.how} {promise.item}" for promise in made] == expected
+
+
+GENERATED = [
+    (
+        'set(M "msg/A.msg" "srv/B.srv")\nrosidl_generate_interfaces(${PROJECT_NAME} ${M} DEPENDENCIES std_msgs)',
+        ("rosidl", "p", ("pkg/msg/A.msg", "pkg/srv/B.srv"), ["std_msgs"]),
+    ),
+    (
+        "add_message_files(FILES A.msg)\nadd_service_files(DIRECTORY srv FILES B.srv)\n"
+        "generate_messages(DEPENDENCIES std_msgs geometry_msgs)",
+        ("catkin", "p_generate_messages", ("pkg/msg/A.msg", "pkg/srv/B.srv"), ["std_msgs", "geometry_msgs"]),
+    ),
+    ("add_message_files()\ngenerate_messages()", ("catkin", "p_generate_messages", ("pkg/msg/Globbed.msg",), [])),
+    ("generate_dynamic_reconfigure_options(cfg/A.cfg)", ("reconfigure", "p_gencfg", ("pkg/cfg/A.cfg",), [])),
+    ("generate_parameter_library(params src/p.yaml)", ("parameters", "params", ("pkg/src/p.yaml",), [])),
+    ("protobuf_generate_cpp(S H a.proto)", ("protobuf", "", ("pkg/a.proto",), [])),
+]
+
+
+@pytest.mark.parametrize(("source", "expected"), GENERATED)
+def test_generated(source, expected):
+    (made,) = build("project(p)\n" + source, {"pkg/msg/Globbed.msg": ""}).generated
+    assert (made.how, made.target, made.files, [name for name, _ in made.dependencies]) == expected
+
+
+USES = [
+    ("ament_add_gtest(x a.cpp)", ["command ament_add_gtest"]),
+    ("macro(mine)\nendmacro()\nmine()", []),
+    ("ADD_LIBRARY(x a.cpp)", []),
+    ("check_cxx_compiler_flag(-Wall W)", ["command check_cxx_compiler_flag"]),
+    ("include(CheckCXXCompilerFlag)\ncheck_cxx_compiler_flag(-Wall W)", []),
+    ("find_package(PkgConfig)\npkg_check_modules(X x)\ninclude_directories(${X_INCLUDE_DIRS})", []),
+    ("include_directories(${Eigen3_INCLUDE_DIR})", ["variable Eigen3_INCLUDE_DIR"]),
+    ("set(E_LIBRARIES x)\nlink_libraries(${E_LIBRARIES} ${OTHER})", []),
+    ("find_library(X_LIBRARY x)\nlink_libraries(${X_LIBRARY})", []),
+]
+
+
+@pytest.mark.parametrize(("source", "expected"), USES)
+def test_uses(source, expected):
+    assert [f"{use.kind} {use.name}" for use in build(source).uses] == expected
+
+
+def test_several_files_share_their_scopes_as_cmake_has_it():
+    made = build(
+        "project(p)\nset(V outer)\nadd_subdirectory(sub)\ninclude(cmake/more.cmake)\n"
+        "find_package(${V})\nfind_package(${U})\n",
+        {
+            "pkg/sub/CMakeLists.txt": "set(U child PARENT_SCOPE)\nset(V inner)\n"
+            "add_library(x s.cpp)\nfind_package(${V})\n",
+            "pkg/cmake/more.cmake": "set(V included)\nadd_library(y ${CMAKE_CURRENT_LIST_DIR}/m.cpp n.cpp)\n",
+        },
+    )
+    assert [one.name for one in made.found] == ["inner", "included", "child"]
+    assert [target.sources for target in made.targets] == [("pkg/sub/s.cpp",), ("pkg/cmake/m.cpp", "pkg/n.cpp")]
+    assert made.files == ("pkg/CMakeLists.txt", "pkg/sub/CMakeLists.txt", "pkg/cmake/more.cmake")
+
+
+OTHER_PACKAGE = {
+    "other/CMakeLists.txt": "project(other)\nament_package(CONFIG_EXTRAS other-extras.cmake)",
+    "other/other-extras.cmake": 'include("${other_DIR}/other_test.cmake")\nfind_package(HIDDEN)\nset(FROM_EXTRAS yes)',
+    "other/cmake/other_test.cmake": (
+        "macro(other_add_test name)\n  find_package(Inner REQUIRED)\n  ament_add_gtest(${name} ${ARGN})\nendmacro()\n"
+    ),
+}
+
+
+def test_macros_of_another_package_are_known_once_it_is_found():
+    tree = Tree(OTHER_PACKAGE)
+    source = "project(p)\nfind_package(other)\n\n  other_add_test(t a.cpp)\nfind_package(A_${FROM_EXTRAS})"
+    made = build(source, OTHER_PACKAGE, extras=lambda name: extras_of(name, tree.glob) if name == "other" else ())
+    assert [(one.name, one.at.path, one.at.line, one.via) for one in made.found] == [
+        ("other", "pkg/CMakeLists.txt", 2, ""),
+        ("Inner", "pkg/CMakeLists.txt", 4, "other_add_test"),
+        ("A_yes", "pkg/CMakeLists.txt", 5, ""),
+    ]
+    assert [(target.name, target.kind, target.sources) for target in made.targets] == [("t", "test", ("pkg/a.cpp",))]
+    assert made.files == ("pkg/CMakeLists.txt",)
+    assert made.unresolved == ()
+
+
+def test_an_unknown_macro_is_a_use():
+    assert [use.name for use in build("find_package(other)\nother_add_test(t a.cpp)").uses] == ["other_add_test"]
+
+
+UNRESOLVED = [
+    ("include(cmake/none.cmake)", "not in the tree"),
+    ("include(NoSuchModule)", "not in the tree"),
+    ("add_subdirectory(none)", "has no CMakeLists.txt"),
+    ("add_subdirectory(${UNKNOWN})", "outside the tree"),
+    ("find_package(${UNKNOWN})", "not known"),
+    ("include(${CMAKE_CURRENT_LIST_FILE})", "includes itself"),
+    ("macro(m)\nm()\nendmacro()\nm()", "too deeply"),
+    ("function(f)\nf()\nendfunction()\nf()", "too deeply"),
+    ("while(TRUE)\nendwhile()", "left after"),
+    ("foreach(i RANGE 100000)\nendforeach()", "left after"),
+    ("set(L a b)\nforeach(i RANGE 40)\nlist(APPEND L ${L})\nendforeach()", "more than"),
+    ("set(T ab)\nforeach(i RANGE 40)\nset(T ${T}${T})\nendforeach()", "longer than"),
+    (
+        "foreach(a RANGE 999)\nforeach(b RANGE 999)\nset(x ${b})\nendforeach()\nendforeach()",
+        "more than 100,000 commands",
+    ),
+    ("if(X)\nfind_package(A)", "never closed"),
+    ("endif()\nfind_package(A)", "without if"),
+    ("if(A)\n" * 5000, "too deeply"),
+]
+
+
+@pytest.mark.parametrize(("source", "said"), UNRESOLVED)
+def test_what_cannot_be_told_is_listed_and_the_run_ends(source, said):
+    assert any(said in reason for _, reason in build(source).unresolved)
+
+
+OPTIONAL = ["include(none.cmake OPTIONAL)", "include(CTest)", "include(GNUInstallDirs)", "find_package(A)"]
+
+
+@pytest.mark.parametrize("source", OPTIONAL)
+def test_what_is_no_problem(source):
+    assert build(source).unresolved == ()
+
+
+def test_a_package_without_cmake_is_empty():
+    tree = Tree({})
+    assert interpret("pkg", tree.read, tree.exists, tree.glob) == Build()
+
+
+def test_a_package_at_the_root_of_the_workspace():
+    tree = Tree(
+        {
+            "CMakeLists.txt": "project(p)\nadd_library(x src/a.cpp)\ninclude(cmake/b.cmake)",
+            "cmake/b.cmake": "find_package(A)",
+        }
+    )
+    made = interpret("", tree.read, tree.exists, tree.glob, package="p")
+    assert made.targets[0].sources == ("src/a.cpp",)
+    assert made.found[0].at.path == "cmake/b.cmake"
+
+
+def test_the_result_can_be_stored():
+    source = (
+        "project(p)\nset(D a b)\nif(X)\nlist(APPEND D c)\nendif()\nfind_package(catkin COMPONENTS ${D})\n"
+        + "\n".join(source for source, *_ in [*TARGETS, *LINKS, *INSTALLS, *EXPORTS, *GENERATED, *USES])
+    )
+    made = build(source)
+    assert msgspec.msgpack.decode(msgspec.msgpack.encode(made), type=Build) == made
+    assert type(made.found[1].name) is str
+
+
+CONDITIONS = [
+    ("TRUE", True), ("OFF", False), ("X-NOTFOUND", False), ("0", False), ("2", True), ("-0.0", False),
+    ("UNKNOWN", None), ("NOT UNKNOWN", None), ("NOT FALSE", True), ("NOT NOT FALSE", False),
+    ("UNKNOWN AND FALSE", False), ("UNKNOWN OR TRUE", True), ("UNKNOWN AND TRUE", None),
+    ("TRUE OR FALSE AND FALSE", False), ("TRUE OR ( FALSE AND FALSE )", True),
+    ("a STREQUAL a", None), ("UNKNOWN STREQUAL a", None), ("( TRUE", None), ("1 LESS 2", True),
+    ("1 GREATER_EQUAL 2", False), ("1.10 VERSION_GREATER 1.9", True), ("1.0 VERSION_EQUAL 1", True),
+    ("3 EQUAL x", False), ("POLICY CMP0054", True), ("TARGET t", None), ("COMMAND message", True),
+    ("COMMAND nothing", None), ("DEFINED UNKNOWN", None), ("IS_ABSOLUTE /x", True), ("", False),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "expected"), CONDITIONS)
+def test_conditions_are_three_valued(text, expected):
+    tokens = [Token(part, False, True, True) for part in text.split()]
+    tree = Tree({})
+    assert evaluate(tokens, Interpreter("p", tree.read, tree.exists, tree.glob, "p", (), lambda name: ())) is expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a", ["a"]),
+        ("$<BUILD_INTERFACE:a;b>", ["a", "b"]),
+        ("$<INSTALL_INTERFACE:a>", []),
+        ("$<LINK_ONLY:a::b>", ["a::b"]),
+        ("$<$<NOT:$<BOOL:1>>:a>", ["a"]),
+        ("$<IF:$<CONFIG:Debug>,a,b>", ["a", "b"]),
+        ("$<TARGET_NAME_IF_EXISTS:a>", ["a"]),
+        ("$<TARGET_FILE:a>", ["$<TARGET_FILE:a>"]),
+        ("$<BUILD_INTERFACE:a", ["$<BUILD_INTERFACE:a"]),
+        ("x$<CONFIG>y", ["x$<CONFIG>y"]),
+    ],
+)
+def test_generator_expressions(text, expected):
+    assert list(reduced(word(text, None))) == expected
+
+
+def test_generator_expressions_taken_apart_are_joined_again():
+    assert rejoin([word(part, None) for part in ("$<BUILD_INTERFACE:a", "b>", "c")]) == ["$<BUILD_INTERFACE:a;b>", "c"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("1 + 2 * 3", 7), ("(1 + 2) * 3", 9), ("-4 / 3", -1), ("7 % -3", 1), ("1 << 4 | 1", 17), ("~0", -1),
+     ("1 / 0", None), ("0x10 - 1", 15), ("1 +", None), ("", None), ("5 - -5", 10), ("((", None)],
+)  # fmt: skip
+def test_math(text, expected):
+    assert calculate(text) == expected
+
+
+def test_regular_expressions_end():
+    assert match("(a+)+b", "a" * 60) is None
+    assert match("([0-9]+)\\.([0-9]+)", "v1.24") == ("1.24", "1", "24")
+    assert match("^[a-z]$", "ab") is False
+    assert match("(", "a") is None
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"), [("-std=c++2a", 20), ("x -std=gnu++17 y", 17), ("-std=c++11 -std=c++14", 14), ("-std=c11", 0)]
+)
+def test_standard_flags(text, expected):
+    assert flag_standard(text) == expected
+
+
+def test_versions_compare_by_component():
+    assert version_key("1.10") > version_key("1.9.9")
+    assert version_key("1.0.0") == version_key("1")
+
+
+@given(st.lists(st.text(st.sampled_from("ab;\\[]"), max_size=6)))
+def test_splitting_a_list_loses_no_text(parts):
+    text = ";".join(parts)
+    assert len("".join(split_list(text))) <= len(text)
+
+
+LINES = st.sampled_from(
+    """
+    if(X)
+    if(NOT X OR (Y
+    elseif(Y)
+    else()
+    endif()
+    foreach(a ${L} b)
+    foreach(a IN LISTS L)
+    endforeach()
+    while(X)
+    while(TRUE)
+    endwhile()
+    function(f a)
+    endfunction()
+    macro(m a)
+    endmacro()
+    f(1)
+    m(2)
+    set(L a b ${L})
+    set(L)
+    unset(L)
+    list(APPEND L ${a})
+    list(REMOVE_ITEM L a)
+    return()
+    break()
+    list(GET L 0 x)
+    string(REGEX REPLACE "(a)" "\\1" x ${L})
+    find_package(${L} REQUIRED)
+    add_library(${L})
+    target_link_libraries(a ${L} $<$<X>:y>)
+    include(sub.cmake)
+    add_subdirectory(.)
+    install(TARGETS ${L} DESTINATION ${D})
+    math(EXPR x "1 + ${L}")
+    cmake_parse_arguments(P "o" "s" "m" ${L})
+    set_property(TARGET a PROPERTY
+    get_filename_component(x ${L} DIRECTORY)
+    set(${L} ${${L}} PARENT_SCOPE)
+    generate_messages(DEPENDENCIES ${L})
+    project()
+    project(p VERSION 1.2)
+    catkin_package(${L})
+    file(GLOB L *)
+    foreach(a RANGE ${x})
+    list(TRANSFORM L REPLACE a b)
+    cmake_language(CALL f 1)
+    message(FATAL_ERROR x)
+    """.strip().splitlines()
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(LINES, max_size=25))
+def test_any_order_of_commands_ends_without_an_error(lines):
+    made = build("\n".join(lines), {"pkg/sub.cmake": "set(L ${L} c)\ninclude(sub.cmake)\nm(3)"})
+    msgspec.msgpack.encode(made)
+
+
+# Each script is run by CMake too, which says what every command was given.
+SCRIPTS = {
+    "lists": """
+        set(A a;b "c;d")
+        list(APPEND A e)
+        list(LENGTH A n)
+        list(GET A 0 -1 ends)
+        list(REMOVE_ITEM A c)
+        list(INSERT A 1 x)
+        list(FIND A x at)
+        list(REVERSE A)
+        list(SORT A)
+        list(JOIN A - joined)
+        list(SUBLIST A 1 2 some)
+        list(FILTER A EXCLUDE REGEX "^[ab]$")
+        list(TRANSFORM A TOUPPER OUTPUT_VARIABLE B)
+        list(TRANSFORM A APPEND .cpp)
+        list(POP_FRONT A first)
+        message("${A}|${n}|${ends}|${at}|${joined}|${some}|${B}|${first}")
+        set(E "")
+        list(APPEND E one)
+        message(${E} "${E}")
+        set(Q "")
+        message("<${Q}>" ${Q} end)
+    """,
+    "strings": """
+        set(v "Hello World 1.2.3")
+        string(TOUPPER "${v}" up)
+        string(REGEX MATCH "([0-9]+)\\\\.([0-9]+)" m "${v}")
+        message("${up} ${m} ${CMAKE_MATCH_1} ${CMAKE_MATCH_2}")
+        string(REGEX REPLACE "([a-z])o" "<\\\\1>" r "${v}")
+        string(REGEX MATCHALL "[0-9]" all "${v}")
+        string(REPLACE " " ";" parts ${v})
+        string(SUBSTRING "${v}" 6 -1 tail)
+        string(FIND "${v}" World where)
+        string(LENGTH "${v}" length)
+        string(CONCAT c a b "c d")
+        string(APPEND c e f)
+        string(STRIP "  x " s)
+        string(MAKE_C_IDENTIFIER "a-b.c" id)
+        string(COMPARE LESS a b less)
+        message("${r}|${all}|${parts}|${tail}|${where}|${length}|${c}|${s}|${id}|${less}")
+        foreach(p ${parts})
+          message(${p})
+        endforeach()
+        math(EXPR x "(3 + 4) * 2 % 5 - -1")
+        message(${x})
+    """,
+    "conditions": """
+        set(T TRUE)
+        set(N T)
+        set(EMPTY "")
+        set(V 1.10)
+        foreach(x 1 2)
+          if(x EQUAL 1 AND NOT EMPTY)
+            message(one ${x})
+          elseif(${x} EQUAL 2)
+            message(two ${x})
+          else()
+            message(never)
+          endif()
+        endforeach()
+        if(T AND (NOT N STREQUAL "T" OR V VERSION_GREATER 1.9) AND NOT "T" STREQUAL "TRUE")
+          message(yes)
+        endif()
+        if(TRUE OR FALSE AND FALSE)
+          message(and-first)
+        else()
+          message(left-to-right)
+        endif()
+        if("abc" MATCHES "a(.)c")
+          message(${CMAKE_MATCH_1})
+        endif()
+        set(L a b)
+        if(a IN_LIST L AND NOT c IN_LIST L)
+          message(in)
+        endif()
+        if(${N})
+          message(through)
+        endif()
+        if("${N}" STREQUAL "T" AND NOT "N")
+          message(quoted)
+        endif()
+        if(DEFINED T AND NOT DEFINED EMPTY_NOT AND DEFINED EMPTY)
+          message(defined)
+        endif()
+        unset(T)
+        if(DEFINED T)
+          message(still)
+        endif()
+    """,
+    "calls": """
+        function(f a b)
+          message("${a}|${b}|${ARGC}|${ARGN}|${ARGV}|${ARGV2}")
+          set(out "${a}${b}" PARENT_SCOPE)
+          set(out local)
+          message(${out})
+        endfunction()
+        macro(m a)
+          message("${a}|${ARGN}|${ARGC}")
+          set(out "m${a}")
+          foreach(x ${ARGN})
+            message(item ${x})
+          endforeach()
+        endmacro()
+        f(1 2)
+        message(${out})
+        f("p q" r s "t;u")
+        message(${out})
+        m(z 1;2 "3;4")
+        message(${out})
+        function(g)
+          cmake_parse_arguments(A "FLAG;OTHER" "ONE" "MANY;MORE" ${ARGN})
+          message("${A_FLAG}|${A_OTHER}|${A_ONE}|${A_MANY}|${A_MORE}|${A_UNPARSED_ARGUMENTS}")
+          if(A_FLAG AND NOT A_MORE)
+            message(flagged)
+          endif()
+          if(A_ONE STREQUAL "1")
+            return()
+          endif()
+          message(after)
+        endfunction()
+        g(x FLAG ONE 1 MANY a b y)
+        g(MANY a;b MORE c ONE 2)
+        macro(outer)
+          g(${ARGV})
+        endmacro()
+        outer(FLAG MANY 1 2)
+    """,
+    "loops": """
+        foreach(i RANGE 3)
+          message(${i})
+        endforeach()
+        foreach(i RANGE 10 1 -4)
+          message(${i})
+        endforeach()
+        set(A 1 2 3)
+        set(B x y)
+        foreach(i IN LISTS A B ITEMS z)
+          if(i STREQUAL 2)
+            continue()
+          endif()
+          if(i STREQUAL y)
+            break()
+          endif()
+          message(${i})
+        endforeach()
+        foreach(p IN ZIP_LISTS A B)
+          message("${p_0}-${p_1}")
+        endforeach()
+        set(n 0)
+        while(n LESS 5)
+          math(EXPR n "${n} + 2")
+          message(${n})
+        endwhile()
+    """,
+    "paths": """
+        set(p /a/b.c/file.tar.gz)
+        foreach(k DIRECTORY NAME EXT NAME_WE LAST_EXT NAME_WLE)
+          get_filename_component(r ${p} ${k})
+          message("${k} ${r}")
+        endforeach()
+        get_filename_component(r ../x ABSOLUTE BASE_DIR /a/b)
+        message(${r})
+        file(RELATIVE_PATH r /a/b /a/c/d)
+        message(${r})
+        cmake_path(GET p FILENAME n)
+        cmake_path(GET p STEM LAST_ONLY s)
+        cmake_path(APPEND p2 /x y z)
+        message("${n} ${s} ${p2}")
+    """,
+    "references": """
+        set(a_b 1)
+        set(k b)
+        message("${a_${k}} \\${k} ${undefined_but_empty_FLAG}" a\\;b [[${k}]] ${k}x${k})
+        set(list "x;y;z")
+        message(${list} "${list}" pre${list}post)
+        set(${k}_name v)
+        message(${b_name})
+        set(ENV{MINE} here)
+        message($ENV{MINE})
+    """,
+}
+
+
+class Recorder(Interpreter):
+    """An interpreter that writes down each message() it runs, in the manner of CMake's trace: lists in one piece."""
+
+    def run_call(self, call):
+        if call.name == "message":
+            given = [self.shown(";".join(self.expand([template]))) for template in call.templates]
+            self.said.append((call.at.line, given))
+        return super().run_call(call)
+
+
+def traced(path, folder=""):
+    """The messages in a trace of CMake: (line, arguments)."""
+    entries = [json.loads(line) for line in path.read_text().splitlines()]
+    return [
+        (entry["line"], [text.replace(f"{path.parent}/", "").replace("\\;", ";") for text in entry["args"]])
+        for entry in entries
+        if entry.get("cmd") == "message" and entry["file"].startswith(str(path.parent / folder))
+    ]
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_same_messages_as_cmake_traces(name, tmp_path):
+    cmake = shutil.which("cmake")
+    if cmake is None:
+        pytest.skip("cmake is not installed; the interpreter is checked against its own tables only")
+    text = "cmake_minimum_required(VERSION 3.10)\nset(undefined_but_empty_FLAG)\n" + SCRIPTS[name]
+    script = tmp_path / "script.cmake"
+    script.write_text(text)
+    trace = tmp_path / "trace.json"
+    command = [cmake, "--trace-expand", "--trace-format=json-v1", f"--trace-redirect={trace}", "-P", str(script)]
+    subprocess.run(command, check=True, capture_output=True)
+    expected = traced(trace)
+    tree = Tree({"pkg/CMakeLists.txt": text})
+    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", (), lambda package: ())
+    run.said = []
+    run.run()
+    assert run.said == expected
+    assert len(expected) > 2
+
+
+PROJECT = {
+    "CMakeLists.txt": """
+        cmake_minimum_required(VERSION 3.10)
+        project(top VERSION 1.2.3 LANGUAGES NONE)
+        include(cmake/mine.cmake)
+        add_subdirectory(sub)
+        message("${FROM_SUB} ${PROJECT_NAME} ${top_VERSION_MINOR} ${FROM_INCLUDE} ${CMAKE_CURRENT_SOURCE_DIR}")
+        mine(a b)
+        file(GLOB found RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} sub/*.txt sub/*.h)
+        message("${found}")
+        file(GLOB_RECURSE deep ${CMAKE_CURRENT_SOURCE_DIR}/sub/*.h)
+        message(${deep})
+        add_custom_target(t)
+        if(TARGET t)
+          message(target)
+        endif()
+        set_property(GLOBAL PROPERTY P x)
+        list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_SOURCE_DIR}/cmake)
+        include(Mine2)
+    """,
+    "cmake/mine.cmake": """
+        set(FROM_INCLUDE ${CMAKE_CURRENT_LIST_DIR})
+        include_guard()
+        function(mine)
+          message("${ARGV} ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_FUNCTION_LIST_DIR} ${CMAKE_CURRENT_SOURCE_DIR}")
+        endfunction()
+    """,
+    "cmake/Mine2.cmake": """
+        message("${CMAKE_CURRENT_LIST_FILE}")
+        if(1)
+          return()
+        endif()
+        message(never)
+    """,
+    "sub/CMakeLists.txt": """
+        project(below NONE)
+        set(FROM_SUB "sub of ${CMAKE_PROJECT_NAME} in ${PROJECT_NAME}" PARENT_SCOPE)
+        message("${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_SOURCE_DIR} ${PROJECT_SOURCE_DIR} ${top_SOURCE_DIR}")
+        mine(from sub)
+    """,
+    "sub/a.h": "",
+    "sub/in/b.h": "",
+}
+
+
+def test_same_messages_as_cmake_traces_over_several_files(tmp_path):
+    cmake = shutil.which("cmake")
+    if cmake is None:
+        pytest.skip("cmake is not installed; the interpreter is checked against its own tables only")
+    for path, text in PROJECT.items():
+        (tmp_path / "pkg" / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "pkg" / path).write_text(text)
+    trace = tmp_path / "trace.json"
+    command = [cmake, "--trace-expand", "--trace-format=json-v1", f"--trace-redirect={trace}"]
+    subprocess.run([*command, "-S", str(tmp_path / "pkg"), "-B", str(tmp_path / "b")], check=True, capture_output=True)
+    expected = traced(trace, "pkg")
+    tree = Tree({f"pkg/{path}": text for path, text in PROJECT.items()})
+    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", (), lambda package: ())
+    run.said = []
+    run.run()
+    assert run.said == expected
+    assert len(expected) == 8
