@@ -1,15 +1,18 @@
 """`rosimpact data`: build the snapshot from git repositories, refresh it from the network, tell its date."""
 
 import datetime
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple
 
 import msgspec
 
+from . import snapshot as snapshots
 from .build.git import BuildError, Report
 from .build.write import DistroRow, Sync
+from .snapshot import Snapshot
 
-__all__ = ["BuildError", "Built", "build"]
+__all__ = ["BuildError", "Built", "Status", "Updated", "build", "status", "update"]
 
 _SAVE_EVERY = 2000
 
@@ -24,6 +27,75 @@ class Built(NamedTuple):
     manifests: int
     rules: int
     unreadable: dict[str, int]
+
+
+class Status(NamedTuple):
+    """What data is in use. sources: repository → commit. folder: where it lies; updated: it is not the shipped one.
+
+    last_syncs: newest sync known for each distro that has any; packed: bytes.
+    """
+
+    date: str
+    sources: dict[str, str]
+    folder: Path
+    updated: bool
+    packed: int
+    last_syncs: dict[str, str]
+
+
+class Updated(NamedTuple):
+    """What an update brought, and the folder it was written to."""
+
+    date: str
+    folder: Path
+    syncs: tuple[str, ...]
+    releases: int
+    manifests: int
+    rules: int
+    failures: tuple[str, ...]
+
+
+def status(snapshot: Snapshot | None = None) -> Status:
+    """Date and origin of the data in use. Raises SnapshotError when it cannot be read."""
+    used = snapshot or snapshots.default()
+    return Status(
+        used.date,
+        dict(used.info.sources),
+        used.data,
+        used.data != snapshots.DATA,
+        (used.data / "distros.sqlite.zst").stat().st_size,
+        dict(used.rows("SELECT d.name, max(s.day) FROM sync s JOIN distro d ON d.id = s.distro GROUP BY d.id")),
+    )
+
+
+def update(
+    output: Path | None = None,
+    snapshot: Snapshot | None = None,
+    index_url: str | None = None,
+    sync_days: Callable[[str], Iterable[str]] | None = None,
+    report: Report | None = None,
+) -> Updated:
+    """Adds what is newer than the data in use, over the network, and writes the result to the user's cache.
+
+    output: another folder to write to. index_url: rosdistro's index with `{ref}` for the branch or tag. sync_days:
+    gives the days of a distro's sync tags. Raises BuildError when there is no network; the data in use then stays.
+    """
+    from .build import refresh, write
+
+    used = snapshot or snapshots.default()
+    try:
+        raw, found = refresh.refreshed(
+            snapshots.unpack(used.data),
+            index_url or refresh.INDEX,
+            sync_days or refresh.github_sync_days,
+            report,
+        )
+    except BuildError as error:
+        raise BuildError(f"{error}; the data of {used.date} stays in use") from None
+    folder = output or snapshots.updated_folder()
+    today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
+    write.write_snapshot(raw, today, {**used.info.sources, "updated from": used.date}, folder)
+    return Updated(today, folder, found.syncs, found.releases, found.manifests, found.rules, found.failures)
 
 
 def build(

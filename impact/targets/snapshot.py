@@ -123,6 +123,11 @@ def unpack(data: Path = DATA) -> bytes:
     return raw
 
 
+def updated_folder() -> Path:
+    """Where `rosimpact data update` keeps what it made; it is used while it is newer than what is shipped."""
+    return cache_folder() / "updated"
+
+
 def _fact_files(data: Path) -> tuple[bytes, bytes]:
     try:
         return (data / "platform_versions.yaml").read_bytes(), (data / "distros.yaml").read_bytes()
@@ -157,11 +162,13 @@ def add_facts(connection: sqlite3.Connection, platforms: bytes, distros: bytes) 
 class Snapshot:
     """Read access to the database. Open one with `default()`, or `Snapshot(folder)` for another data folder.
 
-    The file is opened at the first query. A database that breaks while it is read is unpacked again once.
+    facts: the folder of the reviewed fact files. The file is opened at the first query. A database that breaks while it
+    is read is unpacked again once.
     """
 
-    def __init__(self, data: Path = DATA, cache: Path | None = None):
+    def __init__(self, data: Path = DATA, cache: Path | None = None, facts: Path = DATA):
         self.data = data
+        self.facts = facts
         self._cache = cache
         self._connection: sqlite3.Connection | None = None
         self._lock = threading.Lock()
@@ -198,7 +205,7 @@ class Snapshot:
 
     def path(self) -> Path:
         """Where the unpacked file belongs in the cache."""
-        facts = hashlib.sha256(b"\0".join(_fact_files(self.data))).hexdigest()
+        facts = hashlib.sha256(b"\0".join(_fact_files(self.facts))).hexdigest()
         folder = self._cache or cache_folder()
         return folder / f"distros-{_FORMAT}-{self.info.sha256[:16]}-{facts[:16]}.sqlite"
 
@@ -210,13 +217,20 @@ class Snapshot:
         return self._open_again()
 
     def _open_again(self) -> sqlite3.Connection:
-        raw = unpack(self.data)
+        try:
+            raw = unpack(self.data)
+        except SnapshotError:
+            if self.data != updated_folder():
+                raise
+            # What an update left broken is passed over; the shipped data is always there.
+            self.data, self._info = DATA, None
+            raw = unpack(self.data)
         path = self.path()
         try:
-            _write(raw, _fact_files(self.data), path)
+            _write(raw, _fact_files(self.facts), path)
             return _connect(path)
         except (OSError, sqlite3.DatabaseError):
-            return _in_memory(raw, _fact_files(self.data))
+            return _in_memory(raw, _fact_files(self.facts))
 
 
 def _connect(path: Path) -> sqlite3.Connection:
@@ -289,5 +303,15 @@ def default() -> Snapshot:
     """The shipped snapshot, one for each process."""
     global _default
     if _default is None:
-        _default = Snapshot()
+        _default = Snapshot(_newest_folder())
     return _default
+
+
+def _newest_folder() -> Path:
+    """The shipped data, or what `data update` made where that is newer and whole."""
+    updated = updated_folder()
+    if (updated / "snapshot.json").is_file():
+        with contextlib.suppress(SnapshotError):
+            if shipped_info(updated).date > shipped_info().date and (updated / "distros.sqlite.zst").is_file():
+                return updated
+    return DATA

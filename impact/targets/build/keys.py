@@ -28,7 +28,7 @@ class RuleEvent(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 def split_file(data: bytes) -> list[bytes]:
-    """The blocks of a rosdep file, one for each key. One with YAML aliases gets the blocks of their anchors in front."""
+    """The blocks of a rosdep file, one for each key. One with YAML aliases gets their anchors' blocks in front."""
     blocks = _BLOCK.split(b"\n" + data)
     if b": *" not in data:
         return blocks
@@ -60,7 +60,7 @@ def parse_rules(block: bytes) -> dict[tuple[str, str], str] | None:
 
 
 def _encode(rule: Any) -> str:
-    """Canonical JSON; scripts of old `source` rules and everything but package names are left out: they are no facts."""
+    """Canonical JSON; install scripts of old rules are left out: only package names are facts."""
     return msgspec.json.encode(_plain(rule), order="sorted").decode()
 
 
