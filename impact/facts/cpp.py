@@ -364,8 +364,8 @@ def extract(data: bytes) -> CppFile:
     )
 
 
-def _by_line(problem: Problem) -> int:
-    return problem.line
+def _by_line(item: Problem | Reference) -> int:
+    return item.line
 
 
 def _spaces(match: re.Match[str]) -> str:
@@ -407,4 +407,4 @@ def _references(text: str, visible: str, place) -> tuple[Reference, ...]:
         literal = _PACKAGE_LITERAL.match(text, match.start(1))
         if literal:
             references.append(Reference("package", literal.group(1), "", *place(literal.start(1))))
-    return tuple(references)
+    return tuple(sorted(references, key=_by_line))

@@ -1,0 +1,731 @@
+"""What a Python syntax tree says: imports, names used through them, mentions of packages, the Python it needs."""
+
+import ast
+import re
+import sys
+
+import msgspec
+
+from .condition import Condition
+from .place import Problem, Reference
+from .python_values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, VALUED, WRAPPERS, PackagePath, Scope, Values
+
+
+class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """`import module` or `from module import names`. level counts leading dots. lazy: inside a function."""
+
+    module: str
+    names: tuple[str, ...]
+    level: int
+    line: int
+    column: int
+    lazy: bool = False
+    conditions: tuple[Condition, ...] = ()
+
+
+class Attribute(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """The first use of a dotted name whose head is an imported module or name, import aliases resolved
+    (`import time as t; t.clock()` gives `time.clock`), per distinct set of conditions. The conditions are those of the
+    import and those of the use that tell about the interpreter or the machine, not every `if`. A `try` whose except
+    covers AttributeError counts."""
+
+    text: str
+    line: int
+    column: int
+    conditions: tuple[Condition, ...] = ()
+
+
+TRY = Condition("python", "try")
+EXCEPT = Condition("python", "try", True)
+# An except that catches these makes the import, or the use of a name, optional.
+_IMPORT_ERRORS = frozenset(("ImportError", "ModuleNotFoundError", "Exception", "BaseException"))
+_NAME_ERRORS = frozenset(("AttributeError", "NameError", "Exception", "BaseException"))
+# A test that mentions one of these tells about the interpreter or the machine rather than about the run.
+_ABOUT_MACHINE = re.compile(
+    r"version|PY[23]|PYTHON|TYPE_CHECKING|platform|os\.name|environ|getenv|ROS_|distro|hasattr|find_spec|find_loader",
+    re.IGNORECASE,
+)
+_COMMAND_CALLS = frozenset(
+    (
+        "system",
+        "popen",
+        "Popen",
+        "call",
+        "check_call",
+        "check_output",
+        "run",
+        "getoutput",
+        "ExecuteProcess",
+        "ExecuteLocal",
+        "Command",
+    )
+)
+_PROGRAM = re.compile(r"[A-Za-z_][\w.+-]*")
+_IN_STRING = re.compile(
+    r"package://(?P<url>[A-Za-z]\w*)(?P<url_path>/[^\s'\"<>$%{}]*)?"
+    r"|\$\((?:find|find-pkg-share|find-pkg-prefix)\s+(?P<find>[A-Za-z][\w-]*)\)(?P<find_path>/[^\s'\"<>$%{}()]+)?"
+)
+_QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
+_TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
+_NOT_NODES = frozenset(
+    (
+        *("arg", "attr", "asname", "conversion", "ctx", "id", "kind", "level", "lineno", "module", "name", "op", "ops"),
+        *("rest", "simple", "str", "tag", "type_comment", "type_ignores", "is_async", "kwd_attrs"),
+    )
+)
+
+
+def _children() -> dict[type, tuple[str, ...]]:
+    """For every node class the fields that can hold nodes."""
+    children: dict[type, tuple[str, ...]] = {}
+    for cls in vars(ast).values():
+        if isinstance(cls, type) and issubclass(cls, ast.AST):
+            children[cls] = tuple(field for field in cls._fields if field not in _NOT_NODES)
+    # Their fields hold strings and constants, not nodes.
+    for leaf in (ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton):
+        children[leaf] = ()
+    return children
+
+
+_CHILDREN = _children()
+
+
+class Reader(Values):
+    """One walk over a syntax tree, in the order of the source."""
+
+    def __init__(self, text: str, original: str) -> None:
+        super().__init__(text)
+        # The two differ where Python 2 syntax was rewritten; lines are the same, indentation may not be.
+        self.original = original.split("\n") if original != text else []
+        self.ascii = text.isascii()
+        self.lines = text.split("\n")
+        self.has_paths = "package://" in text or "$(find" in text
+        self.imports: list[Import] = []
+        self.uses: dict[tuple[Scope, str, tuple[Condition, ...]], tuple[int, int]] = {}
+        self.imported_names: list[Attribute] = []
+        self.references: dict[Reference, None] = {}
+        # Functions that look up the package named by one of their own parameters, and all calls by a plain name.
+        self.lookups: dict[tuple[Scope, str], tuple[int, str]] = {}
+        self.calls: list[tuple[Scope, str, ast.Call, bool]] = []
+        self.defining: tuple[Scope, str] | None = None
+        self.needs: tuple[int, int, str] | None = None
+        self.python2_only: list[Problem] = []
+        self.main = False
+        self.function = False
+        self.conditions: tuple[Condition, ...] = ()
+        self.use_conditions: tuple[Condition, ...] = ()
+        self.conditional = False
+        self.consumed: set[int] = set()
+
+    def read(self, tree: ast.Module) -> None:
+        self.block(tree.body)
+        self.looked_up_by_functions()
+
+    # Walking
+
+    def block(self, nodes) -> None:
+        handlers = _HANDLERS
+        for node in nodes:
+            handler = handlers.get(node.__class__)
+            if handler is None:
+                self.inside(node)
+            else:
+                handler(self, node)
+
+    def visit(self, node) -> None:
+        handler = _HANDLERS.get(node.__class__)
+        if handler is None:
+            self.inside(node)
+        else:
+            handler(self, node)
+
+    def inside(self, node) -> None:
+        """Visits the children of a node."""
+        handlers = _HANDLERS
+        for field in _CHILDREN.get(node.__class__, ()):
+            child = getattr(node, field)
+            if child.__class__ is list:
+                for item in child:
+                    handler = handlers.get(item.__class__)
+                    if handler is not None:
+                        handler(self, item)
+                    elif item is not None:
+                        self.inside(item)
+            elif child is not None:
+                handler = handlers.get(child.__class__)
+                if handler is not None:
+                    handler(self, child)
+                else:
+                    self.inside(child)
+
+    def nothing(self, node) -> None:
+        pass
+
+    def column(self, line: int, offset: int) -> int:
+        """A parser's offset in UTF-8 bytes as a column in characters, from 1."""
+        if line > len(self.lines):
+            return offset + 1
+        if not self.ascii:
+            offset = len(self.lines[line - 1].encode("utf-8", "replace")[:offset].decode("utf-8", "ignore"))
+        if self.original:
+            offset = max(0, offset - len(self.lines[line - 1]) + len(self.original[line - 1]))
+        return offset + 1
+
+    def need(self, minor: int, node, reason: str) -> None:
+        if self.needs is None or minor > self.needs[0]:
+            self.needs = (minor, node.lineno, reason)
+
+    def source(self, node) -> str:
+        """The source of an expression on one line."""
+        first, last = node.lineno - 1, node.end_lineno - 1
+        if first == last and self.ascii:
+            return sys.intern(self.lines[first][node.col_offset : node.end_col_offset])
+        lines = [line.encode("utf-8", "replace") for line in self.lines[first : last + 1]]
+        lines[-1] = lines[-1][: node.end_col_offset]
+        lines[0] = lines[0][node.col_offset :]
+        return " ".join(b" ".join(lines).decode("utf-8", "replace").split())
+
+    # Names
+
+    def name(self, node: ast.Name) -> None:
+        if node.ctx.__class__ is ast.Store:
+            self.scope.bound.add(node.id)
+
+    def attribute(self, node: ast.Attribute) -> None:
+        parts = [node.attr]
+        value = node.value
+        while value.__class__ is ast.Attribute:
+            parts.append(value.attr)  # type: ignore[attr-defined]
+            value = value.value  # type: ignore[attr-defined]
+        if value.__class__ is not ast.Name:
+            self.visit(value)
+            return
+        head = value.id  # type: ignore[attr-defined]
+        if head == "self" or head == "cls":
+            return
+        parts.append(head)
+        parts.reverse()
+        key = (self.scope, ".".join(parts), self.use_conditions)
+        if key not in self.uses:
+            self.uses[key] = (value.lineno, value.col_offset)
+
+    def attributes(self) -> tuple[Attribute, ...]:
+        found: dict[tuple[str, tuple[Condition, ...]], tuple[int, int]] = {}
+        for attribute in self.imported_names:
+            found.setdefault((attribute.text, attribute.conditions), (attribute.line, attribute.column))
+        for (scope, text, conditions), (line, offset) in self.uses.items():
+            head, _, rest = text.partition(".")
+            for dotted, extra in self.imported(head, scope):
+                if dotted.startswith("."):
+                    continue
+                both = conditions if not extra else (*extra, *(c for c in conditions if c not in extra))
+                key = (f"{dotted}.{rest}", both)
+                place = (line, self.column(line, offset))
+                if key not in found or place < found[key]:
+                    found[key] = place
+        return tuple(
+            Attribute(text, line, column, conditions)
+            for (text, conditions), (line, column) in sorted(found.items(), key=lambda item: item[1])
+        )
+
+    def bind_import(self, name: str, dotted: str, relevant: tuple[Condition, ...]) -> None:
+        known = self.scope.imports.setdefault(name, [])
+        if (dotted, relevant) not in known:
+            known.append((dotted, relevant))
+
+    def import_(self, node: ast.Import) -> None:
+        for alias in node.names:
+            column = self.column(alias.lineno, alias.col_offset)
+            module = sys.intern(alias.name)
+            self.imports.append(Import(module, (), 0, alias.lineno, column, self.function, self.conditions))
+            if alias.asname:
+                self.bind_import(alias.asname, module, self.use_conditions)
+            else:
+                head = module.partition(".")[0]
+                self.bind_import(head, head, self.use_conditions)
+
+    def import_from(self, node: ast.ImportFrom) -> None:
+        module = sys.intern(node.module or "")
+        dotted = "." * node.level + module
+        column = self.column(node.lineno, node.col_offset)
+        names = tuple(sys.intern(alias.name) for alias in node.names)
+        self.imports.append(Import(module, names, node.level, node.lineno, column, self.function, self.conditions))
+        for alias in node.names:
+            if alias.name == "*":
+                continue
+            self.bind_import(alias.asname or alias.name, f"{dotted}.{alias.name}", self.use_conditions)
+            if not node.level:
+                column = self.column(alias.lineno, alias.col_offset)
+                self.imported_names.append(
+                    Attribute(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions)
+                )
+
+    # Conditions
+
+    def under(self, nodes, condition: Condition | None, use: Condition | None) -> None:
+        """Visits statements with one more condition for imports and one for uses."""
+        before = self.conditions, self.use_conditions, self.conditional
+        if condition is not None:
+            self.conditions = (*self.conditions, condition)
+        if use is not None:
+            self.use_conditions = (*self.use_conditions, use)
+        self.conditional = True
+        self.block(nodes)
+        self.conditions, self.use_conditions, self.conditional = before
+
+    def if_(self, node: ast.If) -> None:
+        test = self.source(node.test)
+        self.visit(node.test)
+        if "__main__" in test and "__name__" in test:
+            self.main = True
+            self.block(node.body)
+            self.block(node.orelse)
+            return
+        negated = False
+        plain = node.test
+        if isinstance(plain, ast.UnaryOp) and isinstance(plain.op, ast.Not):
+            plain, negated = plain.operand, True
+            test = self.source(plain)
+        if test.endswith(".TYPE_CHECKING"):
+            test = "TYPE_CHECKING"
+        condition = Condition("python", test, negated)
+        about_machine = _ABOUT_MACHINE.search(test) is not None
+        self.under(node.body, condition, condition if about_machine else None)
+        if node.orelse:
+            condition = Condition("python", test, not negated)
+            self.under(node.orelse, condition, condition if about_machine else None)
+
+    def if_expression(self, node: ast.IfExp) -> None:
+        self.visit(node.test)
+        test = self.source(node.test)
+        before = self.use_conditions, self.conditional
+        self.conditional = True
+        if _ABOUT_MACHINE.search(test):
+            self.use_conditions = (*before[0], Condition("python", test))
+            self.visit(node.body)
+            self.use_conditions = (*before[0], Condition("python", test, True))
+            self.visit(node.orelse)
+        else:
+            self.visit(node.body)
+            self.visit(node.orelse)
+        self.use_conditions, self.conditional = before
+
+    def try_(self, node) -> None:
+        caught: set[str] = set()
+        for handler in node.handlers:
+            kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+            for kind in kinds:
+                caught.add("Exception" if kind is None else getattr(kind, "id", None) or getattr(kind, "attr", ""))
+        covers_import = not caught.isdisjoint(_IMPORT_ERRORS)
+        covers_use = covers_import or not caught.isdisjoint(_NAME_ERRORS)
+        self.under(node.body, TRY if covers_import else None, TRY if covers_use else None)
+        for handler in node.handlers:
+            if handler.type is not None:
+                self.visit(handler.type)
+            if handler.name:
+                self.scope.bound.add(handler.name)
+            self.under(handler.body, EXCEPT if covers_import else None, EXCEPT if covers_use else None)
+        self.under(node.orelse, TRY if covers_import else None, TRY if covers_use else None)
+        self.block(node.finalbody)
+
+    def try_star(self, node) -> None:
+        self.need(11, node, "`except*`")
+        self.try_(node)
+
+    def with_(self, node) -> None:
+        suppressed = False
+        for item in node.items:
+            call = item.context_expr
+            if isinstance(call, ast.Call) and _last_name(call.func) == "suppress":
+                suppressed |= any(_last_name(argument) in _IMPORT_ERRORS for argument in call.args)
+            self.visit(call)
+            if item.optional_vars is not None:
+                self.visit(item.optional_vars)
+        if self.parenthesised(node):
+            self.need(9, node, "parenthesised context managers")
+        if suppressed:
+            self.under(node.body, TRY, TRY)
+        else:
+            self.block(node.body)
+
+    def parenthesised(self, node) -> bool:
+        """`with (a as b, c as d):`. The tree does not tell; the text around the items does."""
+        first, last = node.items[0], node.items[-1]
+        if len(node.items) == 1 and first.optional_vars is None:
+            return False
+        line = self.line_bytes(first.context_expr.lineno)
+        before = line[: first.context_expr.col_offset].decode("utf-8", "replace")
+        if first.context_expr.lineno > node.lineno:
+            before = self.lines[node.lineno - 1] + before
+        if not _TARGETS_OF_WITH.search(before):
+            return False
+        end = last.optional_vars or last.context_expr
+        inner = first.context_expr
+        after = self.line_bytes(end.end_lineno)[end.end_col_offset :].lstrip()[:1]
+        after_inner = self.line_bytes(inner.end_lineno)[inner.end_col_offset :].lstrip()[:1]
+        return after in (b")", b",", b"") and after_inner != b")"
+
+    def line_bytes(self, line: int) -> bytes:
+        return self.lines[line - 1].encode("utf-8", "replace")
+
+    # Definitions
+
+    def function_(self, node) -> None:
+        self.scope.bound.add(node.name)
+        for decorator in node.decorator_list:
+            self.visit(decorator)
+        arguments = node.args
+        if arguments.posonlyargs:
+            self.need(8, node, "positional-only parameters")
+        elif arguments.kwonlyargs:
+            self.need(0, node, "keyword-only parameters")
+        if getattr(node, "type_params", None):
+            self.need(12, node, "type parameters")
+            self.block(node.type_params)
+        self.arguments(arguments)
+        if node.returns is not None:
+            self.need(0, node, "annotations")
+            self.visit(node.returns)
+        before = self.scope, self.function, self.defining
+        self.defining = (self.scope, node.name)
+        self.scope = Scope(self.scope, False)
+        self.function = True
+        self.parameters(arguments)
+        self.block(node.body)
+        self.scope, self.function, self.defining = before
+
+    def async_function(self, node) -> None:
+        self.need(5, node, "async functions")
+        self.function_(node)
+
+    def arguments(self, arguments: ast.arguments) -> None:
+        for default in (*arguments.defaults, *arguments.kw_defaults):
+            if default is not None:
+                self.visit(default)
+        for group in (arguments.posonlyargs, arguments.args, arguments.kwonlyargs):
+            for argument in group:
+                if argument.annotation is not None:
+                    self.need(0, argument, "annotations")
+                    self.visit(argument.annotation)
+
+    def parameters(self, arguments: ast.arguments) -> None:
+        names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
+        self.scope.parameters = names
+        self.scope.bound.update(names)
+        self.scope.bound.update(argument.arg for argument in arguments.kwonlyargs)
+        for argument in (arguments.vararg, arguments.kwarg):
+            if argument is not None:
+                self.scope.bound.add(argument.arg)
+
+    def lambda_(self, node: ast.Lambda) -> None:
+        self.arguments(node.args)
+        outer, was_function = self.scope, self.function
+        self.scope = Scope(outer, False)
+        self.function = True
+        self.parameters(node.args)
+        self.visit(node.body)
+        self.scope, self.function = outer, was_function
+
+    def class_(self, node: ast.ClassDef) -> None:
+        self.scope.bound.add(node.name)
+        self.block(node.decorator_list)
+        self.block(node.bases)
+        for keyword in node.keywords:
+            self.visit(keyword.value)
+        if getattr(node, "type_params", None):
+            self.need(12, node, "type parameters")
+        outer = self.scope
+        self.scope = Scope(outer, True)
+        self.block(node.body)
+        self.scope = outer
+
+    def global_(self, node: ast.Global) -> None:
+        # An import or assignment here binds the module's name.
+        for name in node.names:
+            self.scope.imports.setdefault(name, self.scope.module.imports.setdefault(name, []))
+
+    def assign(self, node: ast.Assign) -> None:
+        self.visit(node.value)
+        for target in node.targets:
+            if target.__class__ is ast.Name:
+                self.remember(target.id, node.value)  # type: ignore[attr-defined]
+            else:
+                self.visit(target)
+
+    def annotated_assign(self, node: ast.AnnAssign) -> None:
+        self.need(6, node, "variable annotations")
+        self.visit(node.annotation)
+        if node.value is not None:
+            self.visit(node.value)
+            if isinstance(node.target, ast.Name):
+                self.remember(node.target.id, node.value)
+                return
+        self.visit(node.target)
+
+    def remember(self, name: str, node: ast.expr) -> None:
+        scope = self.scope
+        scope.bound.add(name)
+        value = self.value(node, []) if node.__class__ in VALUED else None
+        if name in scope.values and scope.values[name] != value:
+            value = None
+        scope.values[name] = value
+
+    def walrus(self, node: ast.NamedExpr) -> None:
+        self.need(8, node, "assignment expression")
+        self.visit(node.value)
+        self.visit(node.target)
+
+    def match(self, node) -> None:
+        self.need(10, node, "match statement")
+        self.inside(node)
+
+    def template(self, node) -> None:
+        self.need(14, node, "t-string")
+        self.inside(node)
+
+    def type_alias(self, node) -> None:
+        self.need(12, node, "type alias statement")
+        self.inside(node)
+
+    def nonlocal_(self, node: ast.Nonlocal) -> None:
+        self.need(0, node, "nonlocal")
+
+    def yield_from(self, node: ast.YieldFrom) -> None:
+        self.need(3, node, "yield from")
+        self.visit(node.value)
+
+    def raise_(self, node: ast.Raise) -> None:
+        if node.cause is not None:
+            self.need(0, node, "raise from")
+        self.inside(node)
+
+    # Mentions
+
+    def constant(self, node: ast.Constant) -> None:
+        if self.has_paths and node.value.__class__ is str:
+            self.mentioned_in(node.value, node)  # type: ignore[arg-type]
+
+    def mentioned_in(self, text: str, node) -> None:
+        for match in _IN_STRING.finditer(text):
+            package = match.group("url") or match.group("find")
+            path = (match.group("url_path") or match.group("find_path") or "").strip("/")
+            self.refer("file" if path else "package", package, path, node)
+
+    def statement(self, node: ast.Expr) -> None:
+        # A string on its own is documentation.
+        if node.value.__class__ is not ast.Constant:
+            self.visit(node.value)
+
+    def refer(self, kind: str, package: str, name: str, node, conditional: bool = False) -> None:
+        column = self.column(node.lineno, node.col_offset)
+        reference = Reference(kind, package, name, node.lineno, column, self.conditional or conditional)
+        self.references[reference] = None
+
+    def all_references(self) -> tuple[Reference, ...]:
+        return tuple(sorted(self.references, key=lambda reference: (reference.line, reference.column)))
+
+    def binary(self, node: ast.BinOp) -> None:
+        if node.op.__class__ is ast.Add or node.op.__class__ is ast.Div:
+            self.path(node)
+        elif node.op.__class__ is ast.MatMult:
+            self.need(5, node, "`@` operator")
+        elif node.op.__class__ is ast.RShift and getattr(node.left, "id", "") == "print":
+            self.python2_only.append(Problem(node.lineno, "print statement"))
+        self.visit(node.left)
+        self.visit(node.right)
+
+    def formatted(self, node: ast.JoinedStr) -> None:
+        self.need(6, node, "f-string")
+        if sys.version_info >= (3, 12):
+            self.quotes(node)
+        self.path(node)
+        for value in node.values:
+            if self.has_paths or value.__class__ is ast.FormattedValue:
+                self.visit(value)
+
+    def quotes(self, node: ast.JoinedStr) -> None:
+        """Before 3.12 an expression in an f-string could hold neither the f-string's own quotes nor a backslash."""
+        start = self.line_bytes(node.lineno)[node.col_offset :].decode("utf-8", "replace")
+        match = _QUOTE.match(start)
+        if match is None:
+            return
+        for value in node.values:
+            if isinstance(value, ast.FormattedValue):
+                expression = self.source(value.value)
+                if match.group(1) in expression or "\\" in expression:
+                    self.need(12, node, "quotes or backslash inside an f-string")
+
+    def list_(self, node) -> None:
+        if len(node.elts) > 1:
+            self.path(node)
+        for item in node.elts:
+            self.visit(item)
+
+    def path(self, node) -> None:
+        """A file reference, when the expression names a file in a package's share folder and nothing around it does."""
+        if id(node) in self.consumed:
+            return
+        trace: list[ast.AST] = []
+        value = self.value(node, trace)
+        if isinstance(value, PackagePath) and value.path:
+            self.consumed.update(map(id, trace))
+            self.refer("file", value.package, value.path, node, value.assumed)
+
+    def call(self, node: ast.Call) -> None:
+        function = self.callee(node.func)
+        keywords = {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
+        before = self.conditional
+        if "condition" in keywords and not isinstance(keywords["condition"], ast.Constant):
+            self.conditional = True
+        if function in JOINS or function in WRAPPERS:
+            self.path(node)
+        elif function in PACKAGE_CALLS or (function in ("get_path", "find") and node.args):
+            self.package_call(node, function)
+        elif function == "DeclareLaunchArgument":
+            name = self.value(node.args[0], []) if node.args else None
+            default = self.value(keywords["default_value"], []) if "default_value" in keywords else None
+            if isinstance(name, str) and isinstance(default, str):
+                self.launch_defaults[name] = default
+        elif "package" in keywords:
+            self.launched(node, keywords)
+        elif function in _COMMAND_CALLS:
+            self.command(node, keywords)
+        elif function == "FindExecutable":
+            name = self.value(keywords.get("name") or (node.args[0] if node.args else node.func), [])
+            if isinstance(name, str) and _PROGRAM.fullmatch(name):
+                self.refer("command", "", name, node)
+        elif function == "find_node" or function == "find_resource":
+            texts = [self.value(argument, []) for argument in node.args[:2]]
+            if len(texts) == 2 and all(isinstance(text, str) for text in texts):
+                self.refer("executable" if function == "find_node" else "file", str(texts[0]), str(texts[1]), node)
+        elif function == "MoveItConfigsBuilder":
+            # moveit_configs_utils looks for <robot>_moveit_config unless told the package.
+            named = keywords.get("package_name")
+            robot = keywords.get("robot_name") or (node.args[0] if node.args else None)
+            told = self.value(named or robot, []) if named is not None or robot is not None else None
+            if isinstance(told, str) and PACKAGE_NAME.fullmatch(told):
+                self.refer("package", told if named is not None else f"{told}_moveit_config", "", node)
+        elif node.func.__class__ is ast.Name:
+            self.calls.append((self.scope, node.func.id, node, self.conditional))  # type: ignore[attr-defined]
+        self.visit(node.func)
+        for argument in node.args:
+            self.visit(argument)
+        for keyword in node.keywords:
+            self.visit(keyword.value)
+        self.conditional = before
+
+    def package_call(self, node: ast.Call, function: str) -> None:
+        trace: list[ast.AST] = []
+        value = self.value_of_call(node, trace)
+        argument = node.args[0] if node.args else node.keywords[0].value if node.keywords else node
+        if isinstance(value, PackagePath):
+            if id(node) not in self.consumed:
+                self.consumed.update(map(id, trace))
+                self.refer("package", value.package, "", argument, value.assumed)
+        elif function == "find" or self.defining is None or not isinstance(argument, ast.Name):
+            return
+        elif argument.id in self.scope.parameters:
+            self.lookups[self.defining] = (self.scope.parameters.index(argument.id), argument.id)
+
+    def looked_up_by_functions(self) -> None:
+        """Packages named in calls of this file's own functions that look up a package by a parameter."""
+        for scope, name, node, conditional in self.calls if self.lookups else ():
+            looking: Scope | None = scope
+            while looking is not None and (looking, name) not in self.lookups:
+                looking = looking.parent
+            if looking is None:
+                continue
+            index, parameter = self.lookups[looking, name]
+            argument = node.args[index] if index < len(node.args) else None
+            for keyword in node.keywords:
+                if keyword.arg == parameter:
+                    argument = keyword.value
+            self.scope = scope
+            package = None if argument is None else self.package_name(argument, [])
+            if argument is not None and package is not None:
+                self.refer("package", package[0], "", argument, conditional or package[1])
+
+    def launched(self, node: ast.Call, keywords: dict) -> None:
+        """Node(package=, executable=), ComposableNode(package=, plugin=) and everything that looks like them."""
+        package = self.package_name(keywords["package"], [])
+        if package is None:
+            return
+        executable = keywords.get("executable") or keywords.get("node_executable") or keywords.get("exec_name")
+        plugin = keywords.get("plugin") or keywords.get("node_plugin")
+        name = self.value(executable or plugin, []) if executable or plugin else None
+        if isinstance(name, str) and name:
+            kind = "executable" if executable else "plugin"
+            self.refer(kind, package[0], name, executable or plugin, package[1])
+        else:
+            self.refer("package", package[0], "", keywords["package"], package[1])
+
+    def command(self, node: ast.Call, keywords: dict) -> None:
+        """A program started with literal arguments, and what rosrun, roslaunch and ros2 are told to start."""
+        given = keywords.get("cmd") or keywords.get("args") or keywords.get("command") or next(iter(node.args), None)
+        words: list[str | None] = []
+        if isinstance(given, (ast.List, ast.Tuple)):
+            for item in given.elts:
+                text = self.value(item, [])
+                words += text.split() if isinstance(text, str) else [None]
+        elif given is not None:
+            text = self.value(given, [])
+            words = [*text.split()] if isinstance(text, str) else [None]
+        program = words[0] if words else None
+        if program is None or not _PROGRAM.fullmatch(program):
+            return
+        if program == "ros2" and len(words) > 3 and words[1] in ("run", "launch"):
+            kind, words = ("executable" if words[1] == "run" else "file"), words[2:]
+        elif program in ("rosrun", "roslaunch") and len(words) > 2:
+            kind, words = ("executable" if program == "rosrun" else "file"), words[1:]
+        else:
+            self.refer("command", "", program, node)
+            return
+        package, name = words[0], words[1]
+        if package and name and PACKAGE_NAME.fullmatch(package):
+            self.refer(kind, package, name, node)
+
+
+def _last_name(node) -> str:
+    return getattr(node, "id", None) or getattr(node, "attr", "")
+
+
+_HANDLERS = {
+    ast.Name: Reader.name,
+    ast.Attribute: Reader.attribute,
+    ast.Constant: Reader.constant,
+    ast.Expr: Reader.statement,
+    ast.Import: Reader.import_,
+    ast.ImportFrom: Reader.import_from,
+    ast.If: Reader.if_,
+    ast.IfExp: Reader.if_expression,
+    ast.Try: Reader.try_,
+    ast.With: Reader.with_,
+    ast.AsyncWith: Reader.with_,
+    ast.FunctionDef: Reader.function_,
+    ast.AsyncFunctionDef: Reader.async_function,
+    ast.Lambda: Reader.lambda_,
+    ast.ClassDef: Reader.class_,
+    ast.Global: Reader.global_,
+    ast.Nonlocal: Reader.nonlocal_,
+    ast.Assign: Reader.assign,
+    ast.AnnAssign: Reader.annotated_assign,
+    ast.NamedExpr: Reader.walrus,
+    ast.Match: Reader.match,
+    ast.YieldFrom: Reader.yield_from,
+    ast.Raise: Reader.raise_,
+    ast.BinOp: Reader.binary,
+    ast.JoinedStr: Reader.formatted,
+    ast.List: Reader.list_,
+    ast.Tuple: Reader.list_,
+    ast.Call: Reader.call,
+    ast.Pass: Reader.nothing,
+    ast.Break: Reader.nothing,
+    ast.Continue: Reader.nothing,
+}
+for _name, _handler in (
+    ("TryStar", Reader.try_star),
+    ("TypeAlias", Reader.type_alias),
+    ("TemplateStr", Reader.template),
+):
+    if hasattr(ast, _name):
+        _HANDLERS[getattr(ast, _name)] = _handler
