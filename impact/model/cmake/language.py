@@ -632,16 +632,17 @@ def include(run: Interpreter, call: Call, args: list[Word]) -> None:
     answer = following(args, "RESULT_VARIABLE")
     if answer is not None:
         run.set_unknown(answer, call.at)
-    if not name.endswith(".cmake") and "/" not in name:
+    if "/" not in name and not name.startswith("${"):
         held = run.get("CMAKE_MODULE_PATH")
         for directory in held.words if held is not None else ():
             path = run.relative(run.resolve(posixpath.join(directory, f"{name}.cmake"))) if directory else None
             if path is not None and run.run_file(path, call.at) is not None:
                 return
         add_module(run, str(name))
-        if name not in MODULES and not optional:
-            run.give_up(name.at, f"include({run.shown(name)}) is not in the tree")
-        return
+        if name in MODULES:
+            return
+    if name.endswith("_USE_FILE}") or name.startswith("$ENV{ROS_ROOT}/core/rosbuild/"):
+        return  # settings of a found package, or rosbuild itself, whose macros are known
     path = run.relative(run.resolve(name))
     if path is None:
         if not optional:

@@ -137,13 +137,42 @@ COMMANDS = BUILTIN_COMMANDS | frozenset(MODULE_OF)
 
 MODULES = frozenset(MODULE_OF.values()) | name_set(
     """
-    CMakeBackwardCompatibilityCXX CMakeDetermineVSServicePack CMakeExpandImportedTargets CMakeFindFrameworks
-    CMakeFindPackageMode CMakeForceCompiler CMakeGraphVizOptions CMakeParseArguments CMakePrintSystemInformation
-    CMakeVerifyManifest CPack CPackDeb CPackRPM CSharpUtilities CTest CTestCoverageCollectGCOV CTestScriptMode
-    CTestUseLaunchers Dart DeployQt4 Documentation InstallRequiredSystemLibraries MacroAddFileDependencies
-    SquishTestScript TestForANSIForScope TestForANSIStreamHeaders TestForSSTREAM TestForSTDNamespace UseEcos
-    UseJavaClassFilelist UseJavaSymlinks Use_wxWindows UsewxWidgets FindThreads FindBoost FindOpenMP FindOpenGL
-    FindGit FindPythonInterp FindPython FindPython2 FindPython3 FindThreads FindX11 FindCURL FindZLIB
+    AddFileDependencies AndroidTestUtilities BundleUtilities CheckCCompilerFlag CheckCompilerFlag CheckCSourceCompiles
+    CheckCSourceRuns CheckCXXCompilerFlag CheckCXXSourceCompiles CheckCXXSourceRuns CheckCXXSymbolExists
+    CheckFortranCompilerFlag CheckFortranFunctionExists CheckFortranSourceCompiles CheckFortranSourceRuns
+    CheckFunctionExists CheckIncludeFile CheckIncludeFileCXX CheckIncludeFiles CheckIPOSupported CheckLanguage
+    CheckLibraryExists CheckLinkerFlag CheckOBJCCompilerFlag CheckOBJCSourceCompiles CheckOBJCSourceRuns
+    CheckOBJCXXCompilerFlag CheckOBJCXXSourceCompiles CheckOBJCXXSourceRuns CheckPIESupported CheckPrototypeDefinition
+    CheckSourceCompiles CheckSourceRuns CheckStructHasMember CheckSymbolExists CheckTypeSize CheckVariableExists
+    CMakeAddFortranSubdirectory CMakeBackwardCompatibilityCXX CMakeDependentOption CMakeDetermineCCompiler
+    CMakeDetermineCXXCompiler CMakeDetermineSystem CMakeDetermineVSServicePack CMakeExpandImportedTargets
+    CMakeFindDependencyMacro CMakeFindFrameworks CMakeFindPackageMode CMakeForceCompiler CMakeGraphVizOptions
+    CMakePackageConfigHelpers CMakeParseArguments CMakePrintHelpers CMakePrintSystemInformation CMakePushCheckState
+    CMakeVerifyManifest CPack CPackArchive CPackBundle CPackComponent CPackCygwin CPackDeb CPackDMG CPackFreeBSD
+    CPackIFW CPackIFWConfigureFile CPackNSIS CPackNuGet CPackProductBuild CPackRPM CPackWIX CSharpUtilities CTest
+    CTestCoverageCollectGCOV CTestScriptMode CTestUseLaunchers Dart DeployQt4 Documentation ExternalData
+    ExternalProject FeatureSummary FetchContent FindALSA FindArmadillo FindASPELL FindAVIFile FindBacktrace FindBISON
+    FindBLAS FindBoost FindBullet FindBZip2 FindCABLE FindCoin3D FindCUDA FindCUDAToolkit FindCups FindCURL FindCurses
+    FindCVS FindCxxTest FindCygwin FindDart FindDCMTK FindDevIL FindDoxygen FindEnvModules FindEXPAT FindFLEX FindFLTK
+    FindFLTK2 FindFontconfig FindFreetype FindGCCXML FindGDAL FindGettext FindGIF FindGit FindGLEW FindGLUT
+    FindGnuplot FindGnuTLS FindGSL FindGTest FindGTK FindGTK2 FindHDF5 FindHg FindHSPELL FindHTMLHelp FindIce
+    FindIconv FindIcotool FindICU FindImageMagick FindIntl FindITK FindJasper FindJava FindJNI FindJPEG FindKDE3
+    FindKDE4 FindLAPACK FindLATEX FindLibArchive FindLibinput FindLibLZMA FindLibXml2 FindLibXslt FindLTTngUST FindLua
+    FindLua50 FindLua51 FindMatlab FindMFC FindMotif FindMPEG FindMPEG2 FindMPI FindMsys FindODBC FindOpenACC
+    FindOpenAL FindOpenCL FindOpenGL FindOpenMP FindOpenSceneGraph FindOpenSP FindOpenSSL FindOpenThreads Findosg
+    Findosg_functions FindosgAnimation FindosgDB FindosgFX FindosgGA FindosgIntrospection FindosgManipulator
+    FindosgParticle FindosgPresentation FindosgProducer FindosgQt FindosgShadow FindosgSim FindosgTerrain FindosgText
+    FindosgUtil FindosgViewer FindosgVolume FindosgWidget FindPackageHandleStandardArgs FindPackageMessage FindPatch
+    FindPerl FindPerlLibs FindPHP4 FindPhysFS FindPike FindPkgConfig FindPNG FindPostgreSQL FindProducer FindProtobuf
+    FindPython FindPython2 FindPython3 FindPythonInterp FindPythonLibs FindQt FindQt3 FindQt4 FindQuickTime FindRTI
+    FindRuby FindSDL FindSDL_gfx FindSDL_image FindSDL_mixer FindSDL_net FindSDL_sound FindSDL_ttf FindSelfPackers
+    FindSQLite3 FindSquish FindSubversion FindSWIG FindTCL FindTclsh FindTclStub FindThreads FindTIFF FindUnixCommands
+    FindVTK FindVulkan FindWget FindWish FindwxWidgets FindwxWindows FindX11 FindXalanC FindXCTest FindXercesC
+    FindXMLRPC FindZLIB FortranCInterface GenerateExportHeader GetPrerequisites GNUInstallDirs GoogleTest
+    InstallRequiredSystemLibraries MacroAddFileDependencies ProcessorCount SelectLibraryConfigurations
+    SquishTestScript TestBigEndian TestCXXAcceptsFlag TestForANSIForScope TestForANSIStreamHeaders TestForSSTREAM
+    TestForSTDNamespace Use_wxWindows UseEcos UseJava UseJavaClassFilelist UseJavaSymlinks UsePkgConfig UseSWIG
+    UsewxWidgets WriteBasicConfigVersionFile WriteCompilerDetectionHeader
     """
 )
 
