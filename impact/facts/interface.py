@@ -229,6 +229,12 @@ class _Idl:
         self.at += 1
         return self.tokens[self.at - 1]
 
+    def start(self) -> int:
+        """Offset of the next token."""
+        if self.at >= len(self.tokens):
+            raise _Unreadable("ends in the middle")
+        return self.tokens[self.at].offset
+
     def expect(self, text: str) -> None:
         token = self.next()
         if token.text != text:
@@ -279,7 +285,7 @@ def _idl_item(idl: _Idl, annotations: list[str]) -> None:
     elif token.text == "struct":
         _struct(idl)
     elif token.text == "const":
-        start = idl.tokens[idl.at]
+        start = idl.start()
         type_ = _type(idl)[0]
         name = idl.word()
         idl.expect("=")
@@ -290,7 +296,7 @@ def _idl_item(idl: _Idl, annotations: list[str]) -> None:
         value = idl.text[first.offset : last.offset + len(last.text)]
         idl.expect(";")
         owner = idl.modules[-1] if idl.modules else ""
-        idl.constants.setdefault(owner, []).append(Constant(name.text, type_, value, *idl.place(start.offset)))
+        idl.constants.setdefault(owner, []).append(Constant(name.text, type_, value, *idl.place(start)))
     elif token.text == "typedef":
         type_, array = _type(idl)
         name = idl.word().text
@@ -330,7 +336,7 @@ def _struct(idl: _Idl) -> None:
         if idl.at < len(idl.tokens) and idl.tokens[idl.at].kind == "annotation":
             annotations.append(_annotation(idl))
             continue
-        start = idl.tokens[idl.at].offset if idl.at < len(idl.tokens) else 0
+        start = idl.start()
         type_, array = _type(idl)
         while True:
             field = idl.word()

@@ -163,7 +163,11 @@ def _facts(kind: str, data: bytes) -> Any:
         read = import_module(f".{module}", __package__).extract
         facts = read(data, kind) if module in WITH_KIND else read(data)
         if kind == "setup_py":
-            facts = msgspec.structs.replace(facts, python=_facts("python", data))
+            python = _facts("python", data)
+            # Python 2 is no mistake on a target that runs it: the rule on Python versions knows, and what it installs
+            # is then merely not known.
+            old = {"problems": (), "unresolved": ("written for Python 2",)} if python.python2_only else {}
+            facts = msgspec.structs.replace(facts, python=python, **old)
         return facts
     except RecursionError:
         return empty(kind, Problem(1, "nested too deeply to be read"))

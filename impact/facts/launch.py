@@ -261,7 +261,9 @@ def _robot_description(data: bytes) -> ReferenceFile:
         ):
             found.add("plugin", "", element.text, element.text_offset, conditional)
         _everything(found, element, conditional)
-    return found.file(*document.problems)
+    # xacro reads with Python's strict parser, URDF and SDF are read with TinyXML
+    problems = document.problems if "xacro" in document.text else _tolerated(data, document.problems)
+    return found.file(*problems)
 
 
 def _plugin_description(data: bytes) -> ReferenceFile:
@@ -282,15 +284,18 @@ def _plugin_description(data: bytes) -> ReferenceFile:
 
 
 COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+DECLARATION = re.compile(rb"<\?xml[^>]*\?>")
 VALUE = re.compile(rb"=\s*\"[^\"\n]*\"")
 
 
 def _tolerated(data: bytes, problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
-    """Problems less those that TinyXML, which pluginlib reads with, does not mind: `--` in comments, several roots,
-    template arguments in types."""
+    """Problems less those that TinyXML, which pluginlib, urdfdom and sdformat read with, does not mind: `--` in
+    comments, several roots, `<` in values, a misspelt or late XML declaration."""
     if not problems:
         return ()
     blanked = COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), data)
+    if "declaration" in problems[0].message:
+        blanked = DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), blanked, count=1)
     blanked = VALUE.sub(lambda m: m.group().replace(b"<", b"&lt;"), blanked)
     return tuple(p for p in well_formed(blanked) if "junk after document element" not in p.message)
 

@@ -118,6 +118,19 @@ def test_a_failing_extractor_is_contained(monkeypatch):
     assert [p.message for p in facts.problems] == ["cannot be read: RuntimeError: broken on purpose"]
 
 
+def test_a_setup_py_is_a_python_file_too():
+    facts = extract("setup_py", b"from distutils.core import setup\nsetup(packages=['a'])\n").facts
+    assert facts.packages == ("a",)
+    assert [i.module for i in facts.python.imports] == ["distutils.core"]
+
+
+def test_a_setup_py_of_python_2_is_not_a_mistake():
+    facts = extract("setup_py", b"print 'a'\nsetup(packages=['a'])\n").facts
+    assert facts.problems == ()
+    assert facts.unresolved == ("written for Python 2",)
+    assert facts.python.python2_only
+
+
 def test_allow_comments_come_with_the_facts():
     found = extract("msg", b"int32 x  # rosimpact: allow(removed-field)\n").allows
     assert [(a.line, a.rules, a.own_line) for a in found] == [(1, ("removed-field",), False)]

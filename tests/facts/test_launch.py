@@ -186,6 +186,19 @@ def test_robot_descriptions(element, expected):
     assert found("xml", text) == expected
 
 
+TOLERATED = [
+    ('<?xml verison="1.0"?>\n<robot><link/></robot>', 0),
+    ('\n<?xml version="1.0"?>\n<robot><!-- a -- b --></robot>', 0),
+    ('<?xml verison="1.0"?>\n<robot><xacro:x/></robot>', 1),
+    ("<robot><link></robot>", 1),
+]
+
+
+@pytest.mark.parametrize(("text", "problems"), TOLERATED)
+def test_urdf_is_judged_as_tinyxml_would_and_xacro_is_not(text, problems):
+    assert len(extract(text.encode(), "xacro").problems) == problems
+
+
 def test_xacro_conditions():
     text = '<robot><xacro:if value="${x}"><a f="$(find a)/x"/></xacro:if><a f="$(find b)/x"/></robot>'
     assert [(r.package, r.conditional) for r in extract(text.encode(), "xacro").references] == [
