@@ -13,7 +13,8 @@ import os
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import closing
 from functools import cache
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
@@ -201,19 +202,18 @@ def _make(
             progress(min(done, total), total)
 
     chunks = _chunks(gathered, unread, paths_of, advance)
-    for chunk, results in _extracted(chunks, jobs):
-        rows = []
-        for content, kind, packed, failure in results:
-            if failure:
-                for path in paths_of[content, kind]:
-                    gathered.problems.append(PathProblem(path, failure))
-                    gathered.kinds.pop(path, None)
-                    gathered.ids.pop(path, None)
-            else:
-                rows.append((_key(content, kind), packed))
-        gathered.store.put(rows)
-        gathered.extracted += len(rows)
-        advance(sum(len(item[3]) for item in chunk))
+    with closing(_extracted(chunks, jobs)) as finished:  # an interrupt must reach the workers at once
+        for chunk, results in finished:
+            rows = []
+            for content, kind, packed, failure in results:
+                if failure:
+                    for path in paths_of[content, kind]:
+                        _drop(gathered, path, failure)
+                else:
+                    rows.append((_key(content, kind), packed))
+            gathered.store.put(rows)
+            gathered.extracted += len(rows)
+            advance(sum(len(item[3]) for item in chunk))
 
 
 def _chunks(
@@ -293,7 +293,7 @@ def _extract(chunk: list[_Item]) -> list[_Result]:
     return results
 
 
-def _extracted(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_Item], list[_Result]]]:
+def _extracted(chunks: Iterator[list[_Item]], jobs: int) -> Generator[tuple[list[_Item], list[_Result]], None, None]:
     """Chunks with their results, here when there is little to do, else in processes."""
     first: list[list[_Item]] = []
     size = 0

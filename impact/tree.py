@@ -841,6 +841,41 @@ class JoinedTree:
         return self.mounts[""].memory() if "" in self.mounts else None
 
 
+def at_merge_bases(tree: Tree, revisions: Mapping[str, str], default: str = "") -> Tree:
+    """The tree as it was at the merge base of each repository's commit and a revision.
+
+    revisions: by the repository's folder relative to the tree. default: of the repositories not named; they are left as
+    they are when it is empty. What lies in no repository is left as it is. Raises TreeError when a named folder is no
+    repository, a revision is not known, or nothing at all is under git.
+    """
+    if isinstance(tree, GitTree):
+        return tree.merge_base(revisions.get("", default))
+    named = {inside(folder): revision for folder, revision in revisions.items()}
+    unknown = sorted(shown(folder or ".") for folder in named if folder is None or folder not in tree.repositories)
+    known = ", ".join(f"`{shown(folder or '.')}`" for folder in sorted(tree.repositories)) or "none"
+    if unknown:
+        raise TreeError(f"`{unknown[0]}` is no git repository of {tree.label}; those it has: {known}")
+    mounts: dict[str, Tree] = {"": tree}
+    failed = []
+    for folder, place in tree.repositories.items():
+        revision = named.get(folder, default)
+        if not revision:
+            continue
+        inner = ""
+        if not folder and isinstance(tree, WorkingTree):
+            inner = os.path.relpath(os.path.realpath(tree.root), place)
+        try:
+            mounts[folder] = GitTree(place, "HEAD", inner).merge_base(revision)
+        except TreeError as error:
+            failed.append((folder, error))
+    if failed:
+        more = "" if len(tree.repositories) == 1 else "; repositories may differ: --base PATH=REV"
+        raise TreeError(f"{failed[0][1]}{more}")
+    if not tree.repositories:
+        raise TreeError(f"{tree.label} holds no git repository, so there is no base to compare with")
+    return JoinedTree(mounts)
+
+
 _FILE, _FOLDER = 1, 2
 _MODE_FOLDER, _MODE_LINK, _MODE_SUBMODULE = 0o040000, 0o120000, 0o160000
 

@@ -13,6 +13,7 @@ from rosimpact.impact.tree import (
     PathProblem,
     TreeError,
     WorkingTree,
+    at_merge_bases,
     blob_id,
     inside,
     shown,
@@ -467,6 +468,53 @@ def test_trees_joined(tmp_path):
     assert list(joined.repositories) == ["src/repo"]
     with pytest.raises(OSError):
         JoinedTree({"src": WorkingTree(tmp_path)}).read("elsewhere")
+
+
+@pytest.fixture
+def team(tmp_path):
+    """A workspace of two repositories, each with a branch `upstream` one commit behind, and a file of neither."""
+    for name in ("one", "two"):
+        root = write(tmp_path / "src" / name, {"old": name})
+        base = commit(root)
+        pygit2.Repository(str(root)).create_reference("refs/heads/upstream", base)
+        write(root, {"new": name})
+        commit(root)
+    return write(tmp_path, {"own/x": ""})
+
+
+@pytest.mark.parametrize(
+    ("revisions", "default", "listed"),
+    [
+        ({}, "upstream", ["own/x", "src/one/old", "src/two/old"]),
+        ({"src/two": "upstream"}, "", ["own/x", "src/one/new", "src/one/old", "src/two/old"]),
+        ({"src/two/": "HEAD"}, "upstream", ["own/x", "src/one/old", "src/two/new", "src/two/old"]),
+    ],
+)
+def test_a_workspace_at_its_merge_bases(team, revisions, default, listed):
+    assert paths(at_merge_bases(WorkingTree(team), revisions, default)) == listed
+
+
+@pytest.mark.parametrize(
+    ("revisions", "default", "message"),
+    [
+        ({}, "v9", "no revision.*PATH=REV"),
+        ({"own": "HEAD"}, "", "`own` is no git repository.*`src/one`, `src/two`"),
+        ({"../elsewhere": "HEAD"}, "", "no git repository"),
+    ],
+)
+def test_no_merge_bases(team, revisions, default, message):
+    with pytest.raises(TreeError, match=message):
+        at_merge_bases(WorkingTree(team), revisions, default)
+
+
+def test_merge_bases_of_other_trees(team):
+    assert paths(at_merge_bases(GitTree(team / "src/one"), {}, "upstream")) == ["old"]
+    assert paths(at_merge_bases(WorkingTree(team / "src/one"), {}, "upstream")) == ["old"]
+    commit(write(team / "large", {"ws/a": ""}))
+    write(team / "large", {"ws/b": ""})
+    assert paths(at_merge_bases(WorkingTree(team / "large/ws"), {}, "HEAD")) == ["a"]
+    with pytest.raises(TreeError, match="no git repository"):
+        at_merge_bases(WorkingTree(write(team.parent / "plain", {"a": ""})), {}, "HEAD")
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,8 @@ _BUSY_MS = 5_000
 # SQLite before 3.32 takes at most 999 variables
 _AT_ONCE = 900
 _DAY = 86_400
-_PACK_FROM = 200
+# Below this, deflating takes longer than reading the bytes it saves.
+_PACK_FROM = 2_000
 
 
 def cache_folder() -> str:
@@ -203,8 +204,8 @@ class Store:
         if self._writable:
             self._writable = False
             self.notes.append(
-                f"the cache `{self.path}` cannot be {what} ({_clause(error)}); this run goes on without it, "
-                "set ROSIMPACT_CACHE to a folder with space"
+                f"the cache `{self.path}` cannot be {what} ({_clause(error)}), so the next run starts from what "
+                "it holds now; set ROSIMPACT_CACHE to a folder that can be written"
             )
 
     def _discard(self, error: Exception) -> bool:
