@@ -100,6 +100,7 @@ NO_ATTRIBUTES: frozenset[str] = frozenset()
 
 NAME = re.compile(r"[a-z][a-z0-9_-]*\Z")
 VERSION = re.compile(r"(?:0|[1-9][0-9]*)\.(?:0|[1-9][0-9]*)\.(?:0|[1-9][0-9]*)\Z")
+NO_DESCRIPTION = re.compile(r"<description[^>]*(?:/>|>\s*</description)")
 EMAIL = re.compile(r"[\w%+-]+(?:\.[\w%+-]+)*@[a-zA-Z0-9%-]+(?:\.[a-zA-Z0-9%-]+)*\.[a-zA-Z]{2,}\Z", re.ASCII)
 
 
@@ -157,7 +158,7 @@ def extract(data: bytes) -> Manifest:
     warnings: tuple[Problem, ...] = ()
     if document.problems:
         problems = document.problems + tuple(found)
-    elif not unknown and _is_plain(document.elements[root], format_, children, exported, dependencies):
+    elif not unknown and _is_plain(document, format_, children, exported, dependencies):
         problems = ()
     else:
         problems, warnings = _verdict(data, document, children, found)
@@ -219,13 +220,22 @@ def _unknown_tag(tag: str, format_: int, tags: dict[str, tuple[str, ...]]) -> st
 
 
 def _is_plain(
-    root: Element, format_: int, children: list[Element], exported: list[Element], dependencies: list[Dependency]
+    document: Document, format_: int, children: list[Element], exported: list[Element], dependencies: list[Dependency]
 ) -> bool:
     """True when a manifest is so ordinary that catkin_pkg accepts it without a word.
 
     Importing catkin_pkg costs as much as reading hundreds of manifests here, so it is asked about the others alone.
     """
-    if not format_ or any(a.name != "format" for a in root.attributes):
+    root = document.elements[0]
+    if not format_ or root.name != "package" or any(a.name != "format" for a in root.attributes):
+        return False
+    # catkin_pkg takes CDATA for no text, and allows elements in the description and the export section alone
+    if "<![CDATA[" in document.text or any(
+        element.parent > 0
+        and document.elements[element.parent].parent == 0
+        and document.elements[element.parent].name not in ("description", "export")
+        for element in document.elements
+    ):
         return False
     count = {"name": 0, "version": 0, "description": 0, "maintainer": 0, "license": 0, "export": 0}
     dependency_attributes = DEPENDENCY_ATTRIBUTES if format_ > 2 else BOUNDS_ONLY
@@ -257,7 +267,9 @@ def _is_plain(
                 return False
             if email != "none" and not EMAIL.match(email):
                 return False
-        elif tag in ("description", "license") and not child.text:
+        elif (tag == "license" and not child.text) or (
+            tag == "description" and NO_DESCRIPTION.match(document.text, child.offset)
+        ):
             return False
     one = count["name"] == count["version"] == count["description"] == 1
     if not one or not count["maintainer"] or not count["license"] or count["export"] > 1:

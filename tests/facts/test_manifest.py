@@ -190,20 +190,35 @@ def test_never_raises_and_lines_lie_in_the_file(data):
     assert all(1 <= line <= last for line in [*lines, *(e.line for e in facts.exports)])
 
 
-@given(
-    st.sampled_from([1, 2, 3]),
-    st.lists(st.tuples(st.sampled_from(sorted({tag for _, tag, _ in KINDS})), st.sampled_from("ab")), max_size=4),
-    st.sampled_from(["walker", "Walker", "a b", ""]),
-    st.sampled_from(["1.2.3", "01.2.3", "1", ""]),
-    st.sampled_from(["a@b.org", "a@b", "", "a.b@c.d.org"]),
-)
-def test_the_short_way_agrees_with_catkin_pkg(format_, dependencies, name, version, email):
+ODDITIES = [
+    ("Walks.", ""),
+    ("Walks.", "<p>Walks.</p>"),
+    ("Walks.", "<!-- no -->"),
+    ("BSD", ""),
+    (">A<", "><b>A</b><"),
+    (">A<", "><"),
+    ("walker", "<![CDATA[walker]]>"),
+    ("<license>", '<license file="LICENSE">'),
+    ("<version>", '<version compatibility="1">'),
+    ("<version>", '<version compatibility="1.0.0">'),
+    ("<license>", "<name>again</name><license>"),
+    ("<license>", "<export/><export/><license>"),
+    ("<license>", '<depend version_gte="1" version_is="2">a</depend><license>'),
+    ("<license>", "<depend>a<b/></depend><license>"),
+    ("<license>", "<url>x</url><url type='y'/><license>"),
+    ("<license>", "<author/><license>"),
+    ("<license>", "<group_depend>g</group_depend><member_of_group>g</member_of_group><license>"),
+    ("<license>", "<export><metapackage/></export><license>"),
+    ("<license>", "<buildtool_depend>catkin</buildtool_depend><export><metapackage/></export><license>"),
+    ("<package", "<x><package"),
+    ("<package", '<package xmlns="urn:x"'),
+]
+
+
+def agrees(data):
+    """Asserts that problems and warnings are there when catkin_pkg has any, and only then."""
     from catkin_pkg.package import InvalidPackage, parse_package_string
 
-    data = manifest(format_, *(f"<{tag}>{text}</{tag}>" for tag, text in dependencies))
-    data = (
-        data.replace(b"walker", name.encode()).replace(b"1.2.3", version.encode()).replace(b"a@b.org", email.encode())
-    )
     warnings: list[str] = []
     try:
         parse_package_string(data, warnings=warnings)
@@ -214,3 +229,24 @@ def test_the_short_way_agrees_with_catkin_pkg(format_, dependencies, name, versi
     assert (not facts.problems) == accepted
     if accepted:
         assert len(facts.warnings) == len(warnings)
+
+
+@pytest.mark.parametrize("format_", [1, 2, 3])
+@pytest.mark.parametrize(("old", "new"), ODDITIES)
+def test_odd_manifests_are_judged_as_catkin_pkg_judges(format_, old, new):
+    agrees(manifest(format_).replace(old.encode(), new.encode()))
+
+
+@given(
+    st.sampled_from([1, 2, 3]),
+    st.lists(st.tuples(st.sampled_from(sorted({tag for _, tag, _ in KINDS})), st.sampled_from("ab")), max_size=4),
+    st.sampled_from(["walker", "Walker", "a b", ""]),
+    st.sampled_from(["1.2.3", "01.2.3", "1", ""]),
+    st.sampled_from(["a@b.org", "a@b", "", "a.b@c.d.org"]),
+)
+def test_the_short_way_agrees_with_catkin_pkg(format_, dependencies, name, version, email):
+    data = manifest(format_, *(f"<{tag}>{text}</{tag}>" for tag, text in dependencies))
+    data = (
+        data.replace(b"walker", name.encode()).replace(b"1.2.3", version.encode()).replace(b"a@b.org", email.encode())
+    )
+    agrees(data)
