@@ -3,7 +3,7 @@
 The same judgement as the benchmark's own score.py, which is given as a file; only the trees are read from the
 repositories, so that a whole run takes minutes.
 
-usage: breaks.py --score score.py --repos DIR [--breaks FILE] [--negatives FILE] [--only TEXT] [--out FILE] [--jobs N]
+usage: breaks.py --score score.py --repos DIR [--breaks FILE] [--negatives FILE [--known BREAKS]] [--only TEXT] [--out FILE] [--jobs N]
 """
 
 from __future__ import annotations
@@ -75,16 +75,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("--score", "--repos"):
         parser.add_argument(name, required=True)
-    for name in ("--breaks", "--negatives", "--only", "--out"):
+    for name in ("--breaks", "--known", "--negatives", "--only", "--out"):
         parser.add_argument(name)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--sample", type=int, default=0)
     args = parser.parse_args()
-    start(args.score, args.repos, args.breaks)
+    start(args.score, args.repos, args.breaks or args.known)
     load = _STATE["score"].load
     keep = lambda rows: [r for r in rows if not args.only or args.only in json.dumps(r)]  # noqa: E731
     out = open(args.out, "w") if args.out else None
-    with ProcessPoolExecutor(args.jobs, initializer=start, initargs=(args.score, args.repos, args.breaks)) as pool:
+    with ProcessPoolExecutor(args.jobs, initializer=start, initargs=(args.score, args.repos, args.breaks or args.known)) as pool:
         if args.breaks:
             rows = [r for r in pool.map(one_break, keep(load(args.breaks, args.sample))) if r["result"] != "no repository"]
             for label, part in (("all", rows), ("tier A, hard", [r for r in rows if r["tier"] == "A" and r["hardness"] == "hard"])):

@@ -57,6 +57,10 @@ class Misnamed(NamedTuple):
     help: str
 
 
+# Metapackages whose name other packages' headers begin with (ros/ros.h is roscpp's).
+_UMBRELLAS = frozenset({"ros", "moveit", "ecl", "pcl", "opencv2", "gazebo", "boost", "rtt", "visp", "flann"})
+# System packages so broad that they bring half of ROS along.
+_BROAD = frozenset({"mrpt"})
 _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 
 
@@ -94,8 +98,23 @@ class View:
 
         return Environment(
             ros_distro=target.distro, ros_version=str(target.ros), python=(target.python_major, target.python) if target.python else None,
-            codename=target.platform.split(" ")[-1], versions=version, headers=lambda path: None, testing=True,
+            codename=target.platform.split(" ")[-1], versions=version, headers=self._has_header, testing=True,
         )  # fmt: skip
+
+    def _has_header(self, path: str) -> bool | None:
+        """Whether the compiler finds a header on the target, for __has_include; None when that is not known."""
+        if self.workspace.provides_header(path):
+            return True
+        for change in self.changes("header-renamed", "header-moved", "header-removed"):
+            if change.old == path and change.state in ("removed", "deprecated"):
+                return change.state == "deprecated"
+            if change.new == path:
+                return change.state != "absent"
+        known = {
+            self.providers.has_header(p.name, path, self.target.distro, version)
+            for p in self.header(path) if p.kind == "ros" and (version := self.target.version(p.name))
+        }  # fmt: skip
+        return True if True in known else False if known == {False} else None
 
     def active(self, conditions: Iterable[Condition]) -> bool:
         """False only when a statement under these conditions surely does not count on the target."""
@@ -269,7 +288,7 @@ class View:
         package = self.workspace.packages.get(name)
         if package is not None:
             return [n for n, kinds in self.declared(package).items() if kinds & _INSTALLED_WITH]
-        released = self.target.dependencies(name)
+        released = self.target.dependencies(name) or self.target.similar_dependencies(name)
         if released is None:
             return ()
         return [d.name for d in released if d.kind in _INSTALLED_WITH]
@@ -309,11 +328,12 @@ class View:
         return known
 
     def blind(self, package: Package) -> list[str]:
-        """Declared packages whose own dependencies are not known here, so that the closure may lack something."""
+        """Declared packages whose own dependencies are not known anywhere, so that the closure may lack something."""
+        target = self.target
         return [
             n for n in self.closure(package)
-            if n not in self.workspace.packages and self.target.dependencies(n) is None
-            and self.target.resolve(n) is None and n not in _ALWAYS
+            if n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
+            and target.dependencies(n) is None and target.similar_dependencies(n) is None
         ]  # fmt: skip
 
     def debian(self, name: str) -> frozenset[str]:
@@ -330,6 +350,9 @@ class View:
         for provider in providers:
             if not provider.name or provider.name in names:
                 return True
+        stems = {_stem(p.name) for p in providers}
+        if any(n.endswith("_vendor") and n.removesuffix("_vendor").removeprefix("rviz_") in stems for n in names):
+            return True
         wanted = {p.package for p in providers if p.package}
         for provider in providers:
             wanted |= self.debian(provider.name)
@@ -352,12 +375,16 @@ class View:
             return [Provider("ros", name) for name in own]
         found = list(self.providers.header(path))
         head = path.split("/", 1)[0]
-        if "/" in path and not any(p.name == head for p in found) and self._is_package(head):
+        if any(not p.name for p in found):
+            return found
+        if "/" in path and not any(p.name == head for p in found) and self._is_package(head) and head not in _UMBRELLAS:
             convention = Provider("ros", head, "", False)
-            if self.target.version(head) is not None or not found:
+            if self.target.version(head) is not None or not found or head in self.workspace.packages:
                 found.insert(0, convention)
             else:
                 found.append(convention)
+        # A key that only depends on the package which has the header can satisfy a need, and is never its name.
+        found.sort(key=lambda p: p.kind == "system" and p.package.removeprefix("lib").removesuffix("-dev") in _BROAD)
         return found
 
     def _is_package(self, name: str) -> bool:
@@ -372,11 +399,21 @@ class View:
             if not own:
                 if self.target.version(name) is not None:
                     found.append(Provider("ros", name))
-                found.extend(p for p in self.providers.cmake(name) if p.name != name or p.kind != "ros")
+                found.extend(self._cmake_elsewhere(name))
                 if not found and self.target.ever_released(name):
                     found.append(Provider("ros", name, "", False))
             known = self._cmake[name] = tuple(found)
         return known
+
+    def _cmake_elsewhere(self, name: str) -> list[Provider]:
+        found = [p for p in self.providers.cmake(name) if p.name != name or p.kind != "ros"]
+        modules = [p for p in found if p.kind == "ros" and p.name in ("cmake_modules", "eigen3_cmake_module")]
+        if modules and name in ("Eigen", "TinyXML", "TinyXML2", "NUMPY", "GSL", "UUID", "Xenomai"):
+            # The library alone brings no find module of this name; catkin itself did until hydro.
+            if self.target.distro in ("groovy", "hydro"):
+                return [Provider("system", "")]
+            return [p for p in found if p.kind == "ros"]
+        return found
 
     def module(self, module: str) -> tuple[Provider, ...]:
         """Who could answer `import module`."""
@@ -452,10 +489,18 @@ class View:
             yield Need(how, name, (Provider("ros", name),), use.at, use.role, not reference.conditional, not reference.conditional)
 
 
+def _stem(name: str) -> str:
+    """`libogre-1.9-dev` gives `ogre`: what `ogre_vendor` is called after."""
+    return re.split(r"[-\d.]", name.removeprefix("lib"))[0].replace("-", "_")
+
+
 def interface_of(view: View, include: str) -> str | None:
     """The package whose interface an include path names by its form (`p/msg/x.hpp`, `p/X.h`), None for other headers."""
     head, _, rest = include.partition("/")
     package = view.workspace.packages.get(head)
-    if package is not None and package.is_interface_package and is_interface_header(rest, view.workspace.interface_names.get(head, ())):
-        return head
-    return None
+    if package is not None:
+        names = view.workspace.interface_names.get(head, ())
+        return head if package.is_interface_package and is_interface_header(rest, names) else None
+    if not head.endswith(("_msgs", "_srvs", "_interfaces", "_actions")) and not rest.startswith(("msg/", "srv/", "action/")):
+        return None
+    return head

@@ -125,6 +125,7 @@ class DistroTarget(Target):
         data: Snapshot | None = None,
     ):
         self._data = data or snapshots.default()
+        self._neighbours: list[DistroTarget] | None = None
         self._asked = (distro, date, platform, dict(versions or {}), name)
         row = self._data.row("SELECT id, ros, python FROM distro WHERE name = ?", (distro,))
         if row is None:
@@ -370,6 +371,21 @@ class DistroTarget(Target):
         """`ament_cmake`, `ament_python`, `catkin`, `cmake` ...; empty when not known or not said."""
         manifest = self._manifest(package)
         return manifest[1] if manifest else ""
+
+    def similar_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+        """What the package declares in the nearest distro of the same generation whose manifest of it is known.
+
+        For distros whose own manifests are not: what rests on it is likely, not sure.
+        """
+        if self._neighbours is None:
+            names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
+            here = names.index(self.distro) if self.distro in names else 0
+            near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
+            self._neighbours = [DistroTarget(name, data=self._data) for name in near if name != self.distro]
+        for neighbour in self._neighbours:
+            if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
+                return found
+        return None
 
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""

@@ -82,6 +82,10 @@ class Target:
         """What the released package declares, None when its manifest is not known."""
         raise NotImplementedError
 
+    def similar_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+        """The same in the nearest distro of this generation that knows it; likely, not sure."""
+        raise NotImplementedError
+
     def resolve(self, key: str) -> Resolution | None:
         """The rosdep rule for a key on this platform, None when there is none."""
         raise NotImplementedError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ...facts.cmake import CMakeFile
-from ..build import Build
+from ..build import Build, Declared
 from . import ament, catkin, find, install, language, targets
 from .interpreter import Interpreter
 
@@ -19,8 +19,8 @@ def interpret_package(
     exists: Callable[[str], bool],
     glob: Callable[[str, bool], list[str]],
     package: str,
-    dependencies: tuple[str, ...],
+    declared: Declared,
     extras: Callable[[str], tuple[str, ...]],
 ) -> Build:
     """See build.interpret()."""
-    return Interpreter(package_path, read, exists, glob, package, dependencies, extras).run()
+    return Interpreter(package_path, read, exists, glob, package, declared, extras).run()

@@ -9,11 +9,10 @@ import posixpath
 
 from ..build import Found, GeneratedInterfaces, Install
 from .blocks import Call
-from .catkin import sections
 from .interpreter import Interpreter, handles, stands_in_for
 from .names import name_set
 from .targets import add_links, add_sources, known
-from .values import Word, split_words, word
+from .values import Word, sections, split_words, word
 
 _CPP_SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
 
@@ -256,10 +255,11 @@ def ament_vendor(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 @handles("ament_auto_find_build_dependencies", "ament_auto_find_test_dependencies")
 def ament_auto_find_build_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
-    """ament_auto_find_build_dependencies(): finds every declared build dependency."""
+    """ament_auto_find_build_dependencies() and its twin for tests: find every dependency declared for it."""
     given = sections(args, frozenset({"REQUIRED"}))
     required = {str(item) for item in given.get("REQUIRED", [])}
-    names = [name for name in run.dependencies if name not in required]
+    declared = run.declared.test if call.name.endswith("test_dependencies") else run.declared.build
+    names = [name for name in declared if name not in required]
     for item in split_words(given.get("REQUIRED", [])):
         run.add_found(Found(str(item), "ament_auto", run.place(item.at), True, conditions=run.under(item)))
         run.extend(str(item), item.at)
@@ -298,9 +298,18 @@ def ament_auto_add_target(run: Interpreter, call: Call, args: list[Word]) -> Non
         for path in sorted(hits):
             if path.endswith(_CPP_SOURCES):
                 draft.sources[path] = None
-    for dependency in run.dependencies:
-        add_links(run, draft, [word(dependency, call.at)], "ament")
-    if kind != "test":
+    if run.path_exists(run.resolve("include"), True):
+        add_links(run, draft, [word("include", call.at)], "include", "PUBLIC")
+    if kind in ("executable", "test") and "NO_TARGET_LINK_LIBRARIES" not in given:
+        libraries = [made.name for made in run.automatic if made.kind == "library"]
+        add_links(run, draft, [word(name, call.at) for name in libraries], "link")
+    add_links(run, draft, [word(dependency, call.at) for dependency in run.declared.build], "ament")
+    if kind == "test":
+        add_links(run, draft, [word(dependency, call.at) for dependency in run.declared.test], "ament")
+        framework = f"ament_cmake_{call.name.rpartition('_')[2]}"
+        run.add_found(Found(framework, "find_package", run.place(call.at), True, True, conditions=run.conditions,
+                            via=call.name))  # fmt: skip
+    else:
         run.automatic.append(draft)
 
 
@@ -324,7 +333,7 @@ def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
         if draft.kind in ("library", "interface"):
             run.add_export(draft.name, "ament_export_libraries", call.at, run.conditions)
     include = run.tree_path("include/")
-    if run.exists(include.rstrip("/")):
+    if run.path_exists(run.resolve("include"), True):
         run.add_install(Install("directory", (include,), "include", at, (), run.conditions))
         run.add_export("include", "ament_export_include_directories", call.at, run.conditions)
     share = split_words([*given.get("INSTALL_TO_SHARE", []), *given.get("USE_SCOPED_HEADER_INSTALL_DIR", [])])
@@ -332,8 +341,9 @@ def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.add_install(
             Install("directory", (run.tree_path(item),), f"share/{package}", run.place(item.at), (), run.under(item))
         )
-    for dependency in run.dependencies:
-        run.add_export(dependency, "ament_export_dependencies", call.at, run.conditions)
+    for dependency in run.declared.build:
+        if dependency in run.declared.exported:
+            run.add_export(dependency, "ament_export_dependencies", call.at, run.conditions)
     ament_package(
         run, call, [item for item in args if item in ("CONFIG_EXTRAS",) or item in given.get("CONFIG_EXTRAS", [])]
     )
@@ -368,4 +378,7 @@ def _wrapper_standard(run: Interpreter, call: Call, number: int) -> None:
 
 @handles("ament_lint_auto_find_test_dependencies")
 def ament_lint_auto_find_test_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
-    """ament_lint_auto_find_test_dependencies(): finds declared test dependencies that are linters."""
+    """ament_lint_auto_find_test_dependencies(): finds every declared test dependency."""
+    for name in run.declared.test:
+        run.add_found(Found(name, "ament_auto", run.place(call.at), conditions=run.conditions))
+        run.extend(name, call.at)

@@ -12,20 +12,7 @@ from .blocks import Call
 from .interpreter import Interpreter, handles
 from .names import name_set
 from .targets import add_links, add_sources
-from .values import Value, Word, split_words, word
-
-
-def sections(args: list[Word], keywords: frozenset[str]) -> dict[str, list[Word]]:
-    """Arguments by the keyword they follow; those before any keyword are under the empty one."""
-    found: dict[str, list[Word]] = {"": []}
-    current = found[""]
-    for item in args:
-        if item in keywords:
-            current = found.setdefault(str(item), [])
-        else:
-            current.append(item)
-    return found
-
+from .values import Value, Word, sections, split_words, word
 
 _PACKAGE = name_set(
     """

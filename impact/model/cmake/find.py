@@ -9,7 +9,7 @@ from .blocks import Call
 from .interpreter import Interpreter, handles
 from .language import add_module
 from .names import name_set, names
-from .values import REFERENCE, Value, Word, merge, split_words, word
+from .values import REFERENCE, Value, Word, merge, sections, split_words, word
 
 _VERSION = re.compile(r"\d[\d.]*(?:\.\.\.<?\d[\d.]*)?\Z")
 _PKG_SPEC = re.compile(r"(.+?)\s*(>=|<=|=|>|<)\s*(\d.*)\Z")
@@ -121,6 +121,26 @@ def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
     effect = _FINDING.get(name)
     if effect is not None:
         effect(run, call)
+
+
+@handles("gz_find_package", "ign_find_package")
+def gz_find_package(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """gz_find_package() of gz-cmake: a name, VERSION, REQUIRED and COMPONENTS count."""
+    if not args:
+        return
+    given = sections(args[1:], _GZ)
+    version = given.get("VERSION", [])[:1]
+    extra = [item for item in args[1:] if item in ("REQUIRED", "QUIET", "EXACT")]
+    keyword = [item for item in args if item == "COMPONENTS"]
+    _find(run, call, args[0], [*version, *extra, *keyword, *given.get("COMPONENTS", [])])
+
+
+_GZ = name_set(
+    """
+    REQUIRED EXACT QUIET CONFIG BUILD_ONLY PKGCONFIG_IGNORE VERSION PRETTY PURPOSE EXTRA_ARGS PKGCONFIG PKGCONFIG_LIB
+    PKGCONFIG_VER_COMPARISON REQUIRED_BY PRIVATE_FOR COMPONENTS OPTIONAL_COMPONENTS
+    """
+)
 
 
 def add(

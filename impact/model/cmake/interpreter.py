@@ -13,7 +13,7 @@ from msgspec import structs
 
 from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
-from ..build import At, Build, Exported, Found, GeneratedInterfaces, Install, Use
+from ..build import At, Build, Declared, Exported, Found, GeneratedInterfaces, Install, Use
 from . import conditions as tests
 from .blocks import Block, Call, blocks
 from .drafts import TargetDraft, Targets
@@ -67,7 +67,7 @@ class Interpreter:
         exists: Callable[[str], bool],
         glob: Callable[[str, bool], list[str]],
         package: str,
-        dependencies: tuple[str, ...],
+        declared: Declared,
         extras: Callable[[str], tuple[str, ...]],
     ):
         self.package_path = package_path.strip("/")
@@ -75,7 +75,7 @@ class Interpreter:
         self.read = read
         self.exists = exists
         self.glob = glob
-        self.dependencies = dependencies
+        self.declared = declared
         self.extras = extras
 
         self.scopes: list[dict[str, Value]] = [{}]
@@ -107,7 +107,7 @@ class Interpreter:
 
         self.project = ""
         self.minimum: tuple[str, At] | None = None
-        self.standards: list[tuple[int, At, bool]] = []
+        self.standards: list[tuple[int, At, bool, bool]] = []
         self.found: dict[Found, None] = {}
         self.targets = Targets()
         self.installs: dict[Install, None] = {}
@@ -183,16 +183,17 @@ class Interpreter:
     def result(self) -> Build:
         """What was collected."""
         standard = None
-        default_only = False
+        default_only = by_flag = False
         if self.standards:
-            number, at, _ = max(self.standards, key=lambda entry: entry[0] if entry[0] < 90 else entry[0] - 100)
+            number, at, _, by_flag = max(self.standards, key=lambda entry: entry[0] if entry[0] < 90 else entry[0] - 100)
             standard = (number, at)
-            default_only = all(is_default for _, _, is_default in self.standards)
+            default_only = all(entry[2] for entry in self.standards)
         return Build(
             project=self.project,
             minimum=self.minimum,
             standard=standard,
             standard_default_only=default_only,
+            standard_by_flag=by_flag,
             found=tuple(self.found),
             targets=self.targets.finish(),
             installs=tuple(self.installs),
@@ -802,11 +803,11 @@ class Interpreter:
         return True if name in self.definitions or (name in COMMANDS and name not in MODULE_OF) else None
 
     def path_exists(self, path: str, directory: bool) -> bool | None:
-        """Whether a path of the tree exists; None outside of it."""
-        if not path.startswith("/"):
+        """Whether a path of the package exists; None outside of it."""
+        relative = self.relative(path) if path.startswith("/") else None
+        if relative is None or not (self.inside(relative) or relative == self.package_path):
             return None
-        relative = self.relative(path)
-        return None if relative is None else self.exists(relative)
+        return self.exists(relative) or bool(self.glob(f"{relative}/*" if relative else "*", True))
 
     def matched(self, groups: tuple[str, ...]) -> None:
         """Sets CMAKE_MATCH_<n>."""
@@ -895,10 +896,10 @@ class Interpreter:
         if not self.silent and item:
             self.exports[Exported(self.shown(item), how, self.place(at), conditions, context)] = None
 
-    def add_standard(self, number: int, at: At, is_default: bool) -> None:
+    def add_standard(self, number: int, at: At, is_default: bool, by_flag: bool) -> None:
         """Collects a C++ standard set for everything."""
         if not self.silent:
-            self.standards.append((number, self.place(at), is_default))
+            self.standards.append((number, self.place(at), is_default, by_flag))
 
     def new_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
         """Makes or finds a target; a second one of the same name adds to the first."""

@@ -42,11 +42,11 @@ def note_variable(run: Interpreter, name: str, text: str, item: Word) -> None:
     """Collects a standard that is set through a variable."""
     if name == "CMAKE_CXX_STANDARD":
         if text.isdigit() and len(text) == 2:
-            run.add_standard(int(text), item.at, is_default(run))
+            run.add_standard(int(text), item.at, is_default(run), False)
     elif name.startswith("CMAKE_CXX_FLAGS"):
         number = flag_standard(text)
         if number:
-            run.add_standard(number, item.at, is_default(run))
+            run.add_standard(number, item.at, is_default(run), True)
 
 
 def note_options(run: Interpreter, items: Iterable[Word]) -> None:
@@ -54,4 +54,4 @@ def note_options(run: Interpreter, items: Iterable[Word]) -> None:
     for item in items:
         number = flag_standard(item)
         if number:
-            run.add_standard(number, item.at, is_default(run))
+            run.add_standard(number, item.at, is_default(run), True)

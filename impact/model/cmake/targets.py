@@ -333,4 +333,4 @@ def protobuf_generate(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 def default_standard(run: Interpreter, number: int, call: Call) -> None:
     """A standard that a wrapper sets unless one is set already."""
-    run.add_standard(number, call.at, is_default(run))
+    run.add_standard(number, call.at, is_default(run), False)

@@ -159,6 +159,18 @@ def split_words(items: Iterable[Word]) -> list[Word]:
     return found
 
 
+def sections(args: list[Word], keywords: frozenset[str]) -> dict[str, list[Word]]:
+    """Arguments by the keyword they follow; those before any keyword are under the empty one."""
+    found: dict[str, list[Word]] = {"": []}
+    current = found[""]
+    for item in args:
+        if item in keywords:
+            current = found.setdefault(str(item), [])
+        else:
+            current.append(item)
+    return found
+
+
 LITERAL, REFERENCE, QUOTED_REFERENCE, MIXED = range(4)
 
 

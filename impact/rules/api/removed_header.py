@@ -8,7 +8,8 @@ Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
-    error for built code that is not guarded; warning where a test or an unknown condition surrounds it.
+    error for compiled code that is not guarded; warning for installed headers that the package does not compile itself,
+    for tests, and under conditions that are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -34,7 +35,7 @@ def removed_header(view: View):
             if not view.active(include.conditions) or view.workspace.provides_header(path):
                 continue
             severity = "note" if include.role == "aside" else (
-                "error" if include.role == "build" and view.certain(include.conditions) else "warning"
+                "error" if include.role == "build" and include.targets and view.certain(include.conditions) else "warning"
             )
             change = gone.get(path)
             if change is not None:

@@ -22,6 +22,7 @@ Use instead
 import posixpath
 
 from ...model.view import View
+from ...targets.library import variables
 from ..evidence import weight
 from ..rule import Hit, rule
 from .missing_find_package import found_names
@@ -65,11 +66,30 @@ def _catkin(view: View, package):
                 continue
             yield Hit(export.at, export.item, f"the exported library `{export.item}` is no target of `{package.name}`",
                       "export the library's target name", package.name)  # fmt: skip
-        elif export.how == "system_depends" and export.item not in found:
+        elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
             near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
             yield Hit(export.at, export.item, f"nothing sets `{export.item}_INCLUDE_DIRS` or `{export.item}_LIBRARIES`, so DEPENDS exports nothing",
                       f"write `{near.upper() if near == 'Eigen3' else near}`" if near else f"find `{export.item}` first",
                       package.name, severity="warning" if near else "note")  # fmt: skip
+
+
+def _sets(package, stem: str) -> bool:
+    """True when a find_package of the package sets variables that begin with the stem."""
+    for found in package.build.found:
+        names = variables(found.name)
+        if names is None and found.name.lower() == stem.lower():
+            return True
+        if names and any(name.startswith(stem + "_") and not name.endswith(("FOUND", "VERSION", "DIR")) for name in names):
+            return True
+    return False
+
+
+def _includers(view: View, package) -> set[str]:
+    """Packages of the workspace that include the package's headers."""
+    return {
+        other.name for other in view
+        if other.name != package.name and any(package.name in view.workspace.provides_header(i.path) for i in other.digest.includes)
+    }  # fmt: skip
 
 
 def _ament(view: View, package):
@@ -80,6 +100,8 @@ def _ament(view: View, package):
             libraries = [t for t in package.build.targets if t.kind in ("library", "interface") and t.name in _installed(package)]
             if libraries and any("/include/" in f"/{h}" for h in package.digest.public_headers):
                 first = package.build.ament_package
+                if not _includers(view, package):
+                    return
                 yield Hit(first, "ament_export_include_directories", f"`{package.name}` installs headers and exports neither them nor a target",
                           "call ament_export_targets or ament_export_include_directories", package.name)  # fmt: skip
         return
@@ -93,6 +115,9 @@ def _ament(view: View, package):
     reach = view.spread(exported)
     found = found_names(view, package) or set()
     told = set()
+    # Until Galactic all headers lay in one folder, so a missing export went unnoticed.
+    apart = view.target.distro not in ("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic")
+    includers = None
     for need in sorted(view.needs(package), key=weight):
         if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, reach):
             continue
@@ -100,8 +125,10 @@ def _ament(view: View, package):
         if name is None or name in told or name == package.name or need.providers[0].kind != "ros":
             continue
         told.add(name)
+        includers = _includers(view, package) if includers is None else includers
+        severity = "warning" if apart and (includers or "ament_export_libraries" in hows or "ament_export_targets" in hows) else "note"
         yield Hit(need.at, name, f"an installed header includes `{need.subject}` and `{name}` is not exported",
-                  f"add `{name}` to ament_export_dependencies", package.name)  # fmt: skip
+                  f"add `{name}` to ament_export_dependencies", package.name, severity=severity)  # fmt: skip
 
 
 def _installed(package) -> set[str]:

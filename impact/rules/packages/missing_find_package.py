@@ -22,7 +22,9 @@ Not reported
     Packages that come with another one that is found; headers of the C and C++ libraries.
 """
 
-from ...model.view import View
+import re
+
+from ...model.view import View, interface_of
 from ..evidence import weight
 from ..rule import Hit, rule
 
@@ -42,11 +44,13 @@ def missing_find_package(view: View):
         closure = view.closure(package)
         told = set()
         for at, name in _given_to_targets(view, package):
-            if name in found or name in told or name in package.digest.modules:
+            if name in reachable or name in told or name in package.digest.modules or name == package.name:
                 continue
             told.add(name)
             yield Hit(at, name, f"`{name}` is given to a target and find_package(`{name}`) is never called",
                       f"add find_package({name} REQUIRED)", package.name, severity="error")  # fmt: skip
+        sought = {_folded(f.name) for f in package.build.found}
+        linked = {_folded(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
         for need in sorted(view.needs(package), key=weight):
             if need.how != "include" or need.role != "build" or not need.certain:
                 continue
@@ -56,13 +60,23 @@ def missing_find_package(view: View):
             if name is None or name in told or name == package.name:
                 continue
             ros = need.providers[0].kind == "ros"
+            stems = {_folded(p.name) for p in need.providers} | {_folded(need.subject.split("/")[0])}
+            if any(a in b or b in a for a in stems for b in sought if len(a) > 2 and len(b) > 2):
+                continue
+            if not ros and any(a in b or b in a for a in stems for b in linked if len(a) > 2 and len(b) > 2):
+                continue
+            header_only = ros and view.target.ros == 1 and interface_of(view, need.subject) is not None
             if not ros and any(_cmake_of(view, f) & {p.name for p in need.providers} for f in found):
                 continue
             told.add(name)
             direct = name in view.declared(package)
             yield Hit(need.at, name, f"`{need.subject}` is included and CMake never looks for `{name}`",
                       f"add find_package({name} REQUIRED) and give it to the target", package.name,
-                      severity="warning" if direct and need.providers[0].sure or direct and ros else "note")  # fmt: skip
+                      severity="warning" if direct and ros and not header_only and (need.targets or need.public) else "note")  # fmt: skip
+
+
+def _folded(name: str) -> str:
+    return re.sub(r"[^a-z]|^lib|dev$", "", name.lower())
 
 
 def _cmake_of(view: View, name: str) -> set[str]:

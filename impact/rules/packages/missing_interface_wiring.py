@@ -110,7 +110,7 @@ def _catkin_generation(view: View, package):
         reach = view.spread(found)
         if "message_generation" not in reach and "genmsg" not in reach:
             yield Hit(at, "message_generation", "messages are generated and `message_generation` is never found",
-                      "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)", package.name, severity="error")  # fmt: skip
+                      "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)", package.name)  # fmt: skip
 
 
 def _orders(package) -> dict[str, set[str]]:

@@ -33,15 +33,15 @@ def misspelt_cmake_name(view: View):
         declared = view.declared(package)
         found = {f.name for f in package.build.found}
         near = Names(set(declared) | found | set(view.workspace.packages))
-        for at, name, required, conditions in _named(package):
-            if not view.active(conditions) or view.cmake(name) or name in declared or name in found:
+        for at, name, required, conditions, exact in _named(package):
+            if not view.active(conditions) or view.cmake(name) or name in declared or name in found and not required:
                 continue
             halves = _run_together(name, near.names)
             if halves:
                 yield Hit(at, name, f"`{name}` is `{halves[0]}` and `{halves[1]}` run together", f"write `{halves[0]} {halves[1]}`",
                           package.name, severity="error" if required else "warning")  # fmt: skip
                 continue
-            meant = near.nearest(name)
+            meant = near.nearest(name) if exact else None
             if meant is not None and meant != name and view.target.ever_released(name) is False:
                 yield Hit(at, name, f"nobody provides `{name}`; `{meant}` is declared", f"write `{meant}`", package.name,
                           severity="error" if required and view.certain(conditions) else "warning")  # fmt: skip
@@ -51,14 +51,14 @@ def misspelt_cmake_name(view: View):
 def _named(package):
     for f in package.build.found:
         if f.how in ("find_package", "catkin") and f.name != "catkin":
-            yield f.at, f.name, f.required or f.how == "catkin", f.conditions
+            yield f.at, f.name, f.required or f.how == "catkin", f.conditions, True
     for e in package.build.exports:
         if e.how in ("ament_export_dependencies", "catkin_depends"):
-            yield e.at, e.item, False, e.conditions
+            yield e.at, e.item, False, e.conditions, True
     for target in package.build.targets:
         for link in target.links:
             if link.how == "ament" and "$" not in link.item:
-                yield link.at, link.item, False, link.conditions
+                yield link.at, link.item, False, link.conditions, False
 
 
 def _run_together(name: str, names) -> tuple[str, str] | None:

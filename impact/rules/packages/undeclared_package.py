@@ -29,6 +29,11 @@ from ..evidence import name_to_declare, present, weight
 from ..rule import Hit, rule
 
 
+# Tools that people start on their own desk.
+_VIEWERS = ("rviz", "rqt", "image_view", "joint_state_publisher_gui", "plotjuggler", "teleop_", "joy", "moveit_setup_assistant",
+            "urdf_tutorial", "turtlesim")  # fmt: skip
+# The macros that make tests bring these headers.
+_WITH_TESTS = ("gtest/", "gmock/")
 # Whoever starts a launch file has these: the launch tool itself brings them.
 _LAUNCHING = frozenset({"launch", "launch_ros", "launch_xml", "launch_yaml", "roslaunch", "launch_testing", "launch_testing_ros"})
 
@@ -39,7 +44,7 @@ def undeclared_package(view: View):
         closure = view.closure(package)
         missing: dict[str, list[Need]] = {}
         for need in view.needs(package):
-            if view.answered(need.providers, closure):
+            if view.answered(need.providers, closure) or need.subject.startswith(_WITH_TESTS) and need.role == "test":
                 continue
             name = name_to_declare(view, need)
             if name is not None:
@@ -72,7 +77,8 @@ def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
     if need.how in ("find_package", "component") and not need.required:
         return "note"
     if need.how in ("launch", "plugin", "shell") or name in _LAUNCHING:
-        return "warning" if need.required and need.role == "run" and name not in _LAUNCHING else "note"
+        loud = need.required and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
+        return "warning" if loud else "note"
     if need.role == "test" or need.how == "import":
         return "warning" if need.required else "note"
     if not need.certain:

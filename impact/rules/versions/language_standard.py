@@ -8,8 +8,11 @@ Why it breaks
     The compiler stops inside somebody else's header with errors about missing features.
 
 Severity
-    error for a -std= flag or a fixed CMAKE_CXX_STANDARD below what is needed, or none where the compiler's default is
-    below; warning where the version is not known exactly.
+    error for a -std= flag below what is needed, or none where the compiler's default is below; warning where the version
+    is not known exactly.
+
+Not reported
+    CMAKE_CXX_STANDARD in ROS 2: CMake raises it to what linked targets ask for.
 
 Example
     add_compile_options(-std=c++11)             # and pcl 1.12 needs C++14
@@ -31,7 +34,10 @@ def language_standard(view: View):
             continue
         fixed = package.build.standard
         have = _order(fixed[0]) if fixed else default
-        if have is None or fixed and package.build.standard_default_only and have >= (default or 0):
+        if have is None:
+            continue
+        if fixed and not package.build.standard_by_flag and view.target.ros == 2:
+            # CMake raises CMAKE_CXX_STANDARD to what the exported targets of rclcpp and others ask for.
             continue
         for include in package.digest.includes:
             if include.role != "build" or not view.certain(include.conditions):
