@@ -1,0 +1,208 @@
+"""Known upstream changes: what a version of a ROS package or platform library removed, renamed or stopped bringing along.
+
+The facts are in `data/changes.json`, reviewed, each with its source. A change is judged on a target by versions; for
+headers of ROS packages whose source trees are in the provider table, by what the very release has.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Literal, NamedTuple
+
+import msgspec
+
+from .providers import Providers, default_providers
+from .snapshot import DATA, SnapshotError
+from .target import Change, Target
+from .version import at_least
+
+
+class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Rows of data/changes.json that share all but the names. names: old to new (empty: nothing instead)."""
+
+    kind: str
+    package: str
+    source: str
+    names: dict[str, str]
+    library: bool = False
+    removed_in: str = ""
+    back_in: str = ""
+    deprecated_in: str = ""
+    new_since: str = ""
+    ambiguous: bool = False
+    unless: tuple[str, ...] = ()
+    note: str = ""
+
+
+class Row(NamedTuple):
+    """One known change, on any target.
+
+    kind: as in Change. package: a ROS package or, where library is set, a platform library. old: an include path, a
+    package, or an identifier as a scanner finds it (`cv::SURF`, `CV_BGR2GRAY`, `numpy.float`); new: what stands instead.
+    removed_in, deprecated_in, new_since: a version, or the first ROS distro; `ros2` is all of ROS 2; empty: not known or
+    not yet. back_in: a version that has the old name again. ambiguous: the bare name is a common word. unless: endings
+    of include paths that bring the old name back.
+    """
+
+    kind: str
+    package: str
+    old: str
+    new: str
+    library: bool
+    removed_in: str
+    back_in: str
+    deprecated_in: str
+    new_since: str
+    ambiguous: bool
+    unless: tuple[str, ...]
+    source: str
+    note: str
+
+
+class TransitiveInclude(NamedTuple):
+    """A header that a compiler or library stopped bringing along.
+
+    name: the identifier that needs it. headers: any of these offers it, best first. library, since: from which version
+    of which platform library on it has to be included. through: how the include paths begin that used to bring it
+    (empty: the standard library's own headers). sure: no other standard header is known to bring it since.
+    """
+
+    name: str
+    headers: tuple[str, ...]
+    library: str
+    since: str
+    through: str
+    sure: bool
+    source: str
+
+
+class _TransitiveGroup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    headers: tuple[str, ...]
+    library: str
+    since: str
+    names: tuple[str, ...]
+    source: str
+    through: str = ""
+    sure: bool = False
+
+
+class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    changes: list[_Group]
+    transitive: list[_TransitiveGroup]
+
+
+@cache
+def _file() -> _File:
+    path = DATA / "changes.json"
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=_File)
+    except (OSError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+
+
+@cache
+def all_rows() -> tuple[Row, ...]:
+    """Every known change. Raises SnapshotError when the data file cannot be read."""
+    return tuple(
+        Row(g.kind, g.package, old, new, g.library, g.removed_in, g.back_in, g.deprecated_in, g.new_since, g.ambiguous,
+            g.unless, g.source, g.note)
+        for g in _file().changes
+        for old, new in g.names.items()
+    )  # fmt: skip
+
+
+@cache
+def transitive_includes() -> tuple[TransitiveInclude, ...]:
+    """Every header that is known to have stopped coming along. Raises SnapshotError when the data file cannot be read."""
+    return tuple(
+        TransitiveInclude(name, g.headers, g.library, g.since, g.through, g.sure, g.source)
+        for g in _file().transitive
+        for name in g.names
+    )
+
+
+DISTROS: dict[str, int] = {
+    name: place
+    for place, name in enumerate(
+        (
+            *("groovy", "hydro", "indigo", "jade", "kinetic", "lunar", "melodic", "noetic"),
+            *("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic", "humble", "iron", "jazzy"),
+            *("kilted", "lyrical", "rolling"),
+        )
+    )
+}
+"""ROS distros in the order of their release, ROS 1 before ROS 2; rolling stands after the newest."""
+
+State = Literal["removed", "deprecated", "absent"]
+
+
+def changes_in_force(target: Target, providers: Providers | None = None) -> tuple[Change, ...]:
+    """Known changes that hold on a target, deprecations and not yet existing new names included.
+
+    A row whose package or library the target does not have, or has in an unknown version, is left out, except for
+    packages that are themselves gone.
+    """
+    table = providers or default_providers()
+    found = []
+    for row in all_rows():
+        version = _version(row, target)
+        if version is None:
+            if row.kind in ("package-removed", "package-renamed") and _reached(row.removed_in, "", target):
+                found.append(_change(row, "removed", ""))
+            continue
+        state = _state(row, version, target, table)
+        if state:
+            found.append(_change(row, state, version))
+    return tuple(found)
+
+
+def _change(row: Row, state: str, version: str) -> Change:
+    return Change(row.kind, row.package, row.old, row.new, state, version, row.new_since, row.source)
+
+
+def _version(row: Row, target: Target) -> str | None:
+    if not row.library:
+        return target.version(row.package)
+    if row.package == "python" and getattr(target, "python_major", 3) == 2:
+        return "2.7"
+    return target.library(row.package)
+
+
+def _state(row: Row, version: str, target: Target, table: Providers) -> State | None:
+    gone = _reached(row.removed_in, version, target) and not _reached(row.back_in, version, target)
+    old = new = None
+    if row.kind.startswith("header-") and not row.library:
+        old = table.has_header(row.package, row.old, target.distro, version)
+        new = table.has_header(row.package, row.new, target.distro, version) if row.new else None
+    if row.kind.startswith("package-"):
+        # The package is there: at most on its way out.
+        return "deprecated" if _reached(row.deprecated_in, version, target) else None
+    if old is False or (old is None and gone):
+        # A header that this release has not got yet, while the new one is there, cannot be told from a removed one.
+        return "removed" if old is None or new is not False else None
+    if new is False or (new is None and row.new and row.new_since and not _reached(row.new_since, version, target)):
+        return "absent"
+    return "deprecated" if _reached(row.deprecated_in, version, target) else None
+
+
+def _reached(bound: str, version: str, target: Target) -> bool:
+    """Whether a target is at or past a bound: a version, a distro of its generation, or all of ROS 2."""
+    if not bound:
+        return False
+    if bound == "ros2":
+        return target.ros == 2
+    if bound in DISTROS:
+        place = DISTROS.get(target.distro)
+        first_of_2 = DISTROS["ardent"]
+        return place is not None and DISTROS[bound] <= place and (DISTROS[bound] < first_of_2) == (place < first_of_2)
+    return bool(version) and at_least(version, bound)
+
+
+def excuses(change: Change) -> tuple[str, ...]:
+    """Endings of include paths that bring a removed name back (`_c.h` for OpenCV's C constants); empty for most."""
+    return _excuses().get((change.package, change.old), ())
+
+
+@cache
+def _excuses() -> dict[tuple[str, str], tuple[str, ...]]:
+    return {(row.package, row.old): row.unless for row in all_rows() if row.unless}
