@@ -384,8 +384,7 @@ class View:
             else:
                 found.append(convention)
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
-        found.sort(key=lambda p: p.kind == "system" and p.package.removeprefix("lib").removesuffix("-dev") in _BROAD)
-        return found
+        return [p for p in found if p.name not in _BROAD]
 
     def _is_package(self, name: str) -> bool:
         return name in self.workspace.packages or self.target.ever_released(name)

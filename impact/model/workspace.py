@@ -158,14 +158,16 @@ class Workspace:
         owners = self.headers.get(include)
         if owners:
             return owners
+        maker = self.generated_headers.get(include.rsplit("/", 1)[-1])
+        if maker:
+            return [maker]
         head, _, rest = include.partition("/")
         package = self.packages.get(head)
-        if package is not None and rest and self._generates(package, rest):
-            return [head]
-        maker = self.generated_headers.get(include.rsplit("/", 1)[-1])
-        return [maker] if maker else []
+        return [head] if package is not None and rest and self._generates(package, rest) else []
 
     def _generates(self, package: Package, rest: str) -> bool:
+        if not package.build.files or package.manifest.metapackage:
+            return False
         if rest.endswith("Config.h") and any(g.how == "reconfigure" for g in package.build.generated):
             return True
         if rest.rsplit("/", 1)[-1] in ("visibility_control.h", "visibility_control.hpp", "version.h", "version.hpp", "export.h"):

@@ -18,7 +18,7 @@ Use instead
     #include <tf2_geometry_msgs/tf2_geometry_msgs.hpp>   // there since 0.25
 
 Not reported
-    Includes under `#if __has_include(...)` or a version test that excludes the target; headers of the workspace itself.
+    ROS 1 names in a package that also includes ROS 1 headers, as bridges do. Includes under `#if __has_include(...)` or a version test that excludes the target; headers of the workspace itself.
 """
 
 from ...model.view import View
@@ -30,6 +30,7 @@ def removed_header(view: View):
     gone = {c.old: c for c in view.changes("header-removed", "header-renamed", "header-moved") if c.state == "removed" and c.old}
     early = {c.new: c for c in view.changes("header-renamed", "header-moved") if c.state == "absent" and c.new}
     for package in view:
+        dual = view.target.ros == 2 and any(i.path.startswith("ros/") for i in package.digest.includes)
         for include in package.digest.includes:
             path = include.path
             if not view.active(include.conditions) or view.workspace.provides_header(path):
@@ -54,6 +55,6 @@ def removed_header(view: View):
             if lost is not None:
                 yield Hit(include.at, path, lost.message, lost.help, package.name, severity=severity)
                 continue
-            wrong = view.misnamed_interface(path)
+            wrong = None if dual else view.misnamed_interface(path)
             if wrong:
                 yield Hit(include.at, path, wrong.message, wrong.help, package.name, severity=severity)

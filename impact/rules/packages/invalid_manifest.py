@@ -8,7 +8,7 @@ Why it breaks
     catkin, colcon, rosdep and bloom refuse the package, or overlook the dependency.
 
 Severity
-    error when catkin_pkg refuses the manifest; warning for unknown tags.
+    error: catkin_pkg refuses such a manifest, and with it catkin, colcon and bloom.
 
 Example
     <build-depend>rviz</build-depend>
@@ -26,11 +26,12 @@ from ..rule import Hit, rule
 def invalid_manifest(workspace: Workspace):
     for package in workspace:
         manifest, path = package.manifest, package.digest.manifest_path
-        for tag, text, line in getattr(manifest, "unknown_tags", ()):
+        misspelt = {}
+        for tag, text, line in manifest.unknown_tags:
+            misspelt[line] = tag
             words = tag.replace("-", "_").replace("depends", "depend")
-            if "depend" not in words:
-                continue
             yield Hit(At(path, line), tag, f"`<{tag}>{text}</{tag}>` is no tag of format {manifest.format}, so `{text}` is not declared",
-                      f"write `<{words}>`" if words != tag else "use a tag of this format", package.name, severity="warning")  # fmt: skip
+                      f"write `<{words}>`" if words != tag else "use a tag of this format", package.name)  # fmt: skip
         for problem in manifest.problems:
-            yield Hit(At(path, problem.line), package.name or path, problem.message, "correct the manifest", package.name)
+            if problem.line not in misspelt:
+                yield Hit(At(path, problem.line), package.name or path, problem.message, "correct the manifest", package.name)

@@ -151,8 +151,6 @@ def _descriptions(view: View, package, installs):
             continue
         path = posixpath.normpath(posixpath.join(package.path, value[len("${prefix}/") :]))
         if path not in package.files:
-            if re.search(r"\.so(\.|$)|\.a$|\.dylib$", path) or install.kind == "directory" and re.search(r"(^|/)(include|lib|bin)(/|$)", item):
-                continue  # made by the build, or a folder that git cannot keep while it is empty
             if path + ".in" in package.files or _covered(package, installs, path):
                 continue
             yield Hit(At(package.digest.manifest_path, export.line), value[len("${prefix}/") :],

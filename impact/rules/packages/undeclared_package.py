@@ -9,8 +9,8 @@ Why it breaks
     declares (a build farm, a new colleague, the robot) the configuration, the compiler, or the node stops.
 
 Severity
-    error: an unconditional find_package(REQUIRED), catkin component or include of built code that is sure to miss its
-    package on the target. warning: tests, imports, launch files, conditional code, or where the manifests that would
+    error: an unconditional find_package(REQUIRED), catkin component or include of compiled code that is sure to miss its
+    package on the target. warning: tests, installed headers that the package itself does not compile, imports, launch files, conditional code, or where the manifests that would
     settle it are not known for the target. note: examples and documentation.
 
 Example
@@ -83,7 +83,7 @@ def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
         return "warning" if need.required else "note"
     if not need.certain:
         return "note"
-    if blind or not view.target.knows_manifests:
+    if blind or not view.target.knows_manifests or need.how == "include" and not need.targets:
         return "warning"
     ros = name in view.workspace.packages or view.target.version(name) is not None
     return "error" if ros or need.how == "find_package" else "warning"
