@@ -79,5 +79,6 @@ def test_every_input_is_used():
 def test_hooks_know_their_options(hook):
     program, command, *options = shlex.split(hook["entry"])
     assert (program, hook["language"], hook["pass_filenames"]) == ("rosimpact", "python", False)
-    known = subprocess.run([PROGRAM, command, "--help"], capture_output=True, text=True, env=os.environ | {"COLUMNS": "200"})
+    environment = os.environ | {"COLUMNS": "200"}
+    known = subprocess.run([PROGRAM, command, "--help"], capture_output=True, text=True, env=environment)
     assert [option for option in options if option not in known.stdout] == []

@@ -131,9 +131,18 @@ def test_the_licence_is_stated_and_shipped(wheel):
 
 @pytest.mark.parametrize(
     "name",
-    ["README.md", "LICENSE", "CHANGELOG.md", "CONTRIBUTING.md", "setup.py", "impact/cli.py", "tests/packaging/test_wheel.py",
-     "examples/ros2_ws/rosimpact.toml", ".ci/run"],
-)  # fmt: skip
+    [
+        "README.md",
+        "LICENSE",
+        "CHANGELOG.md",
+        "CONTRIBUTING.md",
+        "setup.py",
+        ".ci/run",
+        "impact/cli.py",
+        "examples/ros2_ws/rosimpact.toml",
+        "tests/packaging/test_wheel.py",
+    ],
+)
 def test_the_sdist_can_be_built_and_tested(sdist_names, name):
     assert name in sdist_names
 
