@@ -198,6 +198,7 @@ class _Join:
         self.cpp: dict[str, CppFile] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str, object]]] = {}
+        self._covered: tuple[set[str], tuple[str, ...]] | None = None
 
     def inside(self, path: str) -> str:
         return path[len(self.prefix) :]
@@ -432,7 +433,28 @@ class _Join:
         inside = self.inside(path)
         if inside in ("setup.py", "conanfile.py"):
             return "build"
-        return role_of_folder(inside) or "run"
+        return role_of_folder(inside) or ("run" if self.is_installed(path) else "aside")
+
+    def is_installed(self, path: str) -> bool:
+        """True for files that reach the installed package, as far as its rules tell."""
+        if self.build_type == "ament_python" or not self.build.files:
+            return True
+        if self._covered is None:
+            single, folders = set(), []
+            for rule in self.build.installs:
+                if rule.kind in ("directory", "python"):
+                    folders.extend(posixpath.normpath(item) if item else "" for item in rule.items)
+                else:
+                    single.update(posixpath.normpath(item) for item in rule.items)
+            if any("$" in item for item in (*single, *folders)):
+                folders.append(self.path)
+            self._covered = single, tuple(folders)
+        single, folders = self._covered
+        if path in single or any(not f or path.startswith(f + "/") or f == self.path for f in folders):
+            return True
+        # catkin_python_setup() installs what setup.py names, which by custom lies in src/.
+        inside = self.inside(path)
+        return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
 
 
 def is_header(path: str) -> bool:

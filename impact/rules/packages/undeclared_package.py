@@ -20,11 +20,11 @@ Use instead
     <depend>tf2_eigen</depend>
 
 Not reported
-    What comes through another declared package, even though relying on that is unwise; code that is compiled nowhere;
-    names that nobody is known to provide (they are counted as unresolved).
+    Messages, client libraries and common system libraries that come through another declared package; code that is
+    compiled nowhere; names that nobody is known to provide (they are counted as unresolved).
 """
 
-from ...model.view import Need, View
+from ...model.view import Need, View, interface_of
 from ..evidence import name_to_declare, present, weight
 from ..rule import Hit, rule
 
@@ -38,17 +38,33 @@ _WITH_TESTS = ("gtest/", "gmock/")
 _LAUNCHING = frozenset({"launch", "launch_ros", "launch_xml", "launch_yaml", "roslaunch", "launch_testing", "launch_testing_ros"})
 
 
+# Client libraries and what their own headers include: always there with them, and customarily not declared apart.
+_WITH_CLIENT = frozenset(
+    "roscpp rospy rosconsole rostime xmlrpcpp roslib cpp_common roscpp_traits roscpp_serialization class_loader pluginlib "
+    "nodelet tf tf2 tf2_ros tf2_msgs eigen_conversions tf_conversions message_filters rclcpp rclcpp_components rclcpp_lifecycle "
+    "rclpy rcl rcutils builtin_interfaces std_msgs geometry_msgs sensor_msgs nav_msgs catkin actionlib dynamic_reconfigure "
+    "message_generation message_runtime genmsg rcl_interfaces".split()
+)
+# Keys that most graphs of dependencies bring anyway.
+_COMMON_KEYS = frozenset({"boost", "libboost-dev", "libboost-all-dev", "libopencv-dev", "opencv2", "python3-dev", "python-dev", "eigen",
+                          "libpcl-all-dev", "python", "python3", "liborocos-kdl-dev"})  # fmt: skip
+
+
 @rule(severity="error")
 def undeclared_package(view: View):
     for package in view:
         closure = view.closure(package)
+        declared = view.declared(package)
         missing: dict[str, list[Need]] = {}
+        borrowed: dict[str, list[Need]] = {}
         for need in view.needs(package):
-            if view.answered(need.providers, closure) or need.subject.startswith(_WITH_TESTS) and need.role == "test":
+            if view.answered(need.providers, declared) or need.subject.startswith(_WITH_TESTS) and need.role == "test":
                 continue
             name = name_to_declare(view, need)
-            if name is not None:
-                missing.setdefault(name, []).append(need)
+            if name is None or name == package.name:
+                continue
+            (borrowed if view.answered(need.providers, closure) else missing).setdefault(name, []).append(need)
+        yield from _borrowed(view, package, borrowed, closure)
         if not missing:
             continue
         blind = bool(view.blind(package))
@@ -67,6 +83,33 @@ def undeclared_package(view: View):
                 package=package.name,
                 severity=severity,
             )
+
+
+def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dict[str, str]):
+    """What built code uses directly and only a dependency of a dependency brings, so that it leaves when that one does."""
+    for name, needs in borrowed.items():
+        if name in _WITH_CLIENT or name.startswith(("ament_", "rosidl_", "rmw")):
+            continue
+        ours = name in view.workspace.packages
+        ros = ours or view.target.version(name) is not None
+        strong = [
+            n for n in needs
+            if n.certain and n.required and (
+                n.how in ("find_package", "component") and n.role == "build" and (ros or name not in _COMMON_KEYS)
+                or n.how == "include" and n.role == "build" and n.targets and ros and interface_of(view, n.subject) is None
+                or n.how == "import" and ours and n.role == "run"
+            )
+        ]  # fmt: skip
+        if not strong:
+            continue
+        first = min(strong, key=weight)
+        through = closure.get(name) or next((closure[p.name] for p in first.providers if p.name in closure), "")
+        yield Hit(
+            first.at, name, f"{_how(first)}, and `{name}` only comes along with `{through}`",
+            f"add `<{_tag(first, package.manifest.format)}>{name}</{_tag(first, package.manifest.format)}>` to "
+            f"{package.digest.manifest_path}",
+            package.name, severity="warning",
+        )  # fmt: skip
 
 
 def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
