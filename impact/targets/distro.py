@@ -6,6 +6,7 @@ and the target is approximate.
 """
 
 import datetime
+import operator
 import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
@@ -149,6 +150,7 @@ class DistroTarget(Target):
         self._released: dict[str, _Released] | None = None
         self._names: frozenset[str] | None = None
         self._declared: dict[str, tuple[ReleasedDependency, ...] | None] = {}
+        self._held: dict[str, bool] = {}
         self._keys: dict[str, Resolution | None] = {}
         self._all_keys: dict[str, Resolution] | None = None
         self._known: frozenset[str] | None = None
@@ -389,17 +391,17 @@ class DistroTarget(Target):
 
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
-        from catkin_pkg.condition import evaluate_condition
+        if condition not in self._held:
+            self._held[condition] = condition_holds(condition, self._variables)
+        return self._held[condition]
 
-        context = {
+    @property
+    def _variables(self) -> dict[str, str]:
+        return {
             "ROS_VERSION": str(self.ros),
             "ROS_DISTRO": self.distro,
             "ROS_PYTHON_VERSION": str(self.python_major),
         }
-        try:
-            return bool(evaluate_condition(condition, context))
-        except Exception:
-            return False
 
     def closure(self, package: str, kinds: Iterable[str] = _WITH_KINDS) -> frozenset[str]:
         """Names that come along with a released package: its dependencies of these kinds, and theirs of these kinds.
@@ -574,6 +576,34 @@ class DistroTarget(Target):
             self._changes = found
             return found
         return self._changes
+
+
+_COMPARISON = re.compile(r"""\s*\$(\w+)\s*(==|!=|<=|>=|<|>)\s*(?:([\w-]+)|"([^"]*)"|'([^']*)')\s*$""")
+_COMPARE = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+
+
+def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
+    """A manifest condition by REP 149: texts are compared, an unset variable is empty.
+
+    One comparison, as most conditions are, is done here: catkin_pkg's parser costs 60 ms to load.
+    """
+    simple = _COMPARISON.match(condition)
+    if simple:
+        name, compare, *values = simple.groups()
+        return _COMPARE[compare](variables.get(name, ""), next(value for value in values if value is not None))
+    from catkin_pkg.condition import evaluate_condition
+
+    try:
+        return bool(evaluate_condition(condition, variables))
+    except Exception:
+        return False
 
 
 def _platform_order() -> dict[str, int]:

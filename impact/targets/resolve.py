@@ -219,7 +219,7 @@ _CI_FILE = re.compile(
     r"|\.circleci/config\.ya?ml|azure-pipelines\.ya?ml|Jenkinsfile|\.devcontainer/(?:[^/]+/)?devcontainer\.json"
     r"|(?:[^/]*\.)?[Dd]ockerfile(?:\.[^/]*)?|(?:docker-)?compose\.ya?ml)$"
 )
-_COMMENT = re.compile(r"^\s*(?:#|//)|\s#\s.*")
+_COMMENT = re.compile(r"^\s*(?:#|//).*|\s#\s.*")
 _SAYS_ROS = re.compile(r"(?i)ros|distro")
 _ITEM = re.compile(r"^\s*-\s*[\"']?([a-z]+)[\"']?\s*,?\s*$")
 
@@ -227,8 +227,8 @@ _ITEM = re.compile(r"^\s*-\s*[\"']?([a-z]+)[\"']?\s*,?\s*$")
 def distros_named(text: str, distros: Iterable[str]) -> list[str]:
     """Distros that a CI file or Dockerfile names, in order of first mention; comments do not count.
 
-    Many names are ordinary words (iron, rolling, crystal), so a line must speak of ROS or a distro, name two distros,
-    or be an item of a list in a file that speaks of ROS.
+    Many names are ordinary words (iron, rolling, crystal), so a line must speak of ROS or a distro, or, in a file that
+    speaks of ROS, name two distros or be an item of a list.
     """
     names = set(distros)
     speaks_of_ros = re.search(r"(?i)\bros|ros[_-]", text) is not None
@@ -239,7 +239,8 @@ def distros_named(text: str, distros: Iterable[str]) -> list[str]:
         if not words:
             continue
         item = _ITEM.match(line)
-        if len(set(words)) > 1 or (item and speaks_of_ros) or _SAYS_ROS.search(re.sub(r"\b\w*\$\{?\w+", "", line)):
+        listed = item or len(set(words)) > 1
+        if (listed and speaks_of_ros) or _SAYS_ROS.search(re.sub(r"\b\w*\$\{?\w+", "", line)):
             found.update(dict.fromkeys(words))
     return list(found)
 

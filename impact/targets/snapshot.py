@@ -12,7 +12,7 @@ import os
 import sqlite3
 import tempfile
 import threading
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -278,9 +278,14 @@ def _forget_old(path: Path) -> None:
                 old.unlink()
 
 
+def _deserializer(connection: sqlite3.Connection) -> Callable[[bytes], None] | None:
+    """What opens bytes as a database; only Python 3.11 and newer have it."""
+    return getattr(connection, "deserialize", None)
+
+
 def _in_memory(raw: bytes, facts: tuple[bytes, bytes]) -> sqlite3.Connection:
     connection = sqlite3.connect(":memory:", check_same_thread=False)
-    deserialize = getattr(connection, "deserialize", None)  # Python 3.11 and newer
+    deserialize = _deserializer(connection)
     if deserialize is not None:
         deserialize(raw)
     else:

@@ -1,0 +1,298 @@
+"""DistroTarget on the shipped data: facts that can be looked up in rosdistro's tags, one row each."""
+
+import pickle
+
+import pytest
+from rosimpact.impact.targets.distro import DistroTarget, TargetError, known_distros
+
+
+def target(text, **more):
+    distro, _, date = text.partition("@")
+    return DistroTarget(distro, date or None, **more)
+
+
+VERSIONS = [
+    # target, package, version. Source: DISTRO/distribution.yaml at the sync tag in force on that day.
+    ("humble@2024-03-01", "rclcpp", "16.0.8"),
+    ("humble", "rclcpp", "16.0.19"),
+    ("humble@2022-06-01", "cv_bridge", "3.0.3"),
+    ("noetic", "roscpp", "1.17.4"),
+    ("noetic", "rclcpp", None),
+    ("jazzy", "roscpp", None),
+    ("melodic@2019-01-01", "roscpp", "1.14.3"),
+    ("indigo", "roscpp", "1.11.21"),
+    ("groovy", "roscpp", "1.9.55"),
+    ("hydro", "roscpp", "1.10.12"),
+    ("ardent@2018-01-01", "rclcpp", "0.4.0"),
+    ("humble", "no_such_package", None),
+]
+
+
+@pytest.mark.parametrize(("text", "package", "version"), VERSIONS)
+def test_version(text, package, version):
+    assert target(text).version(package) == version
+
+
+COUNTS = [  # packages in the distribution file of the last sync or, without syncs, of the last commit
+    ("noetic", 2175),
+    ("indigo", 2779),
+    ("groovy", 685),
+    ("foxy", 1149),
+    ("galactic", 1007),
+]
+
+
+@pytest.mark.parametrize(("text", "count"), COUNTS)
+def test_released_names(text, count):
+    assert len(target(text).released_names()) == count
+
+
+def test_a_release_counts_from_the_sync_that_brought_it():
+    day_before, day = DistroTarget("humble", "2026-08-06"), DistroTarget("humble", "2026-08-07")
+    assert day_before.released_names() != day.released_names()
+    assert not day_before.approximate
+    assert not day.approximate
+
+
+@pytest.mark.parametrize(
+    ("text", "approximate"),
+    [("melodic@2019-01-01", True), ("melodic@2021-01-01", False), ("indigo", True), ("humble@2022-05-01", True)],
+)
+def test_before_the_first_sync_the_commit_stands(text, approximate):
+    assert target(text).approximate is approximate
+
+
+def test_a_date_before_the_first_release_is_moved_with_a_note():
+    early = target("jazzy@2020-01-01")
+    assert early.date == "2024-04-19"
+    assert early.notes == ("jazzy had no release on 2020-01-01: moved to its first, 2024-04-19",)
+    assert early.version("rclcpp")
+
+
+def test_a_date_after_the_data_is_answered_with_a_note():
+    late = target("jazzy@2199-01-01")
+    assert late.version("rclcpp") == target("jazzy").version("rclcpp")
+    assert "ends on" in late.notes[0]
+
+
+@pytest.mark.parametrize("known", known_distros(), ids=lambda known: known.name)
+def test_every_distro_answers(known):
+    found = DistroTarget(known.name)
+    assert found.released_names()
+    assert found.platform
+    assert found.library("cmake")
+    assert found.resolve("boost")
+    assert found.ros == known.ros
+    assert not found.notes
+
+
+def test_distros_are_listed_by_age():
+    names = [known.name for known in known_distros()]
+    assert names.index("kinetic") < names.index("melodic") < names.index("noetic")
+    assert [n for n in names if n in ("humble", "jazzy", "lyrical")] == ["humble", "jazzy", "lyrical"]
+    assert len(names) == 21
+
+
+@pytest.mark.parametrize("name", ["jazy", "", "Humble", "humble ", "x" * 1000, "'; DROP TABLE distro"])
+def test_an_unknown_distro_lists_what_is_known(name):
+    with pytest.raises(TargetError, match="groovy, hydro, indigo"):
+        DistroTarget(name)
+
+
+@pytest.mark.parametrize("date", ["yesterday", "2024-13-01", "01.03.2024", ""])
+def test_a_malformed_date_is_named(date):
+    with pytest.raises(TargetError, match="is no date"):
+        DistroTarget("humble", date)
+
+
+PLATFORMS = [
+    ("rolling@2021-01-01", "ubuntu focal", 8),
+    ("rolling@2023-01-01", "ubuntu jammy", 10),
+    ("rolling@2025-01-01", "ubuntu noble", 12),
+    ("noetic", "ubuntu focal", 8),
+    ("melodic", "ubuntu bionic", 0),  # Python 2
+    ("crystal", "ubuntu bionic", 6),
+]
+
+
+@pytest.mark.parametrize(("text", "platform", "python"), PLATFORMS)
+def test_platform_and_python_follow_distro_and_day(text, platform, python):
+    assert (target(text).platform, target(text).python) == (platform, python)
+
+
+LIBRARIES = [
+    ("humble", "opencv", "4.5.4"),
+    ("jazzy", "opencv", "4.6.0"),
+    ("kinetic", "opencv", "3.3.1"),  # from its own package opencv3, not Ubuntu's 2.4.9
+    ("melodic", "boost", "1.65.1"),
+    ("noetic", "python3", "3.8.2"),
+    ("indigo", "cmake", "2.8.12"),
+    ("jazzy", "no_such_library", None),
+]
+
+
+@pytest.mark.parametrize(("text", "library", "version"), LIBRARIES)
+def test_library(text, library, version):
+    assert target(text).library(library) == version
+
+
+def test_a_library_cell_names_its_source():
+    assert "Ubuntu archive" in target("humble").library_source("opencv")
+    assert target("humble").library_source("no_such_library") == ""
+
+
+def test_library_since_gives_the_oldest_platform_with_that_version():
+    assert target("jazzy").library_since("eigen3") == ("ubuntu jammy", "3.4.0")
+
+
+RESOLVED = [
+    # target, platform, key, packages or None
+    ("jazzy", None, "python3-transforms3d", ("python3-transforms3d",)),
+    ("foxy", None, "python3-transforms3d", ("transforms3d",)),  # by pip on focal
+    ("humble", None, "boost", ("libboost-all-dev",)),
+    ("jazzy", "debian bookworm", "libopencv-dev", ("libopencv-dev",)),
+    ("jazzy", "rhel 9", "boost", ("boost-devel", "boost-python%{python3_pkgversion}-devel")),
+    ("kinetic", None, "python-numpy", ("python-numpy",)),  # dropped later, stood at kinetic's end
+    ("jazzy", None, "python-numpy", None),
+    ("jazzy", None, "no-such-key", None),
+]
+
+
+@pytest.mark.parametrize(("text", "platform", "key", "packages"), RESOLVED)
+def test_resolve(text, platform, key, packages):
+    found = target(text, platform=platform).resolve(key)
+    assert (found and found.packages) == packages
+
+
+@pytest.mark.parametrize(
+    ("name", "standing"),
+    [
+        ("rclcpp", "released"),
+        ("libopencv-dev", "key"),
+        ("roscpp", "known-elsewhere"),
+        ("python-numpy", "known-elsewhere"),
+        ("my_private_robot", "unknown"),
+    ],
+)
+def test_how_a_declared_name_stands(name, standing):
+    assert target("jazzy").declared_ok(name) == standing
+
+
+def test_keys_of_a_debian_package():
+    assert "libopencv-dev" in target("jazzy").keys_of("libopencv-dev")
+    assert target("jazzy").keys_of("no-such-package") == ()
+
+
+def names(found, kind):
+    return {dependency.name for dependency in found if dependency.kind == kind}
+
+
+def test_declared_dependencies_with_kinds():
+    found = target("jazzy").dependencies("cv_bridge")
+    assert {"rclcpp", "sensor_msgs", "libopencv-dev"} <= names(found, "build") & names(found, "exec")
+    assert "ament_cmake_gtest" in names(found, "test")
+    assert "ament_cmake_gtest" not in names(found, "exec")
+
+
+def test_conditions_are_evaluated_for_the_target():
+    assert "python3-rospkg" in names(target("noetic").dependencies("rosbag"), "exec")
+    assert "python-rospkg" in names(target("melodic").dependencies("rosbag"), "exec")
+
+
+CONDITIONS = [
+    # on jazzy: what catkin_pkg's own evaluation says
+    ("$ROS_VERSION == 2", True),
+    ("$ROS_VERSION==1", False),
+    ("$ROS_DISTRO != jazzy", False),
+    ("$ROS_DISTRO >= humble", True),
+    ("$ROS_PYTHON_VERSION == 3", True),
+    ("$GZ_VERSION == ''", True),
+    ('$GZ_VERSION != ""', False),
+    ("$ROS_VERSION == 2 and $ROS_DISTRO == jazzy", True),
+    ("$ROS_VERSION == 1 or ($ROS_DISTRO == humble or $ROS_DISTRO == jazzy)", True),
+    ("$ROS_VERSION ==", False),
+    ("nonsense", False),
+    ("", False),
+]
+
+
+@pytest.mark.parametrize(("condition", "expected"), CONDITIONS)
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_manifest_conditions(condition, expected):
+    assert target("jazzy").holds(condition) is expected
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+@pytest.mark.parametrize("text", ["'a'", "b", "c-d", '"x y"'])
+@pytest.mark.parametrize("compare", ["==", "!=", "<", "<=", ">", ">="])
+@pytest.mark.parametrize("value", ["", "a", "b", "c-d", "z"])
+def test_single_comparisons_agree_with_catkin_pkg(text, compare, value):
+    from catkin_pkg.condition import evaluate_condition
+    from rosimpact.impact.targets.distro import condition_holds
+
+    condition = f"$V {compare} {text}"
+    assert condition_holds(condition, {"V": value}) == evaluate_condition(condition, {"V": value})
+
+
+def test_version_bounds_are_kept():
+    bounds = {d.name: d.bounds for d in target("noetic").dependencies("bondcpp")}
+    assert bounds["cmake_modules"] == (("version_gte", "0.3.2"),)
+    assert bounds["roscpp"] == ()
+
+
+def test_unknown_manifests():
+    assert target("kinetic").knows_manifests is False
+    assert target("kinetic").dependencies("roscpp") is None
+    assert target("jazzy").knows_manifests is True
+    assert target("jazzy").dependencies("no_such_package") is None
+
+
+def test_closure_follows_exports_and_ends_at_keys():
+    found = target("jazzy").closure("nav2_bringup", ("exec", "build_export"))
+    assert {"nav2_controller", "rclcpp", "rcl", "tinyxml2_vendor"} <= found
+    assert "nav2_bringup" not in found
+    assert target("jazzy").closure("no_such_package") == frozenset()
+
+
+def test_history_and_since():
+    jazzy = target("jazzy")
+    steps = jazzy.history("cv_bridge")
+    assert steps[0] == (jazzy.since("cv_bridge"), "4.0.0")
+    assert [day for day, _ in steps] == sorted(day for day, _ in steps)
+    assert jazzy.history("no_such_package") == ()
+    assert jazzy.since("no_such_package") == ""
+
+
+def test_repository_of_a_package():
+    assert target("humble").repository("rclcpp") == ("rclcpp", "https://github.com/ros2/rclcpp.git", "humble")
+
+
+def test_overrides_change_libraries_and_packages():
+    robot = target("humble", versions={"opencv": "4.9", "rclcpp": "99.0.0", "own_package": "1.0", "nav2_core": ""})
+    assert robot.library("opencv") == "4.9"
+    assert robot.version("rclcpp") == "99.0.0"
+    assert robot.version("own_package") == "1.0"
+    assert "own_package" in robot.released_names()
+    assert robot.version("nav2_core") is None
+    assert "nav2_core" not in robot.released_names()
+    assert robot.version("opencv") is None  # a library, not a package
+    assert robot.dependencies("rclcpp")
+
+
+def test_a_target_travels_between_processes():
+    robot = target("humble@2024-03-01", versions={"opencv": "4.9"}, name="robot")
+    copy = pickle.loads(pickle.dumps(robot))
+    assert (copy.name, copy.date, copy.library("opencv")) == ("robot", "2024-03-01", "4.9")
+    assert copy.released_names() == robot.released_names()
+
+
+@pytest.mark.parametrize(
+    ("name", "ended"), [("humble", "2027-05-31"), ("noetic", "2025-05-31"), ("melodic", "2023-06-27"), ("rolling", "")]
+)
+def test_end_of_life(name, ended):
+    assert target(name).end_of_life == ended
+
+
+def test_ever_released():
+    assert target("jazzy").ever_released("roscpp")
+    assert not target("jazzy").ever_released("no_such_package")

@@ -1,0 +1,162 @@
+"""The unpacked snapshot in the cache: made once, remade when broken, done without where nothing can be written."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+from rosimpact.impact.targets import snapshot as snapshots
+from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.snapshot import DATA, Snapshot, SnapshotError, cache_folder
+
+
+def answers(snapshot):
+    return DistroTarget("humble", "2024-03-01", data=snapshot).version("rclcpp") == "16.0.8"
+
+
+def test_it_is_unpacked_once(tmp_path):
+    first = Snapshot(cache=tmp_path)
+    assert answers(first)
+    (made,) = tmp_path.iterdir()
+    stamp = made.stat().st_mtime_ns
+    assert answers(Snapshot(cache=tmp_path))
+    assert [p.name for p in tmp_path.iterdir()] == [made.name]
+    assert made.stat().st_mtime_ns == stamp
+
+
+@pytest.mark.parametrize("damage", ["empty", "half", "text", "folder", "emptied-table"])
+def test_a_broken_file_is_made_again(tmp_path, damage):
+    snapshot = Snapshot(cache=tmp_path)
+    assert answers(snapshot)
+    path = snapshot.path()
+    whole = path.read_bytes()
+    if damage == "empty":
+        path.write_bytes(b"")
+    elif damage == "half":
+        path.write_bytes(whole[: len(whole) // 2])
+    elif damage == "text":
+        path.write_bytes(b"no database " * 1000)
+    elif damage == "folder":
+        path.unlink()
+        path.mkdir()
+    else:
+        path.write_bytes(whole[:4096] + os.urandom(len(whole) - 4096))
+    assert answers(Snapshot(cache=tmp_path))
+
+
+def test_a_file_of_other_data_is_removed(tmp_path):
+    (tmp_path / "distros-1-old-old.sqlite").write_bytes(b"")
+    (tmp_path / "somebody-elses.sqlite").write_bytes(b"")
+    assert answers(Snapshot(cache=tmp_path))
+    assert (tmp_path / "somebody-elses.sqlite").exists()
+    assert not (tmp_path / "distros-1-old-old.sqlite").exists()
+
+
+def test_without_a_writable_folder_it_lives_in_memory(tmp_path):
+    (tmp_path / "file").write_text("a file where a folder is wanted")
+    assert answers(Snapshot(cache=tmp_path / "file"))
+
+
+def test_without_deserialize_it_lives_in_memory_too(tmp_path, monkeypatch):
+    """Python 3.10's sqlite3 cannot open bytes."""
+    monkeypatch.setattr(snapshots, "_deserializer", lambda connection: None)
+    (tmp_path / "file").write_text("a file where a folder is wanted")
+    assert answers(Snapshot(cache=tmp_path / "file"))
+
+
+def test_the_environment_chooses_the_folder(tmp_path):
+    assert cache_folder({"ROSIMPACT_CACHE": str(tmp_path)}) == tmp_path
+    assert cache_folder({}).name == "rosimpact"
+
+
+@pytest.mark.parametrize("name", ["distros.sqlite.zst", "snapshot.json", "platform_versions.yaml"])
+def test_broken_shipped_data_is_named(tmp_path, name):
+    for file in ("distros.sqlite.zst", "snapshot.json", "platform_versions.yaml", "distros.yaml"):
+        (tmp_path / file).write_bytes((DATA / file).read_bytes())
+    (tmp_path / name).unlink()
+    with pytest.raises(SnapshotError, match=name.replace(".", r"\.")):
+        answers(Snapshot(tmp_path, tmp_path / "cache", tmp_path))
+    if name == "distros.sqlite.zst":
+        (tmp_path / name).write_bytes(b"\x28\xb5\x2f\xfd broken")
+        with pytest.raises(SnapshotError, match="install rosimpact again"):
+            answers(Snapshot(tmp_path, tmp_path / "cache", tmp_path))
+
+
+def test_two_runs_at_once_both_answer(tmp_path):
+    code = "from rosimpact.impact.targets.distro import DistroTarget; print(DistroTarget('jazzy').version('rclcpp'))"
+    environment = {**os.environ, "ROSIMPACT_CACHE": str(tmp_path)}
+    runs = [
+        subprocess.Popen([sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, text=True)
+        for _ in range(4)
+    ]
+    said = {run.communicate()[0].strip() for run in runs}
+    assert all(run.returncode == 0 for run in runs)
+    assert said == {DistroTarget("jazzy").version("rclcpp")}
+    assert [path.suffix for path in tmp_path.iterdir()] == [".sqlite"]
+
+
+def test_what_an_update_made_is_used_while_it_is_newer_and_whole(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path))
+    updated = tmp_path / "updated"
+    updated.mkdir()
+    info = json.loads((DATA / "snapshot.json").read_text())
+
+    def write(date):
+        (updated / "snapshot.json").write_text(json.dumps({**info, "date": date}))
+
+    write("2199-01-01")
+    assert snapshots._newest_folder() == DATA  # its database is missing
+    (updated / "distros.sqlite.zst").write_bytes((DATA / "distros.sqlite.zst").read_bytes())
+    assert snapshots._newest_folder() == updated
+    assert answers(Snapshot(updated))
+    write("2001-01-01")
+    assert snapshots._newest_folder() == DATA
+    (updated / "snapshot.json").write_text("{")
+    assert snapshots._newest_folder() == DATA
+
+
+def test_a_broken_update_is_passed_over(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path))
+    updated = tmp_path / "updated"
+    updated.mkdir()
+    (updated / "snapshot.json").write_bytes((DATA / "snapshot.json").read_bytes().replace(b"20", b"21", 1))
+    (updated / "distros.sqlite.zst").write_bytes(b"broken")
+    found = Snapshot(updated)
+    assert answers(found)
+    assert found.data == DATA
+
+
+# The reviewed fact files
+
+
+def platform_cells():
+    table = yaml.safe_load((DATA / "platform_versions.yaml").read_text())
+    return table["sources"], [
+        (platform, name, cell) for platform, cells in table["platforms"].items() for name, cell in cells.items()
+    ]
+
+
+def test_every_library_cell_is_a_version_with_a_source():
+    sources, cells = platform_cells()
+    for platform, name, cell in cells:
+        assert set(cell) <= {"version", "source", "note"}, (platform, name)
+        assert isinstance(cell["version"], str), (platform, name)
+        assert cell["version"][0].isdigit() or cell["version"].startswith(("gnu++", "r")), (platform, name)
+        assert cell["source"] in sources, (platform, name)
+    assert {cell["source"] for _, _, cell in cells} == set(sources)
+
+
+def test_every_distro_has_its_facts():
+    facts = yaml.safe_load((DATA / "distros.yaml").read_text())["distros"]
+    names = {name for (name,) in Snapshot().rows("SELECT name FROM distro")}
+    assert set(facts) == names
+    for name, fact in facts.items():
+        assert fact["end_of_life"] is None or fact["released"] < fact["end_of_life"], name
+
+
+def test_the_shipped_files_are_small():
+    sizes = [path.stat().st_size for path in Path(DATA).iterdir() if path.name.startswith(("distros", "platform"))]
+    assert sum(sizes) < 2_000_000

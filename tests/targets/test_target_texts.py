@@ -1,0 +1,279 @@
+"""What a person writes after --target, and what stands when nothing is written."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rosimpact.impact.config import Config
+from rosimpact.impact.targets.distro import known_distros
+from rosimpact.impact.targets.resolve import (
+    TargetError,
+    branch_of,
+    choose_targets,
+    default_distros,
+    distros_named,
+    parse_dpkg,
+    parse_image,
+    parse_target,
+)
+
+DISTROS = known_distros()
+NAMES = [known.name for known in DISTROS]
+CONFIG = Config(
+    path=Path("rosimpact.toml"),
+    targets={
+        "robot": {"distro": "humble", "date": "2025-06-01", "platform": "Ubuntu 22.04", "versions": {"opencv": "4.9"}},
+        "lab": {"distro": "jazzy@2025-01-01"},
+        "odd": {"distro": "humble", "colour": "red"},
+        "lost": {"distro": "humbel"},
+    },
+)
+
+TEXTS = [
+    # text, distro, date, platform
+    ("jazzy", "jazzy", None, "ubuntu noble"),
+    (" jazzy ", "jazzy", None, "ubuntu noble"),
+    ("humble@2024-03-01", "humble", "2024-03-01", "ubuntu jammy"),
+    ("robot", "humble", "2025-06-01", "ubuntu jammy"),
+    ("robot@2024-01-01", "humble", "2024-01-01", "ubuntu jammy"),
+    ("lab", "jazzy", "2025-01-01", "ubuntu noble"),
+    ("docker:osrf/ros:humble-desktop", "humble", None, "ubuntu jammy"),
+    ("docker:ros:noetic-ros-base-focal", "noetic", None, "ubuntu focal"),
+    ("docker:ros:noetic-ros-base-buster", "noetic", None, "debian buster"),
+]
+
+
+@pytest.mark.parametrize(("text", "distro", "date", "platform"), TEXTS)
+def test_a_text_gives_a_target(text, distro, date, platform):
+    found = parse_target(text, CONFIG)
+    assert (found.distro, found.platform, found.name) == (distro, platform, text.strip())
+    assert date is None or found.date == date
+
+
+def test_a_configured_target_takes_its_versions():
+    assert parse_target("robot", CONFIG).library("opencv") == "4.9"
+
+
+ERRORS = [
+    ("jazy", "did you mean `jazzy`"),
+    ("robt", "did you mean `robot`"),
+    ("nonsense", "Known distros: groovy, hydro"),
+    ("nonsense", "Targets of rosimpact.toml: lab, lost, odd, robot"),
+    ("", "Known distros"),
+    ("humble@soon", "is no date"),
+    ("humble@2024-99-99", "is no date"),
+    ("docker:ubuntu:22.04", "tells no distro"),
+    ("docker:", "tells no distro"),
+    ("missing.json", "rosimpact env capture"),
+    ("missing.dpkg.txt", "dpkg -l"),
+    ("odd", "has no `colour`"),
+    ("lost", "unknown distro `humbel`"),
+]
+
+
+@pytest.mark.parametrize(("text", "says"), ERRORS)
+def test_an_error_says_what_is_known_or_to_do(text, says):
+    with pytest.raises(TargetError, match=says.replace("(", r"\(")):
+        parse_target(text, CONFIG)
+
+
+@given(st.text(max_size=25))
+def test_any_text_gives_a_target_or_a_target_error(text):
+    try:
+        assert parse_target(text, CONFIG).distro
+    except TargetError as error:
+        assert str(error)
+
+
+IMAGES = [
+    ("ros:humble", ("humble", None)),
+    ("ros:humble-ros-base-jammy", ("humble", "ubuntu jammy")),
+    ("osrf/ros:noetic-desktop-full", ("noetic", None)),
+    ("ghcr.io/o/ci:5000-jazzy", ("jazzy", None)),
+    ("registry:5000/team/ros2-iron:latest", ("iron", None)),
+    ("rostooling/setup-ros-docker:ubuntu-jammy-ros-humble-ros-base-latest", ("humble", "ubuntu jammy")),
+    ("moveit/moveit2:rolling-ci@sha256:0123", ("rolling", None)),
+    ("ros", ("lyrical", None)),
+    ("ros:latest", ("lyrical", None)),
+    ("ubuntu:jammy", None),
+    ("registry:5000/team/app", None),
+    ("", None),
+]
+
+
+@pytest.mark.parametrize(("image", "expected"), IMAGES)
+def test_a_docker_image_by_its_name(image, expected):
+    assert parse_image(image, DISTROS) == expected
+
+
+LISTING = """\
+Desired=Unknown/Install/Remove/Purge/Hold
+||/ Name                    Version                              Architecture Description
++++-=======================-====================================-============-===========
+ii  cmake                   3.22.1-1ubuntu1.22.04.2              amd64        make
+ii  libopencv-dev           4.5.4+dfsg-9ubuntu4                  amd64        headers
+hi  libc6:amd64             2.35-0ubuntu3.8                      amd64        held
+rc  libboost-dev            1.74.0.3ubuntu7                      amd64        removed
+ii  ros-humble-cv-bridge    3.2.1-1jammy.20240217.071034         amd64        bridge
+ii  ros-humble-rclcpp       16.0.8-1jammy.20240217.064242        amd64        client library
+"""
+
+
+def test_a_dpkg_listing_holds_what_is_installed():
+    assert [(row.name, row.version) for row in parse_dpkg(LISTING)][:3] == [
+        ("cmake", "3.22.1-1ubuntu1.22.04.2"),
+        ("libopencv-dev", "4.5.4+dfsg-9ubuntu4"),
+        ("libc6", "2.35-0ubuntu3.8"),
+    ]
+    assert "libboost-dev" not in [row.name for row in parse_dpkg(LISTING)]
+
+
+@given(st.text())
+def test_any_text_can_be_read_as_a_listing(text):
+    assert all(row.name and row.version for row in parse_dpkg(text))
+
+
+def test_a_dpkg_listing_is_a_target(tmp_path):
+    (tmp_path / "robot.dpkg.txt").write_text(LISTING)
+    found = parse_target("robot.dpkg.txt", None, tmp_path)
+    assert (found.name, found.distro, found.date, found.platform) == ("robot", "humble", "2024-02-17", "ubuntu jammy")
+    assert found.version("rclcpp") == "16.0.8"
+    assert found.version("cv_bridge") == "3.2.1"
+    assert found.library("opencv") == "4.5.4"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"), [("", "lists no installed"), ("ii cmake 3.22 amd64 x", "no package of a ROS")]
+)
+def test_a_listing_without_ros_is_refused(tmp_path, text, says):
+    (tmp_path / "x.dpkg.txt").write_text(text)
+    with pytest.raises(TargetError, match=says):
+        parse_target("x.dpkg.txt", None, tmp_path)
+
+
+CI = [
+    ("FROM ros:humble-ros-base\n", ["humble"]),
+    ("FROM osrf/ros:noetic-desktop-full AS build", ["noetic"]),
+    ("      matrix:\n        ros_distribution: [humble, jazzy]\n", ["humble", "jazzy"]),
+    ("env:\n  - ROS_DISTRO=melodic\n  - ROS_DISTRO=noetic\n", ["melodic", "noetic"]),
+    ("uses: ros-tooling/setup-ros@v0.7\nros_distribution:\n  - humble\n  - rolling\n", ["humble", "rolling"]),
+    ("        - {ROS_DISTRO: iron, ROS_REPO: main}", ["iron"]),
+    ("RUN apt-get install -y ros-galactic-desktop", ["galactic"]),
+    ("source /opt/ros/foxy/setup.bash", ["foxy"]),
+    ("# FROM ros:melodic\nFROM ros:noetic", ["noetic"]),
+    ("  distro: jazzy  # not humble", ["jazzy"]),
+    ("run: iron the shirts on a rolling basis", []),
+    ("runs-on: ubuntu-jammy\nstrategy: rolling", []),
+    ("image: crystal-lang", []),
+    ("", []),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), CI)
+def test_distros_that_a_ci_file_names(text, expected):
+    assert distros_named(text, NAMES) == expected
+
+
+@given(st.text())
+def test_any_text_may_be_a_ci_file(text):
+    assert set(distros_named(text, NAMES)) <= set(NAMES)
+
+
+def workflow(*distros):
+    return f"ros_distribution: [{', '.join(distros)}]"
+
+
+DAY = "2026-08-22"
+CHOICES = [
+    # ros, CI texts, branches, environment, expected distros, the reason contains
+    (2, [], [], {"ROS_DISTRO": "humble"}, ("humble",), "sourced"),
+    (1, [], [], {"ROS_DISTRO": "humble"}, ("noetic",), "nothing names"),  # of the other generation
+    (2, [], [], {"ROS_DISTRO": "private"}, ("lyrical",), "nothing names"),
+    (2, [("", "ci.yml", workflow("humble", "jazzy"))], [], {}, ("humble", "jazzy"), "ci.yml"),
+    (2, [("", "ci.yml", workflow("foxy", "jazzy"))], [], {}, ("jazzy",), "ci.yml"),  # no ended one beside a living one
+    (1, [("", "ci.yml", workflow("melodic", "noetic"))], [], {}, ("melodic", "noetic"), "ci.yml"),
+    (
+        2,
+        [("a", "a/ci.yml", workflow("jazzy", "humble")), ("b", "b/ci.yml", workflow("jazzy"))],
+        [],
+        {},
+        ("jazzy",),
+        "1 more",
+    ),
+    (2, [("", "ci.yml", workflow("bouncy"))], [("", "jazzy-devel")], {}, ("jazzy",), "branch jazzy-devel"),
+    (2, [("", "ci.yml", workflow("bouncy"))], [("", "main")], {}, ("bouncy",), "ci.yml"),
+    (2, [], [("", "humble")], {}, ("humble",), "branch humble"),
+    (1, [], [("", "kinetic-devel")], {}, ("kinetic",), "branch kinetic-devel"),
+    (2, [], [("", "main")], {}, ("lyrical",), "newest long-term"),
+    (1, [], [], {}, ("noetic",), "newest long-term"),
+]
+
+
+@pytest.mark.parametrize(("ros", "texts", "branches", "environment", "expected", "says"), CHOICES)
+def test_what_stands_when_nothing_is_asked_for(ros, texts, branches, environment, expected, says):
+    distros, reason = default_distros(ros, texts, branches, DISTROS, environment, DAY)
+    assert distros == expected
+    assert says in reason
+
+
+class OneFile:
+    """A tree of one CI file."""
+
+    repositories = {"": "/nowhere"}  # noqa: RUF012
+
+    def __init__(self, path, text):
+        self.path, self.text = path, text
+
+    def entries(self):
+        return [SimpleNamespace(path=self.path, size=len(self.text))]
+
+    def read(self, path):
+        return self.text.encode()
+
+
+@pytest.mark.parametrize(
+    ("path", "distro"),
+    [
+        (".github/workflows/ci.yaml", "humble"),
+        ("src/a/.gitlab-ci.yml", "humble"),
+        ("docker/Dockerfile", "humble"),
+        ("docker/robot.dockerfile", "humble"),
+        ("Dockerfile.ci", "humble"),
+        ("docs/ci.yaml", "lyrical"),
+        ("notes/MyDockerfiles.md", "lyrical"),
+    ],
+)
+def test_files_that_are_looked_into(path, distro, monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    chosen = choose_targets((), Config(), SimpleNamespace(ros=2), OneFile(path, "FROM ros:humble"))
+    assert [item.target.distro for item in chosen] == [distro]
+    assert chosen[0].reason
+
+
+def test_asked_for_comes_first_then_the_configuration():
+    tree = OneFile("Dockerfile", "FROM ros:humble")
+    asked = choose_targets(("jazzy", "robot", "jazzy"), CONFIG, SimpleNamespace(ros=2), tree)
+    assert [item.target.name for item in asked] == ["jazzy", "robot"]
+    config = CONFIG._replace(default_targets=("lab",))
+    chosen = choose_targets((), config, SimpleNamespace(ros=2), tree)
+    assert [(item.target.name, item.reason) for item in chosen] == [("lab", "named in rosimpact.toml")]
+
+
+@pytest.mark.parametrize(
+    ("head", "branch"), [("ref: refs/heads/humble-devel\n", "humble-devel"), ("0123456789abcdef\n", ""), ("", "")]
+)
+def test_the_branch_of_a_repository(tmp_path, head, branch):
+    (tmp_path / ".git").mkdir()
+    (tmp_path / ".git" / "HEAD").write_text(head)
+    assert branch_of(tmp_path) == branch
+
+
+def test_a_worktree_has_its_own_branch(tmp_path):
+    (tmp_path / "main" / ".git" / "worktrees" / "w").mkdir(parents=True)
+    (tmp_path / "main" / ".git" / "worktrees" / "w" / "HEAD").write_text("ref: refs/heads/jazzy\n")
+    (tmp_path / "w").mkdir()
+    (tmp_path / "w" / ".git").write_text("gitdir: ../main/.git/worktrees/w\n")
+    assert branch_of(tmp_path / "w") == "jazzy"
+    assert branch_of(tmp_path / "nowhere") == ""
