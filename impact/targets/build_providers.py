@@ -26,7 +26,7 @@ from typing import NamedTuple
 import msgspec
 
 from .build_history import RosFacts, read_repositories
-from .providers import SCHEMA
+from .providers import BY_FOLDER, SCHEMA
 from .rosdep import decode_rule
 from .snapshot import DATA, Snapshot, default
 
@@ -41,6 +41,7 @@ class Suite(NamedTuple):
     """What the indices of one suite say. contents: its Contents files. depends: package to what it pulls in.
 
     essential: packages of every machine. ros: packages that Debian builds of ROS itself, told better by ROS's releases.
+    source: package to the family of its source package, without version (`boost1.74` and `boost-defaults` are `boost`).
     """
 
     platform: str
@@ -48,6 +49,7 @@ class Suite(NamedTuple):
     depends: dict[str, tuple[str, ...]]
     essential: frozenset[str]
     ros: frozenset[str]
+    source: dict[str, str]
 
     def files(self) -> Iterator[tuple[str, tuple[str, ...]]]:
         """(path, Debian packages) of every file that may be a header, module, program or configuration."""
@@ -87,6 +89,7 @@ def read_suite(platform: str, lists: Path) -> Suite:
     provides: dict[str, list[str]] = defaultdict(list)
     essential: set[str] = set()
     ros: set[str] = set()
+    source: dict[str, str] = {}
     for index in packages:
         for name, fields in _paragraphs(_cat(index)):
             depends[name] = _relations(fields.get("Pre-Depends", "") + "," + fields.get("Depends", ""))
@@ -94,13 +97,15 @@ def read_suite(platform: str, lists: Path) -> Suite:
                 provides[other].append(name)
             if fields.get("Essential") == "yes" or fields.get("Priority") == "required":
                 essential.add(name)
-            if _ROS_SOURCE.match(fields.get("Source", name)):
+            origin = fields.get("Source", name).partition(" ")[0]
+            source[name] = sys.intern(re.sub(r"-?[\d.]+$", "", origin.removesuffix("-defaults")))
+            if _ROS_SOURCE.match(origin):
                 ros.add(name)
     real = {
         name: tuple(d if d in depends else next(iter(provides.get(d, (d,)))) for d in found)
         for name, found in depends.items()
     }
-    return Suite(platform, tuple(contents), real, frozenset(essential), frozenset(ros))
+    return Suite(platform, tuple(contents), real, frozenset(essential), frozenset(ros), source)
 
 
 def _paragraphs(lines: Iterable[bytes]) -> Iterator[tuple[str, dict[str, str]]]:
@@ -210,9 +215,9 @@ def include_paths(path: str) -> tuple[str, ...]:
         again = parts.index(head, 1) if head in parts[1:-1] else 0
         if again:
             parts = parts[again:]
-        elif head in _ROOTS or (_VERSIONED.fullmatch(head) and head not in _NOT_ROOTS) or (
-            head.startswith("Qt") and len(parts) == 2
-        ):
+        elif head.startswith("Qt") and len(parts) == 2:
+            parts = parts[1:]
+        elif len(found) == 1 and (head in _ROOTS or (_VERSIONED.fullmatch(head) and head not in _NOT_ROOTS)):
             parts = parts[1:]
         else:
             break
@@ -222,6 +227,15 @@ def include_paths(path: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
+# Names that any project gives its own headers: without a folder they say nothing about whose they are.
+_TOO_COMMON = frozenset(
+    "config.h types.h common.h util.h utils.h version.h defs.h error.h errors.h log.h logger.h logging.h debug.h main.h list.h "
+    "queue.h thread.h threads.h timer.h vector.h matrix.h array.h buffer.h object.h node.h event.h export.h global.h "
+    "image.h info.h macros.h memory.h message.h misc.h options.h parser.h point.h settings.h socket.h stream.h "
+    "string.h table.h test.h tools.h tree.h value.h window.h file.h base.h color.h core.h data.h constants.h context.h "
+    "client.h server.h driver.h device.h camera.h frame.h function.h graph.h hash.h io.h math.h model.h filter.h "
+    "platform.h visibility.h config.hpp types.hpp common.hpp utils.hpp version.hpp thread.hpp timer.hpp".split()
+)
 _CMAKE_CONFIG = re.compile(r"([^/]+?)(Config|-config)\.cmake$")
 _CMAKE_FIND = re.compile(r"usr/share/cmake-[\d.]+/Modules/Find([^/]+)\.cmake$")
 _PKGCONFIG = re.compile(r".*/pkgconfig/([^/]+)\.pc$")
@@ -264,7 +278,10 @@ def module_names(path: str) -> tuple[str, ...]:
 
 
 class _Reach(NamedTuple):
-    """How a key brings a package: how many dependencies down, from which package that the key installs."""
+    """How a key brings a package: how many dependencies down, from which package that the key installs.
+
+    Packages of one source are at distance 0: libopencv-dev exists to bring libopencv-core-dev.
+    """
 
     distance: int
     package: str
@@ -283,8 +300,9 @@ def reach(keys: Keys, suites: Iterable[Suite]) -> dict[str, dict[str, _Reach]]:
                     following = []
                     for name in ring:
                         old = found[name].get(key)
-                        if old is None or distance <= old.distance:
-                            found[name][key] = _Reach(distance, start)
+                        near = 0 if suite.source.get(name) == suite.source.get(start) else distance
+                        if old is None or near <= old.distance:
+                            found[name][key] = _Reach(near, start)
                         following.extend(d for d in suite.depends.get(name, ()) if d not in seen)
                         seen.update(following)
                     ring = following
@@ -334,22 +352,31 @@ class Tables(NamedTuple):
 def join(suites: list[Suite], keys: Keys) -> Tables:
     """Names of all suites with the rosdep keys that bring them, best key first."""
     reached = reach(keys, suites)
+    named = frozenset(package for packages in keys.debian.values() for package in packages)
     tables = [_Names({}, {}) for _ in range(5)]
     header, cmake, pkgconfig, module, program = tables
     compiler = frozenset().union(*(_compiler_packages(suite) for suite in suites))
     essential = frozenset().union(*(suite.essential for suite in suites))
+    direct: set[str] = set()
+
+    def packages_of_compiler(packages: tuple[str, ...]) -> bool:
+        return any(package in compiler for package in packages)
+
     for place, suite in enumerate(suites):
         bit = 1 << place
         for path, packages in suite.files():
-            packages = tuple(p for p in packages if p not in suite.ros)
+            packages = tuple(p for p in packages if p not in suite.ros or p in named)
             if not any(p in reached or p in compiler or p in essential for p in packages):
                 if not path.startswith("usr/lib/python"):
                     continue
                 packages = tuple(p for p in _same_python(packages) if p in reached)
                 if not packages:
                     continue
-            for name in include_paths(path):
-                header.add(name, packages, bit)
+            for place_, name in enumerate(include_paths(path)):
+                if "/" in name or name not in _TOO_COMMON or packages_of_compiler(packages):
+                    header.add(name, packages, bit)
+                    if not place_:
+                        direct.add(name)
             if path.endswith(".cmake"):
                 own = _CMAKE_FIND.match(path)
                 if own and "cmake-data" not in packages:
@@ -370,7 +397,7 @@ def join(suites: list[Suite], keys: Keys) -> Tables:
     ranked = _Ranking(reached, keys)
     return Tables(
         {
-            name: (entry, header.suites[name])
+            name: (entry, header.suites[name] | (0 if "/" in name or name in direct else BY_FOLDER))
             for name, packages in header.packages.items()
             if (entry := (("", ""),) if packages & compiler else ranked.of(packages, _HEADER_DEPTH))
         },
@@ -451,8 +478,11 @@ def write(tables: Tables, platforms: list[str], ros: RosFacts, output: Path) -> 
         "INSERT INTO ros_header VALUES(?, ?, ?)",
         ((h, p, patterns.setdefault(text, len(patterns))) for (h, p), text in sorted(ros.headers.items())),
     )
+    connection.executemany(
+        "INSERT INTO ros_package VALUES(?, ?)",
+        ((p, patterns.setdefault(text, len(patterns))) for p, text in sorted(ros.packages.items())),
+    )
     connection.executemany("INSERT INTO pattern VALUES(?, ?)", ((n, text) for text, n in patterns.items()))
-    connection.executemany("INSERT INTO ros_package VALUES(?, ?)", sorted(ros.packages.items()))
     connection.executemany("INSERT INTO ros_module VALUES(?, ?)", sorted(ros.modules.items()))
     connection.executemany("INSERT INTO ros_cmake VALUES(?, ?)", sorted(ros.cmake.items()))
     connection.commit()

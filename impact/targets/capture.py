@@ -92,7 +92,11 @@ def capture(
             if name:
                 packages[name] = version  # an overlay comes after what it covers
     tools = {}
-    for name, command in (("gcc", ["g++", "-dumpfullversion"]), ("clang", ["clang", "-dumpversion"]), ("cmake", ["cmake", "--version"])):
+    for name, command in (
+        ("gcc", ["g++", "-dumpfullversion"]),
+        ("clang", ["clang", "-dumpversion"]),
+        ("cmake", ["cmake", "--version"]),
+    ):
         match = re.search(r"\d+(?:\.\d+)+", run(command))
         if match:
             tools[name] = match[0]
@@ -114,7 +118,9 @@ def read(path: Path) -> Machine:
     try:
         data: Any = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise TargetError(f"{path}: cannot be read as a captured machine: {error}; write it anew with `rosimpact env capture`") from None
+        raise TargetError(
+            f"{path}: cannot be read as a captured machine: {error}; write it anew with `rosimpact env capture`"
+        ) from None
     if not isinstance(data, dict) or data.get("rosimpact_target") != SCHEMA:
         raise TargetError(f"{path}: is no captured machine of this version; write it anew with `rosimpact env capture`")
 
@@ -180,7 +186,12 @@ def _run(command: list[str]) -> str:
 
 def _prefixes(root: Path, environment: dict[str, str]) -> list[Path]:
     """Installed prefixes, overlaid ones first, so that what covers them is read last."""
-    listed = [Path(p) for key in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH") for p in environment.get(key, "").split(os.pathsep) if p]
+    listed = [
+        Path(p)
+        for key in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
+        for p in environment.get(key, "").split(os.pathsep)
+        if p
+    ]
     found = sorted((root / "opt" / "ros").glob("*")) if environment.get("ROS_DISTRO") is None else []
     found += [root / "opt" / "ros" / environment["ROS_DISTRO"]] if environment.get("ROS_DISTRO") else []
     return [p for p in [*found, *reversed(listed)] if p.is_dir()]
@@ -196,7 +207,10 @@ def _name_and_version(manifest: Path) -> tuple[str, str]:
         text = manifest.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return "", ""
-    name, version = re.search(r"<name>\s*([\w.-]+)\s*</name>", text), re.search(r"<version[^>]*>\s*([\d.]+)\s*</version>", text)
+    name, version = (
+        re.search(r"<name>\s*([\w.-]+)\s*</name>", text),
+        re.search(r"<version[^>]*>\s*([\d.]+)\s*</version>", text),
+    )
     return (name[1], version[1]) if name and version else ("", "")
 
 

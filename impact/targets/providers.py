@@ -51,6 +51,9 @@ ros_module, ros_cmake: packages, space separated.
 FACT_SCHEMA = "CREATE TABLE fact(kind TEXT, name TEXT, entries TEXT, PRIMARY KEY(kind, name)) WITHOUT ROWID;"
 """Filled from data/providers.yaml. kind: a table's name. entries: as in provider, `ros:NAME` for a released package."""
 
+BY_FOLDER = 1 << 30
+"""Bit in header.platforms: a bare file name that is found only where a package's own folder is on the include path."""
+
 _FORMAT = 1
 _LIBC = Provider("system", "", "")
 
@@ -88,7 +91,8 @@ class Providers:
         packages of both ROS generations are listed; the caller knows which its target has.
         """
         found = self._facts("header", path)
-        found += [
+        system = self._system("header", path)
+        released = [
             Provider("ros", name)
             for (name,) in self._rows(
                 "SELECT h.package FROM ros_header h JOIN pattern p ON p.id = h.pattern WHERE h.path = ?"
@@ -96,7 +100,14 @@ class Providers:
                 path,
             )
         ]
-        return _once(found + self._system("header", path))
+        if system:
+            # Some packages carry a copy of a library; the library itself is meant, but where the package is named so.
+            head = path.partition("/")[0]
+            own = [provider for provider in released if head in provider.name]
+            found += [*own, system[0], *self._vendors(system[0].name), *system[1:], *released]
+        else:
+            found += released or self._by_prefix(path)
+        return _once(found)
 
     def cmake(self, name: str) -> list[Provider]:
         """Who answers find_package(name), best first. Where only another letter case is known, sure is False.
@@ -138,6 +149,18 @@ class Providers:
         """Platforms (`ubuntu jammy`) whose system packages have a header; empty for headers of ROS packages alone."""
         return self._platforms_of("header", path)
 
+    def system_has(self, header: str, platform: str) -> bool | None:
+        """Whether a platform's packages have a header that the system packages of some platform have.
+
+        None when no platform's have it, when the C library or compiler has it, or the platform is not in the table.
+        """
+        if platform not in self.platforms:
+            return None
+        where = self.header_platforms(header)
+        if not where or any(not provider.name for provider in self._system("header", header)):
+            return None
+        return platform in where
+
     def cmake_platforms(self, name: str) -> tuple[str, ...]:
         """Platforms whose system packages bring a CMake configuration or find module of this name."""
         return self._platforms_of("cmake", name)
@@ -175,6 +198,18 @@ class Providers:
         rows = self._rows("SELECT path, pattern FROM ros_header WHERE package = ? ORDER BY path", package)
         return tuple((path, self._pattern(number)) for path, number in rows)
 
+    def _vendors(self, key: str) -> list[Provider]:
+        return self._facts("vendor", key)
+
+    def _by_prefix(self, path: str) -> list[Provider]:
+        """Reviewed owners of whole folders (`gz/math`), longest first; not seen in a file list, so sure is False."""
+        folders = path.split("/")[:-1]
+        for size in range(len(folders), 0, -1):
+            found = self._facts("folder", "/".join(folders[:size]))
+            if found:
+                return [provider._replace(sure=False) for provider in found]
+        return []
+
     # -- rows --------------------------------------------------------------------------------------------------------
 
     def _facts(self, kind: str, name: str) -> list[Provider]:
@@ -184,12 +219,12 @@ class Providers:
         return found
 
     def _system(self, table: str, name: str) -> list[Provider]:
-        for (number,) in self._rows(f"SELECT provider FROM {table} WHERE name = ?", name):
+        for number, platforms in self._rows(f"SELECT provider, platforms FROM {table} WHERE name = ?", name):
             known = self._sets.get(number)
             if known is None:
                 ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
                 known = self._sets[number] = tuple(_decode(entries))
-            return list(known)
+            return [provider._replace(sure=False) for provider in known] if platforms & BY_FOLDER else list(known)
         return []
 
     def _ros(self, table: str, name: str) -> list[Provider]:
@@ -206,7 +241,7 @@ class Providers:
         known = self._spans.get(number)
         if known is None:
             ((text,),) = self._rows("SELECT spans FROM pattern WHERE id = ?", number)
-            spans = (line.split(" ") for line in text.split("\n"))
+            spans = (line.split(" ") for line in text.split("\n") if line)
             known = tuple(HeaderSpan(distro, first, None if last == "-" else last) for distro, first, last in spans)
             self._spans[number] = known
         return known
