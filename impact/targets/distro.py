@@ -6,6 +6,7 @@ and the target is approximate.
 """
 
 import datetime
+import functools
 import operator
 import re
 from collections.abc import Iterable, Mapping
@@ -67,7 +68,11 @@ _DAY = datetime.timedelta(days=1)
 
 def known_distros(data: Snapshot | None = None) -> tuple[Known, ...]:
     """All distros of the snapshot, oldest first."""
-    data = data or snapshots.default()
+    return _known_distros(data or snapshots.default())
+
+
+@functools.lru_cache(maxsize=4)
+def _known_distros(data: Snapshot) -> tuple[Known, ...]:
     facts = dict(data.rows("SELECT name, facts FROM distro_fact"))
     found = []
     for name, ros, python, status, first, last in data.rows(
@@ -153,11 +158,8 @@ class DistroTarget(Target):
         self._held: dict[str, bool] = {}
         self._keys: dict[str, Resolution | None] = {}
         self._all_keys: dict[str, Resolution] | None = None
-        self._known: frozenset[str] | None = None
-        self._ever: frozenset[str] | None = None
         self._by_debian: dict[str, tuple[str, ...]] | None = None
         self._with_manifests: bool | None = None
-        self._library_universe: frozenset[str] | None = None
         self._changes: tuple[Change, ...] | None = None
 
     def __reduce__(self):
@@ -259,14 +261,10 @@ class DistroTarget(Target):
         return self.ever_released(name) or library_name(name) not in self._all_libraries()
 
     def _all_libraries(self) -> frozenset[str]:
-        if self._library_universe is None:
-            self._library_universe = frozenset(n for (n,) in self._data.rows("SELECT DISTINCT name FROM library"))
-        return self._library_universe
+        return self._data.names("library")
 
     def ever_released(self, package: str) -> bool:
-        if self._ever is None:
-            self._ever = frozenset(name for (name,) in self._data.rows("SELECT name FROM package"))
-        return package in self._ever
+        return package in self._data.names("package")
 
     def history(self, package: str) -> tuple[tuple[str, str | None], ...]:
         """(day, version) of every release of a package in this distro, oldest first; version None: dropped."""
@@ -443,14 +441,11 @@ class DistroTarget(Target):
         return None
 
     def known_key(self, key: str) -> bool:
-        if self._known is None:
-            self._known = frozenset(name for (name,) in self._data.rows("SELECT DISTINCT key FROM rule"))
-        return key in self._known
+        return key in self._data.names("rule", "key")
 
     def key_names(self) -> frozenset[str]:
         """Every rosdep key that any platform has, or had."""
-        self.known_key("")
-        return self._known or frozenset()
+        return self._data.names("rule", "key")
 
     def last_distro(self, package: str) -> str:
         """The newest distro of the same generation that has released a package, empty when none has."""

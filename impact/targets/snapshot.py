@@ -10,7 +10,6 @@ import contextlib
 import hashlib
 import os
 import sqlite3
-import tempfile
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -173,6 +172,7 @@ class Snapshot:
         self._connection: sqlite3.Connection | None = None
         self._lock = threading.Lock()
         self._info: SnapshotInfo | None = None
+        self._names: dict[str, frozenset[str]] = {}
 
     @property
     def info(self) -> SnapshotInfo:
@@ -202,6 +202,13 @@ class Snapshot:
         """The first row of a query, None when there is none."""
         found = self.rows(sql, parameters)
         return found[0] if found else None
+
+    def names(self, table: str, column: str = "name") -> frozenset[str]:
+        """All values of a column; read once, since every target asks the same."""
+        key = f"{table}.{column}"
+        if key not in self._names:
+            self._names[key] = frozenset(value for (value,) in self.rows(f"SELECT DISTINCT {column} FROM {table}"))
+        return self._names[key]
 
     def path(self) -> Path:
         """Where the unpacked file belongs in the cache."""
@@ -251,6 +258,8 @@ def _connect(path: Path) -> sqlite3.Connection:
 def _write(raw: bytes, facts: tuple[bytes, bytes], path: Path) -> None:
     """Makes the unpacked file under another name and renames it, so that nobody ever sees half of it."""
     path.parent.mkdir(parents=True, exist_ok=True)
+    import tempfile
+
     handle, name = tempfile.mkstemp(prefix=".distros-", suffix=".part", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as file:
@@ -289,6 +298,8 @@ def _in_memory(raw: bytes, facts: tuple[bytes, bytes]) -> sqlite3.Connection:
     if deserialize is not None:
         deserialize(raw)
     else:
+        import tempfile
+
         try:
             with tempfile.NamedTemporaryFile(suffix=".sqlite") as file:
                 file.write(raw)
