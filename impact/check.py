@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 from . import findings as after
-from .config import Config, load
+from .config import Config, PathSetting, load, parse
 from .facts.store import Store
 from .gather import Gathered, gather
 from .model.view import View
 from .model.watch import watched
 from .model.workspace import Workspace, link
 from .report.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
-from .rules.rule import Finding, Hit, Rule, all_rules
+from .rules.cure import Declare, Insert, Replace
+from .rules.rule import Cure, Finding, Hit, Rule, all_rules
 from .targets.providers import default_providers
-from .targets.resolve import ChosenTarget, choose_targets
-from .tree import GitTree, Tree, TreeError, WorkingTree
+from .targets.resolve import Chosen, choose_targets
+from .tree import GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
 
 __version__ = "0.1.0"
 
@@ -30,8 +31,12 @@ class CheckError(Exception):
 
 
 class Options(NamedTuple):
-    """How to check. targets: as given on the command line. rev: a git revision instead of the files on disk. base: the
-    revision to compare with, or PATH=REV pairs. baseline: text of a baseline file."""
+    """How to check.
+
+    targets: as given on the command line. rev: a git revision instead of the files on disk. base: the revision to
+    compare with, PATH=REV pairs, or a pinned .repos file. select, ignore: rules or families, over those of the
+    configuration. config: another rosimpact.toml. baseline: text of a baseline file. cache: folder of the facts.
+    """
 
     targets: tuple[str, ...] = ()
     rev: str = ""
@@ -45,51 +50,122 @@ class Options(NamedTuple):
     cache: Path | None = None
 
 
+DEFAULTS = Options()
+
+
+class Checked(NamedTuple):
+    """What a check gives: the report, and what it was made with."""
+
+    report: Report
+    config: Config
+    tree: Tree
+
+
+Progress = Callable[[int, int], None]
+
+
 def check(
-    path: str | os.PathLike[str], options: Options = Options(), progress: Callable[[int, int], None] | None = None, *,
+    path: str | os.PathLike[str],
+    options: Options = DEFAULTS,
+    progress: Progress | None = None,
+    *,
     base_tree: Tree | None = None,
-) -> Report:  # fmt: skip
+) -> Report:
     """Checks a workspace and says what breaks, and for whom.
 
     path: a workspace, package, or git repository. progress: called with (done, total) bytes while files are parsed.
     base_tree: the tree to compare with, instead of the revision that the options name.
-    Raises CheckError, TreeError, TargetError or ConfigError with a text for the user.
+    Raises CheckError, TreeError, TargetError, SettingsError, SnapshotError or ConfigError with a text for the user.
     """
+    return run(path, options, progress, base_tree=base_tree).report
+
+
+def run(
+    path: str | os.PathLike[str],
+    options: Options = DEFAULTS,
+    progress: Progress | None = None,
+    *,
+    base_tree: Tree | None = None,
+) -> Checked:
+    """check(), with the configuration and the tree that it was made with. Raises as check() does."""
     started = time.perf_counter()
+    rules = all_rules()
     with open_workspace(path, options, progress) as opened:
         tree, store, gathered, workspace, targets, views, config = opened
-        rules = after.chosen(all_rules(), select=options.select or config.select, ignore=options.ignore or config.ignore,
-                             preview=options.preview)  # fmt: skip
-        sources = Sources(lambda p: tree.read(p) if tree.exists(p) else None)
-        found, suppression = judge(workspace, views, rules, sources, config)
+        chosen = _chosen(rules, options, config)
+        settings = _settings(rules, config)
+        sources = Sources(reader(tree))
+        crashed: Crashes = {}
+        notes: list[str] = []
         if options.base or base_tree is not None:
-            from .base import against_base, base_tree as tree_of_base
+            from . import base as bases
 
-            found = against_base(base_tree or tree_of_base(tree, options.base), found, workspace, views, rules, store, sources,
-                                 lambda w, v, s: judge(w, v, rules, s, config))  # fmt: skip
+            if base_tree is None:
+                base_tree, notes = bases.base_tree(tree, options.base)
+            before = bases.at_base(base_tree, opened, jobs=options.jobs)
+            old = judge(before, chosen, settings, Sources(reader(base_tree)), crashed)
+            now = judge(opened, chosen, settings, sources, crashed, before.workspace)
+            found: Sequence[Finding] = after.marked_new(now.kept, old.kept)
+        else:
+            now = judge(opened, chosen, settings, sources, crashed)
+            found = now.kept
+        if any(finding.fix for finding in found):
+            from . import fix
+
+            found = fix.made(found, reader(tree))
         known: Sequence[Finding] = ()
         if options.baseline:
             found, known = after.without_known(found, after.known_from(options.baseline))
-        notes = tuple(store.notes)
-    return Report(
+        notes += store.notes
+    failures = [] if workspace.packages else [nothing_analysed(path, opened)]
+    failures += [f"the rule {rule} failed{on(crashed[rule, why])}: {why}" for rule, why in crashed]
+    report = Report(
         version=__version__,
         data=targets[0].target.data_date if targets else "",
-        targets=tuple(
-            ReportedTarget(t.target.name, t.target.distro, t.target.date, t.target.platform, t.reason, tuple(t.target.notes) + (notes if i == 0 else ()))
-            for i, t in enumerate(targets)
-        ),
+        targets=tuple(_reported(chosen_target, notes if i == 0 else ()) for i, chosen_target in enumerate(targets)),
         findings=tuple(found),
         coverage=coverage(workspace, gathered, views),
-        packages=tuple(ReportedPackage(p.name, p.path) for p in workspace),
-        suppressed=tuple(suppression),
+        packages=tuple(ReportedPackage(package.name, package.path) for package in workspace),
+        suppressed=tuple(now.suppressed),
         known=tuple(known),
-        rules=tuple(rules.values()),
+        rules=tuple(chosen.values()),
         seconds=time.perf_counter() - started,
         excerpt=sources.excerpt,
-        root=str(path),
-        base=" ".join(options.base),
-        failure="" if workspace.packages else f"{path}: no package found (no package.xml outside ignored folders)",
+        root=os.fspath(path),
+        base=" ".join(options.base) or (base_tree.label if base_tree is not None else ""),
+        failure="; ".join(failures),
     )
+    return Checked(report, config, tree)
+
+
+def check_workspace(
+    path: str | os.PathLike[str],
+    *,
+    targets: Sequence[str] = (),
+    rev: str = "",
+    base: Sequence[str] = (),
+    select: Sequence[str] = (),
+    ignore: Sequence[str] = (),
+    preview: bool = False,
+    jobs: int | None = None,
+    config: str | os.PathLike[str] | None = None,
+) -> list[Finding]:
+    """Findings of a workspace, for other tools. They come sorted by path and line.
+
+    path: the workspace. targets: as on the command line (`jazzy`, `humble@2024-03-01`, a captured file, a name of
+    rosimpact.toml); none means those the workspace itself tells. rev: a git revision instead of the files on disk.
+    base: what to compare with; findings that the base has too come with `new` False. select, ignore: rules or families.
+    preview: also run rules whose precision is not measured yet. jobs: processes to parse with. config: another
+    rosimpact.toml.
+    Raises as check() does, and CheckError when there is no package to analyse.
+    """
+    options = Options(
+        tuple(targets), rev, tuple(base), tuple(select), tuple(ignore), preview, jobs, Path(config) if config else None
+    )
+    report = check(path, options)
+    if not report.packages:
+        raise CheckError(report.failure)
+    return list(report.findings)
 
 
 class Opened(NamedTuple):
@@ -99,70 +175,229 @@ class Opened(NamedTuple):
     store: Store
     gathered: Gathered
     workspace: Workspace
-    targets: Sequence[ChosenTarget]
+    targets: Sequence[Chosen]
     views: Sequence[View]
     config: Config
 
 
 @contextmanager
 def open_workspace(
-    path: str | os.PathLike[str], options: Options = Options(), progress: Callable[[int, int], None] | None = None
+    path: str | os.PathLike[str], options: Options = DEFAULTS, progress: Progress | None = None
 ) -> Iterator[Opened]:
     """Reads a workspace up to its views. The store is closed at the end. Raises as check() does."""
     root = Path(path)
-    if not root.exists():
-        raise CheckError(f"{path}: there is no such file or folder; give the path of a workspace")
-    config = load(root if root.is_dir() else root.parent, options.config)
     tree = open_tree(root, options.rev)
+    config = settings_of(root, tree, options.config)
     with Store(options.cache) as store:
         gathered = gather(tree, store, jobs=options.jobs, progress=progress)
         workspace = link(tree, gathered, store, None, watched())
         targets = choose_targets(options.targets, config, workspace, tree)
-        views = [View(workspace, t.target, default_providers(), config) for t in targets]
+        views = [View(workspace, chosen.target, default_providers(), config) for chosen in targets]
         yield Opened(tree, store, gathered, workspace, targets, views, config)
 
 
+def settings_of(root: Path, tree: Tree, file: Path | None) -> Config:
+    """The configuration: the file given, else rosimpact.toml on disk, else that of the revision. Raises ConfigError."""
+    config = load(root, file)
+    name = "rosimpact.toml"
+    if config.path is None and isinstance(tree, GitTree) and tree.exists(name) and not tree.is_dir(name):
+        return parse(tree.read(name), root / name)
+    return config
+
+
 def open_tree(root: Path, rev: str) -> Tree:
-    """The files on disk, or a revision of the repository when one is asked for or the path is a bare repository."""
-    if rev:
-        return GitTree(root, rev)
-    if root.is_dir() and (root / "objects").is_dir() and (root / "HEAD").is_file():
-        return GitTree(root, "HEAD")
+    """The files on disk, or a revision of the repository when one is asked for or the path is a bare repository.
+
+    A folder below a repository's root stays the root of what is read. Raises TreeError.
+    """
+    bare = (root / "objects").is_dir() and (root / "refs").is_dir() and (root / "HEAD").is_file()
+    if not root.exists() or not (rev or bare):
+        return WorkingTree(root)
     if not root.is_dir():
-        raise TreeError(f"{root}: not a folder; give the path of a workspace")
-    return WorkingTree(root)
+        raise TreeError(f"`{shown(os.fspath(root))}` is a file, not a folder; give the folder of a git repository")
+    tree = GitTree(root, rev or "HEAD")
+    place = tree.repositories[""]
+    folder = os.path.relpath(os.path.realpath(root), os.path.realpath(place))
+    inside = folder != "." and not folder.startswith("..") and not bare and folder.split(os.sep)[0] != ".git"
+    return GitTree(root, rev or "HEAD", folder.replace(os.sep, "/")) if inside else tree
+
+
+def reader(tree: Tree) -> Callable[[str], bytes | None]:
+    """Bytes of a path, None when there are none to be had."""
+
+    def read(path: str) -> bytes | None:
+        try:
+            return tree.read(path)
+        except OSError:
+            return None
+
+    return read
+
+
+def nothing_analysed(path: str | os.PathLike[str], opened: Opened) -> str:
+    """Why there is no package, and what to do, for a workspace without any."""
+    where = shown(os.fspath(path))
+    ignored = [PathProblem(place.path or ".", place.ignored) for place in opened.workspace.discovered.ignored]
+    ignored += [skipped for skipped in opened.tree.skipped if "IGNORE" in skipped.message]
+    if ignored:
+        named = "; ".join(f"`{shown(each.path)}`: {each.message}" for each in ignored[:3])
+        more = f", and {len(ignored) - 3} more" if len(ignored) > 3 else ""
+        cure = "remove the markers or give another folder"
+        return f"{where}: no package is left to analyse, all are ignored ({named}{more}); {cure}"
+    unread = [problem for problem in opened.gathered.problems if problem.path.rpartition("/")[2].startswith("package")]
+    if unread:
+        named = "; ".join(f"`{shown(problem.path)}`: {problem.message}" for problem in unread[:3])
+        return f"{where}: no package could be read ({named}); make the files readable"
+    return f"{where}: no package was found (no package.xml outside of ignored folders); give the folder of a workspace"
+
+
+def _reported(chosen: Chosen, notes: Iterable[str]) -> ReportedTarget:
+    target = chosen.target
+    return ReportedTarget(
+        target.name, target.distro, target.date, target.platform, chosen.reason, (*target.notes, *notes)
+    )
+
+
+def _chosen(rules: Mapping[str, Rule], options: Options, config: Config) -> dict[str, Rule]:
+    """The rules to run. What is asked for on the command line goes over the configuration, list by list."""
+    select, ignore = options.select or config.select, options.ignore or config.ignore
+    try:
+        return after.chosen(rules, select=select, ignore=ignore, preview=options.preview)
+    except after.SettingsError as error:
+        option = "--select or --ignore" if options.select or options.ignore else f"{config.path}: [check]"
+        raise after.SettingsError(f"{option}: {error}") from None
+
+
+def _settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, ...]:
+    """Settings by path, those for the whole workspace first, so that the others go over them."""
+    everywhere = (PathSetting("**", severity=config.severity),) if config.severity else ()
+    try:
+        after.checked(everywhere, rules)
+    except after.SettingsError as error:
+        text = str(error).removeprefix('[paths."**"]: ')
+        raise after.SettingsError(f"{config.path}: [check]: {text}") from None
+    try:
+        return (*everywhere, *after.checked(config.paths, rules))
+    except after.SettingsError as error:
+        raise after.SettingsError(f"{config.path}: {error}") from None
+
+
+# (rule, why it failed) to the targets on which it did
+Crashes = dict[tuple[str, str], list[str]]
+
+
+class Judged(NamedTuple):
+    """Findings, and those that allow comments silence."""
+
+    kept: list[Finding]
+    suppressed: list[Finding]
 
 
 def judge(
-    workspace: Workspace, views: Sequence[View], rules: dict[str, Rule], sources: Sources, config: Config
-) -> tuple[list[Finding], list[Finding]]:
-    """Runs the rules. Returns the findings, and those that allow comments silence."""
+    opened: Opened,
+    rules: Mapping[str, Rule],
+    settings: Sequence[PathSetting],
+    sources: Sources,
+    crashed: Crashes,
+    before: Workspace | None = None,
+) -> Judged:
+    """Runs the rules. before: the workspace at the base, for rules that compare. crashed: gets the rules that
+    failed; what the others found stands."""
+    workspace, views = opened.workspace, opened.views
     names = [view.target.name for view in views]
-    found = after.merge(_hits(workspace, views, rules.values()), targets=names, rules=rules, line_text=sources.line)
     families = {name: rule.family for name, rule in all_rules().items()}
-    found = after.with_settings(found, config.paths, families)
+    by_name = {view.target.name: view for view in views}
+
+    def made(hits: Iterable[tuple[str, str, Hit]]) -> list[Finding]:
+        found = after.merge(
+            hits,
+            targets=names,
+            rules=rules,
+            line_text=sources.line,
+            holds=lambda fix, target: all(holds(cure, by_name[target]) for cure in fix),
+        )
+        return after.with_settings(found, settings, families)
+
     allows = {path: comments for package in workspace for path, comments in package.digest.allows}
-    result = after.suppressed(found, allows, families=families, ran=rules)
+    result = after.suppressed(
+        made(_hits(opened, rules.values(), crashed, before)), allows, families=families, ran=rules
+    )
     kept = list(result.kept)
     if "unused-suppression" in rules and result.unused:
         from .rules.general.unused_suppression import unused
 
-        hits = [("unused-suppression", "", hit) for hit in unused(workspace, result.unused)]
-        kept += after.merge(hits, targets=names, rules=rules, line_text=sources.line)
-    return kept, list(result.suppressed)
+        kept = after.in_order(
+            [*kept, *made(("unused-suppression", "", hit) for hit in unused(workspace, result.unused))]
+        )
+    return Judged(kept, list(result.suppressed))
 
 
-def _hits(workspace: Workspace, views: Sequence[View], rules: Iterable[Rule]) -> Iterable[tuple[str, str, Hit]]:
+def _hits(
+    opened: Opened, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None
+) -> Iterator[tuple[str, str, Hit]]:
     for rule in rules:
-        if rule.family == "interfaces" or rule.name == "unused-suppression":
-            continue
-        if not rule.per_target:
-            for hit in rule.run(workspace):
-                yield rule.name, "", hit
-            continue
-        for view in views:
-            for hit in rule.run(view):
-                yield rule.name, view.target.name, hit
+        for target, run_rule in _runs(rule, opened, before):
+            try:
+                for hit in run_rule():
+                    yield rule.name, target, hit
+            except Exception as error:
+                # What the other rules say stays true; the failure is named and decides the exit status.
+                targets = crashed.setdefault((rule.name, crash(error)), [])
+                if target and target not in targets:
+                    targets.append(target)
+
+
+def on(targets: Sequence[str]) -> str:
+    """` on jazzy, robot`, empty without targets."""
+    return f" on {', '.join(targets)}" if targets else ""
+
+
+def crash(error: BaseException) -> str:
+    """An unforeseen error as a clause: its kind, its text, where it was raised, and what to do."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    place = f" in {os.path.basename(trace.tb_frame.f_code.co_filename)}:{trace.tb_lineno}" if trace is not None else ""
+    text = " ".join(str(error).split())[:200]
+    return f"{type(error).__name__}{place}{': ' + text if text else ''}; this is a fault of rosimpact, please report it"
+
+
+def _runs(rule: Rule, opened: Opened, before: Workspace | None) -> Iterator[tuple[str, Callable[[], Iterable[Hit]]]]:
+    """(target or nothing, call) of each run of a rule."""
+    if rule.family == "interfaces":
+        if before is not None:
+            yield "", lambda: rule.run(opened.workspace, before)
+    elif not rule.per_target:
+        yield "", lambda: rule.run(opened.workspace)
+    else:
+        for view in opened.views:
+            yield view.target.name, lambda view=view: rule.run(view)
+
+
+def holds(cure: Cure, view: View) -> bool:
+    """Whether a cure is right on a target where the rule found nothing to cure.
+
+    A declaration is when the package is there, an include when its header surely is; anything else cannot be told.
+    """
+    if isinstance(cure, Declare):
+        return view.available(cure.name)
+    if isinstance(cure, Replace):
+        return _has_header(view, cure.new.strip('<>"'))
+    if isinstance(cure, Insert):
+        text = cure.text.strip()
+        return text.startswith("#include <") and "\n" not in text and view.is_standard(text[10:].rstrip("> "))
+    return False
+
+
+def _has_header(view: View, path: str) -> bool:
+    target = view.target
+    if view.is_standard(path) or view.workspace.provides_header(path):
+        return True
+    for provider in view.header(path):
+        version = target.version(provider.name) if provider.kind == "ros" else None
+        if version and view.providers.has_header(provider.name, path, target.distro, version):
+            return True
+    return target.platform in view.providers.header_platforms(path)
 
 
 def coverage(workspace: Workspace, gathered: Gathered, views: Sequence[View]) -> Coverage:
@@ -173,17 +408,8 @@ def coverage(workspace: Workspace, gathered: Gathered, views: Sequence[View]) ->
         for kind, names in view.unresolved.items():
             unresolved.setdefault(kind, set()).update(names)
     counts = {kind: len(names) for kind, names in sorted(unresolved.items()) if names}
-    cmake = sum(len(p.build.unresolved) for p in workspace)
+    cmake = sum(len(package.build.unresolved) for package in workspace)
     if cmake:
         counts["cmake"] = counts.get("cmake", 0) + cmake
     files = len(gathered.kinds) + len(gathered.problems)
     return Coverage(len(workspace.packages), files, len(gathered.kinds) - len(broken & gathered.kinds.keys()), counts)
-
-
-def check_workspace(path: str | os.PathLike[str], *, targets: Sequence[str] = (), **options) -> list[Finding]:
-    """Findings of a workspace, most useful for other tools.
-
-    path: the workspace. targets: as on the command line (`jazzy`, `humble@2024-03-01`, a captured file, a name of
-    rosimpact.toml). options: fields of Options. Raises as check() does.
-    """
-    return list(check(path, Options(targets=tuple(targets), **options)).findings)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -16,52 +16,101 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-env_app = typer.Typer(help="Machines: capture this one as a target, compare two.", no_args_is_help=True, rich_markup_mode=None)
-data_app = typer.Typer(help="The shipped distro data: its date, rebuilding it, refreshing it.", no_args_is_help=True, rich_markup_mode=None)
+env_app = typer.Typer(
+    help="Machines: capture this one as a target, compare two.", no_args_is_help=True, rich_markup_mode=None
+)
+data_app = typer.Typer(
+    help="The shipped distro data: its date, rebuilding it, refreshing it.", no_args_is_help=True, rich_markup_mode=None
+)
 app.add_typer(env_app, name="env")
 app.add_typer(data_app, name="data")
 
-FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
+
+def _print_schema(value: bool) -> None:
+    if value:
+        from . import run
+
+        raise typer.Exit(run.schema())
 
 
 @app.command()
 def check(
     path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
-    target: Annotated[Optional[list[str]], typer.Option("--target", "-t", help="jazzy, humble@2024-03-01, envs/laptop.json, a name of rosimpact.toml, robot.dpkg.txt, docker:ros:humble. May be repeated.")] = None,
-    format: Annotated[str, typer.Option("--format", "-f", help=f"One of {', '.join(FORMATS)}.")] = "text",
-    output: Annotated[Optional[Path], typer.Option("--output", "-o", help="Write the report to this file.")] = None,
+    target: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--target",
+            "-t",
+            help="jazzy, humble@2024-03-01, envs/laptop.json, a name of rosimpact.toml, robot.dpkg.txt, "
+            "docker:ros:humble. May be repeated.",
+        ),
+    ] = None,
+    format: Annotated[
+        str, typer.Option("--format", "-f", help="One of text, json, sarif, github, markdown, html.")
+    ] = "text",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
     rev: Annotated[str, typer.Option(help="Check this git revision instead of the files on disk.")] = "",
-    base: Annotated[Optional[list[str]], typer.Option(help="Compare with this revision (PATH=REV for one repository, or a pinned .repos file): only what is new fails.")] = None,
-    select: Annotated[Optional[list[str]], typer.Option(help="Only these rules or families. May be repeated or comma-separated.")] = None,
-    ignore: Annotated[Optional[list[str]], typer.Option(help="Not these rules or families.")] = None,
-    fail_on: Annotated[str, typer.Option(help="Exit with 1 from this severity on: error, warning, note, never.")] = "",
+    base: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Compare with the merge base with this revision (PATH=REV for one repository, or a pinned .repos "
+            "file): only what is new fails."
+        ),
+    ] = None,
+    select: Annotated[
+        list[str] | None, typer.Option(help="Only these rules or families. May be repeated or comma-separated.")
+    ] = None,
+    ignore: Annotated[list[str] | None, typer.Option(help="Not these rules or families.")] = None,
+    fail_on: Annotated[
+        str, typer.Option(help="Exit with 1 from this severity on: error (the default), warning, note, never.")
+    ] = "",
     notes: Annotated[bool, typer.Option("--notes", help="Show notes in the text report too.")] = False,
-    preview: Annotated[bool, typer.Option("--preview", help="Also run rules whose precision is not measured yet.")] = False,
-    baseline: Annotated[Optional[Path], typer.Option(help="Leave out what this file already holds.")] = None,
-    write_baseline: Annotated[Optional[Path], typer.Option(help="Write today's findings to this file, and exit with 0.")] = None,
-    fix: Annotated[bool, typer.Option("--fix", help="Apply fixes that are right on every target asked for.")] = False,
-    diff: Annotated[bool, typer.Option("--diff", help="Print what --fix would change.")] = False,
-    config: Annotated[Optional[Path], typer.Option(help="Another rosimpact.toml.")] = None,
-    jobs: Annotated[Optional[int], typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    preview: Annotated[
+        bool, typer.Option("--preview", help="Also run rules whose precision is not measured yet.")
+    ] = False,
+    baseline: Annotated[Path | None, typer.Option(help="Leave out what this file already holds.")] = None,
+    write_baseline: Annotated[
+        Path | None, typer.Option(help="Write all of today's findings to this file, and exit with 0.")
+    ] = None,
+    prune_baseline: Annotated[
+        bool, typer.Option("--prune-baseline", help="Take what is cured out of the file given with --baseline.")
+    ] = False,
+    fix: Annotated[
+        bool,
+        typer.Option("--fix", help="Apply fixes that are right on every target asked for, and report what remains."),
+    ] = False,
+    diff: Annotated[bool, typer.Option("--diff", help="Print what --fix would change; change nothing.")] = False,
+    config: Annotated[Path | None, typer.Option(help="Another rosimpact.toml.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+    schema: Annotated[
+        bool,
+        typer.Option("--schema", callback=_print_schema, is_eager=True, help="Print the JSON schema of --format json."),
+    ] = False,
 ) -> None:
-    """Say what breaks, on whose machine, where, and what to do."""
+    """Say what breaks, on whose machine, where, and what to do.
+
+    Exit status: 0 nothing at or above --fail-on, 1 findings, 2 the tool failed or analysed nothing.
+    """
     from . import run
 
     raise typer.Exit(
         run.check(
             path, targets=tuple(target or ()), format=format, output=output, rev=rev, base=tuple(base or ()),
-            select=_names(select), ignore=_names(ignore), fail_on=fail_on, notes=notes, preview=preview, baseline=baseline,
-            write_baseline=write_baseline, fix=fix, diff=diff, config=config, jobs=jobs, quiet=quiet,
+            select=_names(select), ignore=_names(ignore), fail_on=fail_on, notes=notes, preview=preview,
+            baseline=baseline, write_baseline=write_baseline, prune_baseline=prune_baseline, fix=fix, diff=diff,
+            config=config, jobs=jobs, quiet=quiet,
         )
     )  # fmt: skip
 
 
 @app.command()
 def why(
-    name: Annotated[str, typer.Argument(help="A header, package, rosdep key, CMake name, Python module or executable.")],
+    name: Annotated[
+        str, typer.Argument(help="A header, package, rosdep key, CMake name, Python module or executable.")
+    ],
     path: Annotated[Path, typer.Argument(help="Workspace whose uses are shown.")] = Path("."),
-    target: Annotated[Optional[list[str]], typer.Option("--target", "-t", help="As for check.")] = None,
+    target: Annotated[list[str] | None, typer.Option("--target", "-t", help="As for check.")] = None,
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
 ) -> None:
     """Say who provides a name on a target, since when, and who in the workspace uses it."""
@@ -71,7 +120,9 @@ def why(
 
 
 @app.command()
-def explain(rule: Annotated[Optional[str], typer.Argument(help="A rule's name; without one, all rules are listed.")] = None) -> None:
+def explain(
+    rule: Annotated[str | None, typer.Argument(help="A rule's name; without one, all rules are listed.")] = None,
+) -> None:
     """Say what a rule does, why it matters, and how to cure what it finds."""
     from . import run
 
@@ -80,7 +131,9 @@ def explain(rule: Annotated[Optional[str], typer.Argument(help="A rule's name; w
 
 @env_app.command("capture")
 def env_capture(
-    output: Annotated[Optional[Path], typer.Option("--output", "-o", help="File to write; standard output when left out.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="File to write; standard output when left out.")
+    ] = None,
 ) -> None:
     """Write this machine as a target."""
     from . import run
@@ -92,7 +145,7 @@ def env_capture(
 def env_diff(
     first: Annotated[str, typer.Argument(help="A target, in any form.")],
     second: Annotated[str, typer.Argument(help="Another target.")],
-    path: Annotated[Optional[Path], typer.Argument(help="Mark what this workspace uses.")] = None,
+    path: Annotated[Path | None, typer.Argument(help="Mark what this workspace uses.")] = None,
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
 ) -> None:
     """Say what differs between two machines."""
@@ -102,23 +155,32 @@ def env_diff(
 
 
 @data_app.command("status")
-def data_status() -> None:
-    """Say how old the distro data is."""
+def data_status(
+    format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
+) -> None:
+    """Say how old the distro data is, and where it is from."""
     from . import run
 
-    raise typer.Exit(run.data_status())
+    raise typer.Exit(run.data_status(format))
 
 
 @data_app.command("build")
 def data_build(
-    rosdistro: Annotated[Path, typer.Argument(help="Clone of the rosdistro git repository, bare or not.")],
+    rosdistro: Annotated[
+        Path, typer.Argument(help="Clone of the rosdistro git repository with its tags, bare or not.")
+    ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write the snapshot to.")],
-    caches: Annotated[Optional[Path], typer.Option(help="Clone of ros/meta-ros, for the dependencies of released packages.")] = None,
+    work: Annotated[
+        Path | None, typer.Option(help="Folder for what was read so far; another run continues from it.")
+    ] = None,
+    meta_ros: Annotated[
+        Path | None, typer.Option(help="Clone of ros/meta-ros, for the dependencies of released packages.")
+    ] = None,
 ) -> None:
     """Build the snapshot anew from git repositories."""
     from . import run
 
-    raise typer.Exit(run.data_build(rosdistro, output, caches))
+    raise typer.Exit(run.data_build(rosdistro, output, work, meta_ros))
 
 
 @data_app.command("update")
@@ -138,7 +200,11 @@ def _version(value: bool) -> None:
 
 
 @app.callback()
-def root(version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False) -> None:
+def root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
     pass
 
 

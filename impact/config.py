@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 if sys.version_info >= (3, 11):
     import tomllib
 else:
-    import tomli as tomllib
+    import tomli as tomllib  # pyright: ignore[reportMissingImports]
 
 
 class ConfigError(ValueError):
@@ -39,11 +39,12 @@ class Config(NamedTuple):
     underlays: tuple[str, ...] = ()
     repos: tuple[str, ...] = ()
     rosdep_sources: tuple[str, ...] = ()
-    index: str = ""
+    index: str = ""  # pyright: ignore[reportIncompatibleMethodOverride]
     private: tuple[str, ...] = ()
 
 
 _TABLES = {"targets", "workspace", "check", "paths"}
+_FAIL_ON = ("error", "warning", "note", "never")
 
 
 def load(folder: Path, file: Path | None = None) -> Config:
@@ -52,34 +53,74 @@ def load(folder: Path, file: Path | None = None) -> Config:
     Raises ConfigError for syntax errors, unknown keys and values of the wrong type.
     """
     path = file or folder / "rosimpact.toml"
-    if not path.is_file():
-        if file is not None:
-            raise ConfigError(f"{file}: there is no such file; give an existing configuration with --config")
-        return Config()
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError) as error:
-        raise ConfigError(f"{path}: cannot be read: {error}; correct the file or remove it") from error
-    for key in data:
+        data = path.read_bytes()
+    except (FileNotFoundError, NotADirectoryError):
+        if file is not None:
+            raise ConfigError(f"{file}: there is no such file; give an existing configuration with --config") from None
+        return Config()
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {error.strerror}; correct the file or remove it") from None
+    return parse(data, path)
+
+
+def parse(data: bytes, path: Path) -> Config:
+    """What a rosimpact.toml says. data: its bytes. path: where it lies, for messages. Raises ConfigError."""
+    try:
+        tables = tomllib.loads(data.decode("utf-8-sig"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path}: cannot be read: {error}; correct the file or remove it") from None
+    except RecursionError:
+        raise ConfigError(f"{path}: cannot be read: it nests too deeply; correct the file or remove it") from None
+    for key in tables:
         if key not in _TABLES:
-            raise ConfigError(f"{path}: unknown table `{key}`; known are {', '.join(sorted(_TABLES))}")
-    workspace, check = _table(path, data, "workspace"), _table(path, data, "check")
-    targets = _table(path, data, "targets")
+            raise ConfigError(
+                f"{path}: unknown table `{key}`{_near(key, _TABLES)}; known are {', '.join(sorted(_TABLES))}"
+            )
+    workspace, check = _table(path, tables, "workspace"), _table(path, tables, "check")
+    targets = _table(path, tables, "targets")
     for name, target in targets.items():
         if not isinstance(target, dict) or not isinstance(target.get("distro", target.get("file")), str):
-            raise ConfigError(f"{path}: [targets.{name}] needs a `distro` (such as \"humble\") or a `file`")
+            raise ConfigError(f'{path}: [targets.{name}] needs a `distro` (such as "humble") or a `file`')
     _known(path, "workspace", workspace, {"underlays", "repos", "rosdep_sources", "index", "private"})
     _known(path, "check", check, {"targets", "select", "ignore", "severity", "fail_on"})
-    paths = tuple(
-        PathSetting(pattern, _strings(path, setting, "ignore"), _strings(path, setting, "select"), dict(setting.get("severity", {})))
-        for pattern, setting in _table(path, data, "paths").items()
-    )
+    fail_on = _string(path, check, "fail_on")
+    if fail_on not in ("", *_FAIL_ON):
+        raise ConfigError(
+            f"{path}: [check] `fail_on` is `{fail_on}`; choose {', '.join(_FAIL_ON[:-1])} or {_FAIL_ON[-1]}"
+        )
     return Config(
-        path, targets, _strings(path, check, "targets") or tuple(targets), _strings(path, check, "select"),
-        _strings(path, check, "ignore"), dict(check.get("severity", {})), str(check.get("fail_on", "")), paths,
-        _strings(path, workspace, "underlays"), _strings(path, workspace, "repos"),
-        _strings(path, workspace, "rosdep_sources"), str(workspace.get("index", "")), _strings(path, workspace, "private"),
-    )  # fmt: skip
+        path=path,
+        targets=targets,
+        default_targets=_strings(path, check, "targets") or tuple(targets),
+        select=_strings(path, check, "select"),
+        ignore=_strings(path, check, "ignore"),
+        severity=_severities(path, "check", check),
+        fail_on=fail_on,
+        paths=tuple(_path_setting(path, pattern, entry) for pattern, entry in _table(path, tables, "paths").items()),
+        underlays=_strings(path, workspace, "underlays"),
+        repos=_strings(path, workspace, "repos"),
+        rosdep_sources=_strings(path, workspace, "rosdep_sources"),
+        index=_string(path, workspace, "index"),
+        private=_strings(path, workspace, "private"),
+    )
+
+
+def _path_setting(path: Path, pattern: str, entry: Any) -> PathSetting:
+    name = f'paths."{pattern}"'
+    if not isinstance(entry, dict):
+        raise ConfigError(f'{path}: [{name}] must be a table, such as ignore = ["unused-dependency"]')
+    _known(path, name, entry, {"ignore", "select", "severity"})
+    return PathSetting(
+        pattern, _strings(path, entry, "ignore"), _strings(path, entry, "select"), _severities(path, name, entry)
+    )
+
+
+def _severities(path: Path, name: str, table: dict[str, Any]) -> dict[str, str]:
+    value = table.get("severity", {})
+    if not isinstance(value, dict) or not all(isinstance(each, str) for each in value.values()):
+        raise ConfigError(f'{path}: [{name}] `severity` must be a table, such as {{ unused-dependency = "warning" }}')
+    return value
 
 
 def _table(path: Path, data: dict[str, Any], name: str) -> dict[str, Any]:
@@ -92,7 +133,21 @@ def _table(path: Path, data: dict[str, Any], name: str) -> dict[str, Any]:
 def _known(path: Path, name: str, table: dict[str, Any], keys: set[str]) -> None:
     for key in table:
         if key not in keys:
-            raise ConfigError(f"{path}: [{name}] has no `{key}`; known are {', '.join(sorted(keys))}")
+            raise ConfigError(f"{path}: [{name}] has no `{key}`{_near(key, keys)}; known are {', '.join(sorted(keys))}")
+
+
+def _near(key: str, keys: set[str]) -> str:
+    from difflib import get_close_matches
+
+    close = get_close_matches(key, sorted(keys), 1)
+    return f", did you mean `{close[0]}`" if close else ""
+
+
+def _string(path: Path, table: dict[str, Any], key: str) -> str:
+    value = table.get(key, "")
+    if not isinstance(value, str):
+        raise ConfigError(f"{path}: `{key}` must be a string")
+    return value
 
 
 def _strings(path: Path, table: dict[str, Any], key: str) -> tuple[str, ...]:

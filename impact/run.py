@@ -4,90 +4,204 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
+from contextlib import contextmanager
 from pathlib import Path
 
-from .check import Options, __version__, check as run_check
+from .check import Checked, CheckError, Options, __version__, crash, open_workspace
+from .check import run as run_check
 from .config import ConfigError
-from .findings import SettingsError, baseline as baseline_text, fails
-from .report.report import Report
+from .findings import SettingsError, fails
+from .report.report import Coverage, Report
 from .targets.distro import TargetError
 from .targets.snapshot import SnapshotError
-from .tree import TreeError
+from .tree import TreeError, WorkingTree, shown
 
-_OUR_ERRORS = (ConfigError, SettingsError, TargetError, SnapshotError, TreeError)
+FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
+FAIL_ON = ("error", "warning", "note", "never")
+_OUR_ERRORS = (CheckError, ConfigError, SettingsError, TargetError, SnapshotError, TreeError)
+# Set by people who work on rosimpact itself: an unforeseen error then comes with its traceback.
+_DEBUG = "ROSIMPACT_DEBUG"
 
 
-def failed(message: str, format: str = "text") -> int:
-    """Prints why the tool failed; valid JSON is printed all the same. Returns 2."""
-    print(f"rosimpact: {message}", file=sys.stderr)
-    if format == "json":
-        from .report.json import failure
+class Failed(Exception):
+    """The command ends here, with status 2; the text says why and what to do."""
 
-        print(failure(__version__, "", message))
+
+@contextmanager
+def told(path: object = ""):
+    """Turns every error that can be foreseen, and at last any other, into Failed. path: what an error without a file of
+    its own is about."""
+    try:
+        yield
+    except Failed:
+        raise
+    except _OUR_ERRORS as error:
+        raise Failed(str(error)) from None
+    except OSError as error:
+        where = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else str(path)
+        raise Failed(f"{shown(where)}: {error.strerror or error}; check that it can be read and written") from None
+    except Exception as error:
+        if os.environ.get(_DEBUG):
+            raise
+        raise Failed(crash(error)) from None
+
+
+def failed(message: str, format: str = "text", output: Path | None = None) -> int:
+    """Says why the tool failed, in the format asked for too, so that valid JSON is printed all the same. Returns 2."""
+    _say(f"rosimpact: {message}")
+    if format in FORMATS and format != "text":
+        text = render(Report(__version__, "", (), (), Coverage(), failure=message), format, notes=False)
+        try:
+            _deliver(text, output)
+        except Failed:
+            _write(text)
     return 2
 
 
 def check(
-    path: Path, *, targets, format, output, rev, base, select, ignore, fail_on, notes, preview, baseline, write_baseline,
-    fix, diff, config, jobs, quiet,
+    path: Path, *, targets, format, output, rev, base, select, ignore, fail_on, notes, preview, baseline,
+    write_baseline, prune_baseline, fix, diff, config, jobs, quiet,
 ) -> int:  # fmt: skip
-    """Runs the check and prints its report. Returns the exit status: 0, 1 (findings) or 2 (failed, nothing analysed)."""
-    from .check import CheckError
-    from .cli import FORMATS
-
-    if format not in FORMATS:
-        return failed(f"--format {format}: unknown; choose one of {', '.join(FORMATS)}")
-    if fail_on not in ("", "error", "warning", "note", "never"):
-        return failed(f"--fail-on {fail_on}: unknown; choose error, warning, note or never", format)
+    """Runs the check and prints its report. Returns the exit status: 0, 1 (findings) or 2 (failed)."""
     try:
-        known = baseline.read_text(encoding="utf-8") if baseline else ""
-        options = Options(targets, rev, base, select, ignore, preview, jobs, config, known)
-        report = run_check(path, options, None if quiet else _progress())
-    except (CheckError, *_OUR_ERRORS) as error:
-        return failed(str(error), format)
-    except OSError as error:
-        return failed(f"{error.filename or path}: {error.strerror or error}; check that it can be read", format)
-    except RecursionError:
-        return failed("a file nests too deeply to be analysed; see --format json for what was read so far", format)
-    if report.failure:
-        print(f"rosimpact: {report.failure}", file=sys.stderr)
-    if write_baseline:
-        write_baseline.write_text(baseline_text(report.findings), encoding="utf-8")
-        print(f"{write_baseline}: {len(report.findings)} findings", file=sys.stderr)
-        return 2 if report.failure else 0
-    if fix or diff:
-        return _fix(path, report, diff)
-    text = render(report, format, notes, output is None)
-    if output is not None:
-        output.write_text(text, encoding="utf-8", errors="surrogateescape")
-    else:
-        _write(text)
-    if report.failure:
+        with told(path):
+            if format not in FORMATS:
+                raise Failed(f"--format {format}: unknown; choose one of {', '.join(FORMATS)}")
+            if fail_on not in ("", *FAIL_ON):
+                raise Failed(f"--fail-on {fail_on}: unknown; choose one of {', '.join(FAIL_ON)}")
+            if prune_baseline and baseline is None:
+                raise Failed("--prune-baseline: needs the baseline to prune; give it with --baseline")
+            known = _baseline(baseline)
+            options = Options(targets, rev, base, select, ignore, preview, jobs, config, known)
+            checked = run_check(path, options, None if quiet else _progress())
+            incomplete = False
+            if fix and not diff:
+                incomplete = not _fixed(path, checked)
+                checked = run_check(path, options, None)
+            report = checked.report
+            if report.failure and (format != "text" or output or diff or write_baseline):
+                _say(f"rosimpact: {report.failure}")
+            if prune_baseline and report.packages:
+                _prune(baseline, known, report)
+            if write_baseline:
+                return _new_baseline(write_baseline, report)
+            _deliver(_patch(checked) if diff else render(report, format, notes, output, _prefix(path, checked)), output)
+            if format == "github" and not diff:
+                from .report.github import write_step_summary
+
+                write_step_summary(report, os.environ)
+    except Failed as error:
+        return failed(str(error), format, output)
+    if report.failure or incomplete:
         return 2
-    threshold = fail_on or load_fail_on(path, config)
-    return 0 if threshold == "never" else int(fails(report.findings, threshold))
+    return int(fails(report.findings, fail_on or checked.config.fail_on or "error"))
 
 
-def load_fail_on(path: Path, config: Path | None) -> str:
-    """The threshold of rosimpact.toml, `error` without one."""
-    from .config import load
+def _baseline(file: Path | None) -> str:
+    """The text of a baseline file, checked, so that a wrong one is named before the work starts."""
+    if file is None:
+        return ""
+    from .findings import known_from
 
-    return load(path if path.is_dir() else path.parent, config).fail_on or "error"
+    try:
+        text = file.read_bytes()
+        known_from(text)
+        return text.decode("utf-8-sig")
+    except OSError as error:
+        raise Failed(f"{file}: {error.strerror}; write a baseline with --write-baseline {file}") from None
+    except (SettingsError, UnicodeDecodeError) as error:
+        raise Failed(f"{file}: {error}") from None
 
 
-def render(report: Report, format: str, notes: bool, to_terminal: bool) -> str:
-    """The report in one of the formats."""
+def _new_baseline(file: Path, report: Report) -> int:
+    """Writes all of today's findings, those that an older baseline knows included."""
+    from .findings import baseline, in_order
+
+    if not report.packages:
+        raise Failed(f"{file}: not written, since nothing was analysed")
+    found = in_order([*report.findings, *report.known])
+    _save(file, baseline(found))
+    _say(f"{file}: {len(found)} findings")
+    return 2 if report.failure else 0
+
+
+def _prune(file: Path, known: str, report: Report) -> None:
+    """Takes what is cured out of a baseline file."""
+    from .findings import known_from, pruned
+
+    text, gone = pruned(known_from(known), [*report.findings, *report.known])
+    if gone:
+        _save(file, text)
+    _say(f"{file}: {gone} cured, taken out")
+
+
+def _fixed(path: Path, checked: Checked) -> bool:
+    """Writes the fixes of a check. Returns whether all that could be made were written."""
+    from . import fix
+
+    if not isinstance(checked.tree, WorkingTree):
+        raise Failed("--fix: a revision cannot be changed; leave --rev out, or print the changes with --diff")
+    applied = _applied(checked)
+    done = 0
+    for name, data in applied.files.items():
+        try:
+            fix.write(path / name, data)
+            done += 1
+        except OSError as error:
+            _say(f"rosimpact: {shown(name)}: not fixed, it cannot be written: {error.strerror}")
+    for edit, reason in applied.refused:
+        _say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
+    _say(f"{done} {'file' if done == 1 else 'files'} changed")
+    return done == len(applied.files)
+
+
+def _applied(checked: Checked):
+    from . import fix
+    from .check import reader
+
+    return fix.apply(fix.fixes(finding for finding in checked.report.findings if finding.new), reader(checked.tree))
+
+
+def _patch(checked: Checked) -> str:
+    """What the fixes would change, as `git apply` reads it."""
+    from . import fix
+    from .check import reader
+
+    read = reader(checked.tree)
+    applied = _applied(checked)
+    for edit, reason in applied.refused:
+        _say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
+    return "".join(fix.unified_diff(name, read(name) or b"", data) for name, data in applied.files.items())
+
+
+def _prefix(path: Path, checked: Checked) -> str:
+    """The workspace's folder relative to the repository's root, which annotations need."""
+    root = os.environ.get("GITHUB_WORKSPACE") or checked.tree.repositories.get("")
+    if not root:
+        return ""
+    inside = os.path.relpath(os.path.realpath(path), os.path.realpath(root))
+    return "" if inside == "." or inside.startswith("..") else inside.replace(os.sep, "/")
+
+
+def render(report: Report, format: str, notes: bool, output: Path | None = None, prefix: str = "") -> str:
+    """The report in one of the formats. output: the file it goes to, which has no colours and takes any sign."""
     if format == "text":
         from .report import text
 
         severities = ("error", "warning", "note") if notes else ("error", "warning")
-        return text.render(report, text.style_for(sys.stdout if to_terminal else open(os.devnull), severities=severities))
+        style = (
+            text.PLAIN._replace(severities=severities) if output else text.style_for(sys.stdout, severities=severities)
+        )
+        return text.render(report, style)
+    if format == "github":
+        from .report import github
+
+        return github.render(report, prefix)
     if format == "json":
         from .report import json as reporter
     elif format == "sarif":
         from .report import sarif as reporter
-    elif format == "github":
-        from .report import github as reporter
     elif format == "markdown":
         from .report import markdown as reporter
     else:
@@ -95,13 +209,46 @@ def render(report: Report, format: str, notes: bool, to_terminal: bool) -> str:
     return reporter.render(report)
 
 
+def schema() -> int:
+    """Prints the JSON schema of the JSON report."""
+    from .report.json import schema as text
+
+    _write(text())
+    return 0
+
+
+def _deliver(text: str, output: Path | None) -> None:
+    """Writes a text to the file asked for, or to standard output. Raises Failed when the file cannot be written."""
+    if output is None:
+        _write(text)
+    else:
+        _save(output, text)
+
+
+def _save(file: Path, text: str) -> None:
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(_bytes(text))
+    except OSError as error:
+        raise Failed(f"{file}: cannot be written: {error.strerror}; give another file") from None
+
+
+def _bytes(text: str) -> bytes:
+    return (text if text.endswith("\n") or not text else text + "\n").encode("utf-8", "surrogateescape")
+
+
 def _write(text: str) -> None:
-    data = text if text.endswith("\n") or not text else text + "\n"
-    sys.stdout.buffer.write(data.encode("utf-8", "backslashreplace"))
+    sys.stdout.flush()
+    sys.stdout.buffer.write(_bytes(text))
     sys.stdout.flush()
 
 
-def _progress():
+def _say(text: str) -> None:
+    """A line for people, on standard error, whatever signs it can show."""
+    print(text.encode("utf-8", "backslashreplace").decode("utf-8"), file=sys.stderr)
+
+
+def _progress() -> Callable[[int, int], None] | None:
     """A line on standard error that is rewritten while files are parsed; None when nobody watches."""
     if not sys.stderr.isatty():
         return None
@@ -113,28 +260,6 @@ def _progress():
         sys.stderr.flush()
 
     return show
-
-
-def _fix(path: Path, report: Report, diff: bool) -> int:
-    from . import fix
-
-    def read(name: str) -> bytes | None:
-        try:
-            return (path / name).read_bytes()
-        except OSError:
-            return None
-
-    applied = fix.apply(fix.fixes(report.findings), read)
-    for name, data in applied.files.items():
-        if diff:
-            _write(fix.unified_diff(name, read(name) or b"", data))
-        else:
-            fix.write(path / name, data)
-    for edit, reason in applied.refused:
-        print(f"{edit[0].path if edit else path}: not changed: {reason}", file=sys.stderr)
-    if not diff:
-        print(f"{len(applied.files)} files changed", file=sys.stderr)
-    return 0
 
 
 def explain(name: str | None) -> int:
@@ -154,7 +279,10 @@ def explain(name: str | None) -> int:
         from difflib import get_close_matches
 
         close = get_close_matches(name, rules, 1)
-        return failed(f"no rule is called `{name}`" + (f"; did you mean `{close[0]}`?" if close else "; `rosimpact explain` lists them"))
+        return failed(
+            f"no rule is called `{name}`; "
+            + (f"did you mean `{close[0]}`?" if close else "`rosimpact explain` lists them")
+        )
     print(rules[name].documentation.rstrip())
     return 0
 
@@ -163,16 +291,13 @@ def env_capture(output: Path | None) -> int:
     """Writes this machine as a target."""
     from .targets.capture import capture, to_json
 
-    text = to_json(capture())
-    if output is None:
-        _write(text)
-        return 0
     try:
-        output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(text, encoding="utf-8")
-    except OSError as error:
-        return failed(f"{output}: cannot be written: {error.strerror}; give another file")
-    print(f"{output}: written; use it with --target {output}", file=sys.stderr)
+        with told():
+            _deliver(to_json(capture()), output)
+    except Failed as error:
+        return failed(str(error))
+    if output is not None:
+        _say(f"{output}: written; use it with --target {output}")
     return 0
 
 
@@ -183,31 +308,38 @@ def env_diff(first: str, second: str, path: Path | None, format: str) -> int:
     from .targets.resolve import parse_target
 
     try:
-        config = load(path if path is not None else Path("."))
-        a, b = parse_target(first, config), parse_target(second, config)
-        used = _used(path, (first,)) if path is not None else {}
-    except _OUR_ERRORS as error:
-        return failed(str(error), format)
-    rows = [d._replace(used_by=used.get(d.name, ())) for d in differences(a, b)]
-    rows.sort(key=lambda d: (not d.used_by, d.kind != "library", d.name))
+        with told(path or ""):
+            _text_or_json(format)
+            config = load(path if path is not None else Path())
+            a, b = parse_target(first, config), parse_target(second, config)
+            used = _used(path, (first, second)) if path is not None else {}
+            rows = [d._replace(used_by=used.get(d.name, ())) for d in differences(a, b)]
+    except Failed as error:
+        return failed(str(error))
+    rows.sort(key=lambda d: (not d.used_by, d.kind not in ("distro", "platform", "date"), d.kind != "library", d.name))
     if format == "json":
         import json
 
         _write(json.dumps([d._asdict() for d in rows], indent=1))
         return 0
     width = max((len(d.name) for d in rows), default=0)
+    lines = []
     for d in rows:
         mark = "*" if d.used_by else " "
         users = f"  used by {', '.join(d.used_by[:4])}{' …' if len(d.used_by) > 4 else ''}" if d.used_by else ""
-        print(f"{mark} {d.name:{width}s}  {d.first or '-':>14s}  {d.second or '-':>14s}{users}")
-    print(f"{len(rows)} differences" + (f", {sum(bool(d.used_by) for d in rows)} used by {path}" if path is not None else ""))
+        lines.append(f"{mark} {d.name:{width}s}  {d.first or '-':>14s}  {d.second or '-':>14s}{users}")
+    used_here = f", {sum(bool(d.used_by) for d in rows)} used by {path}" if path is not None else ""
+    _write("\n".join([*lines, f"{len(rows)} differences{used_here}"]))
     return 0
+
+
+def _text_or_json(format: str) -> None:
+    if format not in ("text", "json"):
+        raise Failed(f"--format {format}: unknown; choose text or json")
 
 
 def _used(path: Path, targets: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
     """Names the workspace declares or uses, to the packages that do."""
-    from .check import open_workspace
-
     used: dict[str, set[str]] = {}
     with open_workspace(path, Options(targets=targets)) as opened:
         for view in opened.views:
@@ -223,54 +355,106 @@ def _used(path: Path, targets: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
 
 
 def why(name: str, path: Path, targets: tuple[str, ...], format: str) -> int:
-    """Prints who provides a name on each target, in which version, since when, and who in the workspace uses it."""
+    """Prints who provides a name on each target, in which version, since when, and who in the workspace uses it.
+
+    Returns 1 when nobody provides it on some target."""
     from .why import answers, as_text
 
     try:
-        found = answers(name, path, targets)
-    except _OUR_ERRORS as error:
-        return failed(str(error), format)
+        with told(path):
+            _text_or_json(format)
+            found = answers(name, path, targets)
+    except Failed as error:
+        return failed(str(error))
     if format == "json":
         import json
 
-        _write(json.dumps([a._asdict() for a in found], indent=1))
+        _write(json.dumps([a._asdict() for a in found], indent=1, default=lambda offer: offer._asdict()))
     else:
         _write(as_text(name, found))
-    return 0 if any(a.offers for a in found) else 1
+    answered = {a.target for a in found if any(offer.kind != "absent" for offer in a.offers)}
+    return int(answered != {a.target for a in found})
 
 
-def data_status() -> int:
-    """Prints the date and contents of the shipped data."""
+def data_status(format: str = "text") -> int:
+    """Prints date, origin and contents of the distro data in use."""
     from .targets.build_data import status
 
-    _write(status())
+    try:
+        with told():
+            _text_or_json(format)
+            found = status()
+    except Failed as error:
+        return failed(str(error))
+    if format == "json":
+        import json
+
+        _write(json.dumps(found._asdict(), indent=1, default=str))
+        return 0
+    origin = "updated" if found.updated else "shipped with rosimpact"
+    lines = [f"distro data of {found.date}, {origin}, {found.packed / 1e6:.1f} MB, in {found.folder}"]
+    lines += [f"from {name} {commit}" for name, commit in found.sources.items()]
+    if found.last_syncs:
+        lines.append("newest syncs: " + ", ".join(f"{name} {day}" for name, day in sorted(found.last_syncs.items())))
+    _write("\n".join(lines))
     return 0
 
 
-def data_build(rosdistro: Path, output: Path, caches: Path | None) -> int:
+def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path | None) -> int:
     """Builds the snapshot from git repositories."""
-    from .targets.build_data import build
+    from .targets.build_data import BuildError, build
+    from .targets.snapshot import cache_folder
 
     try:
-        build(rosdistro, output, caches, progress=_step())
-    except (*_OUR_ERRORS, OSError) as error:
+        with told(rosdistro):
+            try:
+                built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, _step())
+            except BuildError as error:
+                raise Failed(str(error)) from None
+    except Failed as error:
         return failed(str(error))
+    _write(
+        f"data of {built.date} in {output}: {built.releases:,} releases, {built.manifests:,} manifests, "
+        f"{built.rules:,} rosdep rules, {built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)"
+    )
+    for name, count in built.unreadable.items():
+        _say(f"{name}: {count} versions of its distribution file could not be read")
     return 0
 
 
 def data_update() -> int:
     """Refreshes the snapshot over the network."""
-    from .targets.build_data import update
+    from .targets.build_data import BuildError, update
 
     try:
-        _write(update(progress=_step()))
-    except (*_OUR_ERRORS, OSError) as error:
+        with told():
+            try:
+                found = update(report=_step())
+            except BuildError as error:
+                raise Failed(str(error)) from None
+    except Failed as error:
         return failed(str(error))
+    for failure in found.failures:
+        _say(f"not updated: {failure}")
+    _write(
+        f"data of {found.date} in {found.folder}: {len(found.syncs)} new syncs, {found.releases:,} releases, "
+        f"{found.manifests:,} manifests, {found.rules:,} rosdep rules"
+    )
     return 0
 
 
-def _step():
-    def show(text: str) -> None:
-        print(text, file=sys.stderr)
+def _step() -> Callable[[str, int, int], None]:
+    """Progress of long work: a line that is rewritten on a terminal, one line a step elsewhere."""
+    last = ""
+
+    def show(what: str, done: int, total: int) -> None:
+        nonlocal last
+        count = f" {done}/{total}" if total else ""
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r\x1b[K{what}{count}")
+            sys.stderr.flush()
+        elif what != last:
+            _say(what)
+        last = what
 
     return show

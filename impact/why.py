@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from .check import Options, open_workspace
 from .model.view import View
+from .targets.distro import DistroTarget
 
 
 class Offer(NamedTuple):
@@ -21,7 +22,7 @@ class Offer(NamedTuple):
 
 class Answer(NamedTuple):
     """What a name is on one target. as_what: header, CMake package, Python module, executable, package or key.
-    used: `path:line` of uses in the workspace with the package. undeclared: packages that use it and do not declare it."""
+    used: `path:line` of uses in the workspace. undeclared: packages that use it and do not declare it."""
 
     target: str
     as_what: str
@@ -55,7 +56,9 @@ def _answers(view: View, name: str) -> list[Answer]:
         found.insert(0, (kind, (_offer(view, name, ""),) if view.available(name) else ()))
     used, undeclared = _uses(view, name)
     changes = tuple(
-        f"{c.kind}: `{c.old}`" + (f" → `{c.new}`" if c.new else "") + f" ({c.state}{', since ' + c.since if c.since else ''})"
+        f"{c.kind}: `{c.old}`"
+        + (f" → `{c.new}`" if c.new else "")
+        + f" ({c.state}{', since ' + c.since if c.since else ''})"
         for c in view.target.changes()
         if name in (c.old, c.new, c.package) or name == c.old.rsplit("::", 1)[-1]
     )
@@ -71,13 +74,27 @@ def _offer(view: View, name: str, package: str) -> Offer:
         return Offer("workspace", name, here.manifest.version, "", here.path)
     version = target.version(name)
     if version is not None:
-        return Offer("package", name, version, target.since(name), "")
+        return Offer("package", name, version, target.since(name) if isinstance(target, DistroTarget) else "", "")
     resolution = target.resolve(name)
     if resolution is not None:
-        libraries = [f"{library} {target.library(library)}" for library in view.libraries_of(name) if target.library(library)]
-        return Offer("key", name, ", ".join(libraries), "", f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}")
+        libraries = [
+            f"{library} {target.library(library)}" for library in view.libraries_of(name) if target.library(library)
+        ]
+        return Offer(
+            "key",
+            name,
+            ", ".join(libraries),
+            "",
+            f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}",
+        )
     last = target.last_distro(name)
-    return Offer("absent", name, "", "", f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there")
+    return Offer(
+        "absent",
+        name,
+        "",
+        "",
+        f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there",
+    )
 
 
 def _uses(view: View, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -105,7 +122,12 @@ def as_text(name: str, found: list[Answer]) -> str:
     for answer in found:
         lines.append(f"{answer.target}: `{name}` as {answer.as_what}")
         for offer in answer.offers:
-            parts = [f"  {offer.kind} {offer.name}".rstrip(), offer.version, f"since {offer.since}" if offer.since else "", offer.note]
+            parts = [
+                f"  {offer.kind} {offer.name}".rstrip(),
+                offer.version,
+                f"since {offer.since}" if offer.since else "",
+                offer.note,
+            ]
             lines.append("  ".join(p for p in parts if p))
         if not answer.offers:
             lines.append("  nobody is known to provide it there")

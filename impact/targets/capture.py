@@ -30,7 +30,8 @@ LIBRARIES: dict[str, tuple[str, ...]] = {
     "gtest": ("libgtest-dev",), "ffmpeg-libavcodec": ("libavcodec-dev",), "nlohmann-json": ("nlohmann-json3-dev",),
     "numpy": ("python3-numpy",), "octomap": ("liboctomap-dev",), "opencv": ("libopencv-dev", "libopencv-core-dev"),
     "pcl": ("libpcl-dev",), "protobuf": ("libprotobuf-dev",), "python3": ("python3",), "qt5": ("qtbase5-dev",),
-    "qt6": ("qt6-base-dev",), "spdlog": ("libspdlog-dev",), "tinyxml2": ("libtinyxml2-dev",), "vtk": ("libvtk9-dev", "libvtk7-dev", "libvtk6-dev"),
+    "qt6": ("qt6-base-dev",), "spdlog": ("libspdlog-dev",), "tinyxml2": ("libtinyxml2-dev",),
+    "vtk": ("libvtk9-dev", "libvtk7-dev", "libvtk6-dev"),
     "yaml-cpp": ("libyaml-cpp-dev",), "zeromq": ("libzmq3-dev",),
 }  # fmt: skip
 
@@ -103,9 +104,11 @@ def capture(
     libraries.update({name: version for name, version in tools.items() if name in ("gcc", "cmake")})
     libraries["python3"] = machine.python_version()
     return Machine(
-        environment.get("ROS_DISTRO") or distro or _only_distro(root), datetime.date.today().isoformat(), _platform(root),
-        dict(sorted(packages.items())), dict(sorted(libraries.items())), dict(sorted(debian.items())), _pip(), dict(sorted(tools.items())),
-    )  # fmt: skip
+        environment.get("ROS_DISTRO") or distro or _only_distro(root),
+        datetime.date.today().isoformat(),
+        _platform(root),
+        *(dict(sorted(each.items())) for each in (packages, libraries, debian, _pip(), tools)),
+    )
 
 
 def to_json(captured: Machine) -> str:
@@ -160,7 +163,7 @@ class Difference(NamedTuple):
 
 
 def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] = ()) -> list[Difference]:
-    """What differs between two targets: distro, platform, libraries, and released packages (all of both, or `names`)."""
+    """What differs between two targets: distro, platform, libraries, released packages (all of both, or `names`)."""
     found = []
     for kind, a, b in (("distro", first.distro, second.distro), ("platform", first.platform, second.platform),
                        ("date", first.date, second.date)):  # fmt: skip
@@ -220,7 +223,8 @@ def _platform(root: Path) -> str:
     except OSError:
         return ""
     fields = dict(re.findall(r'^(\w+)="?([^"\n]*)"?$', text, re.M))
-    return f"{fields.get('ID', '')} {fields.get('VERSION_CODENAME') or fields.get('UBUNTU_CODENAME') or fields.get('VERSION_ID', '')}".strip()
+    release = fields.get("VERSION_CODENAME") or fields.get("UBUNTU_CODENAME") or fields.get("VERSION_ID", "")
+    return f"{fields.get('ID', '')} {release}".strip()
 
 
 def _pip() -> dict[str, str]:
