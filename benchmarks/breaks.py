@@ -12,6 +12,7 @@ import argparse
 import collections
 import importlib.util
 import json
+import os
 import pathlib
 import sys
 import time
@@ -53,6 +54,11 @@ def start(score_path: str, repos: str, breaks: str | None) -> None:
     score.tree, score.check = tree, check
 
 
+def args_notes() -> list[str]:
+    """Rules whose notes are kept in the output too, from the environment: for judging whether they deserve more."""
+    return os.environ.get("NOTES_OF", "").split()
+
+
 def one_break(record):
     row = _STATE["score"].score_break(_STATE["args"], record)
     row["record"] = record
@@ -66,7 +72,7 @@ def one_negative(record):
         own = lambda path: next((n for at, n in folders if not at or path.startswith(at + "/")), None)  # noqa: E731
         row["said"] = [
             (f["severity"], f["rule"], own(f["path"]), f["path"], f["line"], f["subject"], f["message"])
-            for f in _STATE["last"] if f["severity"] != "note" and (own(f["path"]) or "/" not in f["path"])
+            for f in _STATE["last"] if (f["severity"] != "note" or f["rule"] in args_notes()) and (own(f["path"]) or "/" not in f["path"])
         ]  # fmt: skip
     return row
 

@@ -134,7 +134,7 @@ class Workspace:
         """Python module name to the packages of the workspace that have one of that name."""
         found: dict[str, list[str]] = {}
         for package in self:
-            for module in {package.name, *package.digest.modules}:
+            for module in {package.name, *importable(package)}:
                 found.setdefault(module, []).append(package.name)
         return found
 
@@ -173,6 +173,23 @@ class Workspace:
         if rest.rsplit("/", 1)[-1] in ("visibility_control.h", "visibility_control.hpp", "version.h", "version.hpp", "export.h"):
             return True
         return package.is_interface_package and is_interface_header(rest, self.interface_names.get(package.name, ()))
+
+
+def importable(package: Package) -> set[str]:
+    """Top-level Python modules that others can import once the package is installed: `name/__init__.py` and `name.py` in
+    the package's folder or its src/, and what setup.py lists."""
+    found = set()
+    for path in package.digest.files:
+        if not path.endswith(".py"):
+            continue
+        parts = path[len(package.path) :].lstrip("/").split("/")
+        if parts[0] == "src":
+            parts = parts[1:]
+        if len(parts) == 2 and parts[1] == "__init__.py":
+            found.add(parts[0])
+    for _, setup in package.digest.setup:
+        found.update(name.split(".")[0].split("/")[-1] for name in setup.packages if name and name != "*")
+    return found
 
 
 _ROS1_SUFFIXES = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback", "Request", "Response", "")

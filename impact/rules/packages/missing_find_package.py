@@ -43,6 +43,8 @@ def missing_find_package(view: View):
         reachable = view.spread(found)
         closure = view.closure(package)
         told = set()
+        yield from _find_modules(view, package)
+        yield from _no_components(view, package)
         for at, name in _given_to_targets(view, package):
             if name in reachable or name in told or name in package.digest.modules or name == package.name:
                 continue
@@ -73,6 +75,42 @@ def missing_find_package(view: View):
             yield Hit(need.at, name, f"`{need.subject}` is included and CMake never looks for `{name}`",
                       f"add find_package({name} REQUIRED) and give it to the target", package.name,
                       severity="warning" if direct and ros and not header_only and (need.targets or need.public) else "note")  # fmt: skip
+
+
+# Find modules that cmake_modules puts on CMake's path, once it is found itself. Catkin did so until Hydro.
+_FIND_MODULES = frozenset({"Eigen", "NUMPY", "TBB", "TinyXML", "TinyXML2", "UUID", "Xenomai", "GSL"})
+
+
+def _find_modules(view: View, package):
+    """find_package calls whose find module comes with a package that is not found before."""
+    if package.build_type != "catkin" or view.target.ros != 1 or view.target.distro in ("groovy", "hydro"):
+        return
+    names = {f.name for f in package.build.found}
+    own = {p.rsplit("/", 1)[-1] for p in package.files if p.endswith(".cmake")}
+    for found in package.build.found:
+        if found.name not in _FIND_MODULES or found.how != "find_package" or f"Find{found.name}.cmake" in own:
+            continue
+        if "cmake_modules" in names or view.providers.cmake_platforms(found.name) or not view.active(found.conditions):
+            continue
+        sure = found.required and view.certain(found.conditions)
+        yield Hit(found.at, "cmake_modules", f"`Find{found.name}.cmake` comes with `cmake_modules`, which CMake never looks for",
+                  "add `cmake_modules` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml", package.name,
+                  severity="error" if sure else "warning" if found.required else "note")  # fmt: skip
+
+
+def _no_components(view: View, package):
+    """Components asked of catkin that are system libraries on the target, which catkin cannot find as components."""
+    for found in package.build.found:
+        name = found.name
+        if found.how != "catkin" or name == "catkin" or not view.certain(found.conditions):
+            continue
+        if name in view.workspace.packages or view.target.version(name) is not None or view.target.resolve(name) is None:
+            continue
+        if view.providers.cmake_platforms(name) or any(p.kind == "system" for p in view.cmake(name)):
+            continue  # a plain CMake package of the system answers, and catkin takes it
+        yield Hit(found.at, name, f"`{name}` is a system library in {view.target.distro} and no catkin component",
+                  f"find_package({name} REQUIRED), or pkg-config, on its own", package.name,
+                  severity="warning")  # fmt: skip
 
 
 def _folded(name: str) -> str:

@@ -167,7 +167,7 @@ def _catkin_order(view: View, package):
         names = sorted({t.name for _, t in uses})
         yield Hit(target.at, f"{head}_{kind}",
                   f"{_several(names)} `{include.path}` and may be built before it is generated",
-                  f"add_dependencies({names[0]} {cure})", package.name, severity="warning" if own else "note")  # fmt: skip
+                  f"add_dependencies({names[0]} {cure})", package.name)  # fmt: skip
 
 
 def _several(names: list[str]) -> str:

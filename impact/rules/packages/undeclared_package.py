@@ -30,8 +30,9 @@ from ..rule import Hit, rule
 
 
 # Tools that people start on their own desk.
-_VIEWERS = ("rviz", "rqt", "image_view", "joint_state_publisher_gui", "plotjuggler", "teleop_", "joy", "moveit_setup_assistant",
+_VIEWERS = ("rviz", "rqt", "image_view", "joint_state_publisher", "moveit_ros_benchmarks", "joint_state_publisher_gui", "plotjuggler", "teleop_", "joy", "moveit_setup_assistant",
             "urdf_tutorial", "turtlesim")  # fmt: skip
+_ON_THE_DESK = frozenset("python3-matplotlib python-matplotlib python3-pytest python-pytest python-gtk2 python3-tk python-tk".split())
 # The macros that make tests bring these headers.
 _WITH_TESTS = ("gtest/", "gmock/")
 # Whoever starts a launch file has these: the launch tool itself brings them.
@@ -123,7 +124,7 @@ def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
         loud = need.required and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
         return "warning" if loud else "note"
     if need.role == "test" or need.how == "import":
-        return "warning" if need.required else "note"
+        return "warning" if need.required and name not in _ON_THE_DESK else "note"
     if not need.certain:
         return "note"
     if blind or not view.target.knows_manifests or need.how == "include" and not need.targets:
