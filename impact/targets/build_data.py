@@ -101,14 +101,14 @@ def update(
 def build(
     rosdistro: Path,
     output: Path,
-    work: Path,
+    work: Path | None = None,
     meta_ros: Path | None = None,
     report: Report | None = None,
 ) -> Built:
     """Builds the snapshot from a clone of ros/rosdistro (bare or not, with its tags) and, where given, of ros/meta-ros.
 
-    output: the data folder to write into. work: a folder for what was read so far; a second run with it continues, also
-    with a newer clone. Raises BuildError when a repository is unusable.
+    output: the data folder to write into. work: a folder for what was read so far (None: one in the user's cache); a
+    second run with it continues, also with a newer clone. Raises BuildError when a repository is unusable.
     """
     from .build import git, keys, manifests, releases, write
     from .distro import version_key
@@ -128,6 +128,7 @@ def build(
     def blob(oid: str) -> bytes:
         return repository[oid].data
 
+    work = work or snapshots.cache_folder() / "build"
     work.mkdir(parents=True, exist_ok=True)
     histories = {}
     for row in distros:

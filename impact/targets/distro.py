@@ -148,7 +148,7 @@ class DistroTarget(Target):
         self.date = self._place_date(date, notes)
         self._cut, self.approximate = self._availability()
         self._rule_ts = _end_of_day(self.date)
-        self.platform = self._choose_platform(platform)
+        self.platform = self._choose_platform(platform, notes)
         self.notes = tuple(notes)
         self.name = name or (distro if date is None else f"{distro}@{date}")
         self._library_cells: dict[str, Library] | None = None
@@ -208,12 +208,20 @@ class DistroTarget(Target):
         )
         return (sync[0], False) if sync else (_end_of_day(self.date), True)
 
-    def _choose_platform(self, platform: str | None) -> str:
+    def _choose_platform(self, platform: str | None, notes: list[str]) -> str:
+        """The platform asked for, else the main one that the synced packages were built for."""
         if platform:
             return normal_platform(platform)
+        built_for, now = self._main_platform(self._cut), self._main_platform(_end_of_day(self.date))
+        if built_for != now:
+            notes.append(
+                f"{self.distro} had moved to {now}, not yet synced there: answered as of its last on {built_for}"
+            )
+        return built_for
+
+    def _main_platform(self, ts: int) -> str:
         row = self._data.row(
-            "SELECT names FROM platforms WHERE distro = ? AND ts <= ? ORDER BY ts DESC LIMIT 1",
-            (self._id, _end_of_day(self.date)),
+            "SELECT names FROM platforms WHERE distro = ? AND ts <= ? ORDER BY ts DESC LIMIT 1", (self._id, ts)
         ) or self._data.row("SELECT names FROM platforms WHERE distro = ? ORDER BY ts LIMIT 1", (self._id,))
         supported = row[0].split(",") if row and row[0] else []
         if self._facts and (self._facts.platform in supported or not supported):

@@ -11,6 +11,7 @@ import hashlib
 import os
 import sqlite3
 import threading
+import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -73,6 +74,7 @@ KINDS = {
 DATA = Path(__file__).parent / "data"
 CACHE_VARIABLE = "ROSIMPACT_CACHE"
 _FORMAT = 1
+_STALE = 3600
 
 
 class SnapshotError(Exception):
@@ -280,11 +282,18 @@ def _write(raw: bytes, facts: tuple[bytes, bytes], path: Path) -> None:
 
 
 def _forget_old(path: Path) -> None:
-    """Removes databases of earlier versions of the data; another run may still read one, which Unix allows."""
+    """Removes databases of earlier versions of the data, and what runs killed an hour ago or more left behind.
+
+    Another run may still read an old database, which Unix allows.
+    """
     for old in path.parent.glob("distros-*.sqlite"):
         if old.name != path.name:
             with contextlib.suppress(OSError):
                 old.unlink()
+    for part in path.parent.glob(".distros-*.part"):
+        with contextlib.suppress(OSError):
+            if part.stat().st_mtime < time.time() - _STALE:
+                part.unlink()
 
 
 def _deserializer(connection: sqlite3.Connection) -> Callable[[bytes], None] | None:

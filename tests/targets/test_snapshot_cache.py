@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -47,12 +48,16 @@ def test_a_broken_file_is_made_again(tmp_path, damage):
     assert answers(Snapshot(cache=tmp_path))
 
 
-def test_a_file_of_other_data_is_removed(tmp_path):
+def test_files_of_other_data_and_of_killed_runs_are_removed(tmp_path):
     (tmp_path / "distros-1-old-old.sqlite").write_bytes(b"")
     (tmp_path / "somebody-elses.sqlite").write_bytes(b"")
+    for name, age in ((".distros-killed.part", 7200), (".distros-at-work.part", 10)):
+        (tmp_path / name).write_bytes(b"")
+        os.utime(tmp_path / name, (time.time() - age,) * 2)
     assert answers(Snapshot(cache=tmp_path))
-    assert (tmp_path / "somebody-elses.sqlite").exists()
-    assert not (tmp_path / "distros-1-old-old.sqlite").exists()
+    names = {path.name for path in tmp_path.iterdir()}
+    assert {"somebody-elses.sqlite", ".distros-at-work.part"} < names
+    assert not names & {"distros-1-old-old.sqlite", ".distros-killed.part"}
 
 
 def test_without_a_writable_folder_it_lives_in_memory(tmp_path):
