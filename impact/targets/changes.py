@@ -1,6 +1,6 @@
 """Known upstream changes: what a version of a ROS package or platform library removed, renamed or stopped bringing along.
 
-The facts are in `data/changes.json`, reviewed, each with its source. A change is judged on a target by versions; for
+The facts are in `data/changes*.json`, reviewed, each with its source. A change is judged on a target by versions; for
 headers of ROS packages whose source trees are in the provider table, by what the very release has.
 """
 
@@ -93,22 +93,31 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @cache
 def _file() -> _File:
-    path = DATA / "changes.json"
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=_File)
-    except (OSError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    """All data/changes*.json together. A name that two files treat counts as in the first, in alphabetical order."""
+    changes: list[_Group] = []
+    transitive: list[_TransitiveGroup] = []
+    for path in sorted(DATA.glob("changes*.json")):
+        try:
+            file = msgspec.json.decode(path.read_bytes(), type=_File)
+        except (OSError, msgspec.MsgspecError) as error:
+            raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+        changes += file.changes
+        transitive += file.transitive
+    if not changes:
+        raise SnapshotError(f"{DATA}: no known changes there; install rosimpact again")
+    return _File(changes, transitive)
 
 
 @cache
 def all_rows() -> tuple[Row, ...]:
     """Every known change. Raises SnapshotError when the data file cannot be read."""
-    return tuple(
+    rows = [
         Row(g.kind, g.package, old, new, g.library, g.removed_in, g.back_in, g.deprecated_in, g.new_since, g.ambiguous,
             g.unless, g.source, g.note)
         for g in _file().changes
         for old, new in g.names.items()
-    )  # fmt: skip
+    ]  # fmt: skip
+    return tuple({(row.kind, row.package, row.old): row for row in reversed(rows)}.values())
 
 
 @cache
