@@ -103,8 +103,6 @@ def _file() -> _File:
             raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
         changes += file.changes
         transitive += file.transitive
-    if not changes:
-        raise SnapshotError(f"{DATA}: no known changes there; install rosimpact again")
     return _File(changes, transitive)
 
 

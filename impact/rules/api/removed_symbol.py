@@ -18,6 +18,7 @@ Use instead
 """
 
 from ...model.view import View
+from ...targets.changes import excuses
 from ..rule import Hit, rule
 
 _KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
@@ -30,12 +31,18 @@ def removed_symbol(view: View):
         if change.state == "removed" and change.old:
             (python if change.kind.startswith("python") else cpp).setdefault(change.old, change)
     for package in view:
+        included = None
         for use in package.digest.names:
             change = (python if use.language == "python" else cpp).get(use.text)
             if change is None and use.language == "cpp" and "::" in use.text:
                 change = cpp.get(use.text.rsplit("::", 1)[-1])
             if change is None or not view.active(use.conditions) or not view.concerned(package, change, use.at.path):
                 continue
+            endings = excuses(change)
+            if endings:
+                included = included or tuple(i.path for i in package.digest.includes)
+                if any(path.endswith(endings) for path in included):
+                    continue
             sure = use.role in ("build", "run") and view.certain(use.conditions) and change.kind != "api-changed"
             verb = "changed" if change.kind == "api-changed" else "is gone"
             yield Hit(use.at, use.text, f"`{use.text}` {verb} in {change.package} {change.version}".strip(),
