@@ -139,8 +139,8 @@ class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What the CMake of a package says. minimum: cmake_minimum_required's version and place. standard: the highest C++
     standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with its
-    place. standard_default_only: it is only set where the user or a toolchain has not chosen one. standard_by_flag: by a
-    -std= flag, which goes over what linked targets ask for; CMAKE_CXX_STANDARD does not.
+    place. standard_default_only: it is only set where the user or a toolchain has not chosen one. standard_by_flag: by
+    a -std= flag, which goes over what linked targets ask for; CMAKE_CXX_STANDARD does not.
     message_files: (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told.
     files: the CMake files read, relative to the root."""
 
@@ -191,14 +191,14 @@ def interpret(
     """Interprets the CMakeLists.txt of a package, and all that it includes, without building.
 
     All paths are posix paths relative to the workspace root, `` being the root. read gives the facts of a CMake file,
-    None when there is none; exists tells about files (what is a folder is asked through glob); glob(pattern, recursive)
-    lists the files that match a pattern whose last part may hold wildcards, in all folders below when recursive; neither
-    is relied upon outside of the package. package: its name in package.xml. extras: the CMake files that another package
-    of the workspace gives to those that find it, see extras_of().
+    None when there is none; exists tells about files (what is a folder is asked through glob); glob(pattern,
+    recursive) lists the files that match a pattern whose last part may hold wildcards, in all folders below when
+    recursive; neither is relied upon outside of the package. package: its name in package.xml. extras: the CMake files
+    that another package of the workspace gives to those that find it, see extras_of().
 
-    For ament_cmake_auto and ament_lint_auto, what package.xml declares: dependencies to build with (build and buildtool),
-    test_dependencies, and exported_dependencies (build_export, buildtool_export and exec; None counts all of
-    `dependencies` as exported).
+    For ament_cmake_auto and ament_lint_auto, what package.xml declares: dependencies to build with (build and
+    buildtool), test_dependencies, and exported_dependencies (build_export, buildtool_export and exec; None counts all
+    of `dependencies` as exported).
 
     Always returns; what could not be told or went beyond the bounds is in `unresolved`.
     """

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.impact.facts.cmake import extract
-from rosimpact.impact.model.build import Build, extras_of, interpret
+from rosimpact.impact.model.build import Build, Declared, extras_of, interpret
 from rosimpact.impact.model.cmake.conditions import Token, evaluate, version_key
 from rosimpact.impact.model.cmake.genex import reduced, rejoin
 from rosimpact.impact.model.cmake.interpreter import Interpreter
@@ -26,13 +26,12 @@ class Tree:
 
     def __init__(self, files):
         self.files = files
-        self.folders = {parent for path in files for parent in parents(path)}
 
     def read(self, path):
         return extract(self.files[path].encode()) if path in self.files else None
 
     def exists(self, path):
-        return path in self.files or path in self.folders
+        return path in self.files
 
     def glob(self, pattern, recursive):
         folder, _, last = pattern.rpartition("/")
@@ -42,11 +41,6 @@ class Tree:
             if fnmatch.fnmatchcase(posixpath.basename(path), last)
             and (posixpath.dirname(path) == folder or (recursive and path.startswith(folder + "/")))
         ]
-
-
-def parents(path):
-    while path := posixpath.dirname(path):
-        yield path
 
 
 def build(source, files=None, **options) -> Build:
@@ -112,12 +106,17 @@ FOUND = [
     ("if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/none)\nfind_package(A)\nendif()", []),
     ("if(EXISTS /opt/x)\nfind_package(A)\nendif()", ["A [EXISTS /opt/x]"]),
     ("ament_auto_find_build_dependencies()", ["rclcpp", "tf2"]),
+    ("ament_auto_find_build_dependencies(REQUIRED tf2)", ["tf2", "rclcpp"]),
+    ("ament_lint_auto_find_test_dependencies()", ["ament_lint_common"]),
+    ("if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/../elsewhere)\nfind_package(A)\nendif()", ["A [EXISTS pkg/../elsewhere]"]),
+    ("gz_find_package(A REQUIRED VERSION 1 PKGCONFIG a)", ["A"]),
 ]
 
 
 @pytest.mark.parametrize(("source", "expected"), FOUND)
 def test_found_under_which_condition(source, expected):
-    assert found(source, dependencies=("rclcpp", "tf2")) == expected
+    declared = dict(dependencies=("rclcpp", "tf2"), test_dependencies=("ament_lint_common",))
+    assert found(source, **declared) == expected
 
 
 SIGNATURES = [
@@ -437,8 +436,10 @@ UNRESOLVED = [
     ("set(T ab)\nforeach(i RANGE 40)\nset(T ${T}${T})\nendforeach()", "longer than"),
     (
         "foreach(a RANGE 999)\nforeach(b RANGE 999)\nset(x ${b})\nendforeach()\nendforeach()",
-        "more than 100,000 commands",
+        "more work than",
     ),
+    ("set(X ON)\n" + "while(X)\n" * 4 + "endwhile()\n" * 4, "more work than"),
+    ("foreach(i RANGE 990)\nlist(APPEND L a;b;c;d;e;f)\nset(M ${L} ${L} ${L})\nendforeach()", "more work than"),
     ("if(X)\nfind_package(A)", "never closed"),
     ("endif()\nfind_package(A)", "without if"),
     ("if(A)\n" * 5000, "too deeply"),
@@ -501,7 +502,10 @@ CONDITIONS = [
 def test_conditions_are_three_valued(text, expected):
     tokens = [Token(part, False, True, True) for part in text.split()]
     tree = Tree({})
-    assert evaluate(tokens, Interpreter("p", tree.read, tree.exists, tree.glob, "p", (), lambda name: ())) is expected
+    assert (
+        evaluate(tokens, Interpreter("p", tree.read, tree.exists, tree.glob, "p", Declared(), lambda name: ()))
+        is expected
+    )
 
 
 @pytest.mark.parametrize(
@@ -838,7 +842,7 @@ def test_same_messages_as_cmake_traces(name, tmp_path):
     subprocess.run(command, check=True, capture_output=True)
     expected = traced(trace)
     tree = Tree({"pkg/CMakeLists.txt": text})
-    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", (), lambda package: ())
+    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", Declared(), lambda package: ())
     run.said = []
     run.run()
     assert run.said == expected
@@ -902,7 +906,7 @@ def test_same_messages_as_cmake_traces_over_several_files(tmp_path):
     subprocess.run([*command, "-S", str(tmp_path / "pkg"), "-B", str(tmp_path / "b")], check=True, capture_output=True)
     expected = traced(trace, "pkg")
     tree = Tree({f"pkg/{path}": text for path, text in PROJECT.items()})
-    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", (), lambda package: ())
+    run = Recorder("pkg", tree.read, tree.exists, tree.glob, "pkg", Declared(), lambda package: ())
     run.said = []
     run.run()
     assert run.said == expected

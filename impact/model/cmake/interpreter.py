@@ -44,9 +44,10 @@ SOURCE = "/@source"
 BINARY = "/@build"
 PREFIX = "/@install"
 
-MAX_STEPS = 100_000
+MAX_STEPS = 40_000
 MAX_ITERATIONS = 1_000
 MAX_NESTING = 120
+MAX_CONDITIONS = 50
 
 NORMAL, BREAK, CONTINUE, RETURN, FATAL = range(5)
 
@@ -185,7 +186,9 @@ class Interpreter:
         standard = None
         default_only = by_flag = False
         if self.standards:
-            number, at, _, by_flag = max(self.standards, key=lambda entry: entry[0] if entry[0] < 90 else entry[0] - 100)
+            number, at, _, by_flag = max(
+                self.standards, key=lambda entry: entry[0] if entry[0] < 90 else entry[0] - 100
+            )
             standard = (number, at)
             default_only = all(entry[2] for entry in self.standards)
         return Build(
@@ -227,6 +230,7 @@ class Interpreter:
 
     def run_body(self, body: list[Call | Block]) -> int:
         """Runs commands in order; returns how they ended."""
+        self.spend(1)
         self.nesting += 1
         if self.nesting > MAX_NESTING:
             self.nesting -= 1
@@ -242,9 +246,7 @@ class Interpreter:
 
     def run_call(self, call: Call) -> int:
         """Runs one command."""
-        self.steps += 1
-        if self.steps > MAX_STEPS:
-            raise _TooMuch("more than 100,000 commands run")
+        self.spend(1)
         name = call.name
         handler = HANDLERS.get(name)
         if handler is not None:
@@ -262,6 +264,12 @@ class Interpreter:
             self.use_command(call)
         self.expand(call.templates)
         return NORMAL
+
+    def spend(self, steps: int) -> None:
+        """Counts work in units of one short command; the run ends when it is more than any real package asks for."""
+        self.steps += steps
+        if self.steps > MAX_STEPS:
+            raise _TooMuch("more work than 40,000 commands")
 
     def use_command(self, call: Call) -> None:
         """Notes a command that neither CMake nor the tree defines."""
@@ -328,7 +336,7 @@ class Interpreter:
         if not outcomes:
             return RETURN if RETURN in signals else FATAL
         self.merge_outcomes(outcomes)
-        for own in returned:
+        for own in returned if len(self.conditions) < MAX_CONDITIONS else ():
             rest = Condition(own[0].language, own[0].text, not own[0].negated)
             self.conditions = merge(self.conditions, (rest,))
         return NORMAL
@@ -376,6 +384,7 @@ class Interpreter:
                 left = [value if value is not None else unknown for value in left]
             value = join(left)
             if value is not None:
+                self.spend(len(value.words) >> 5)
                 self.assign(where, name, value)
 
     def decide(self, head: Call) -> tuple[bool | None, str]:
@@ -507,6 +516,7 @@ class Interpreter:
     def run_while(self, block: Block) -> int:
         """Runs a while(): once when its test is not known."""
         for _ in range(MAX_ITERATIONS):
+            self.spend(1)
             value, text = self.decide(block.head)
             if value is False:
                 return NORMAL
@@ -737,7 +747,9 @@ class Interpreter:
                 words.extend(self.expand_one(template, None))
             if len(words) > MAX_WORDS:
                 self.give_up(template.at, f"more than {MAX_WORDS} arguments")
-                return words[:MAX_WORDS]
+                words = words[:MAX_WORDS]
+                break
+        self.spend(len(words) >> 5)
         return words
 
     def reference(self, template: Template, head: Call | None) -> Value:
@@ -765,12 +777,14 @@ class Interpreter:
             if value is None:
                 self.use_variable(template.name, at)
                 return (word(f"${{{template.name}}}", at, (), False),)
+            self.spend(len(value.text) >> 10)
             single = word(value.text, at, (), value.sure)
             single.parts = value.words if value.sure else value.chosen
             return (single,)
         if template.kind == REFERENCE:
             return tuple(item for item in self.reference(template, head).words if item)
         text, sure, conditions = read_references(template.parts, self._lookup_used(at))
+        self.spend(len(text) >> 10)
         if len(text) > MAX_TEXT:
             self.give_up(at, f"a value is longer than {MAX_TEXT} characters")
             text = text[:MAX_TEXT]

@@ -10,7 +10,7 @@ from .blocks import Call
 from .conditions import version_key
 from .interpreter import BREAK, CONTINUE, FATAL, RETURN, Interpreter, handles
 from .names import MODULES, MODULES_WITH, name_set
-from .regex import usable
+from .regex import REGEX_STEPS, usable
 from .standard import note_variable
 from .values import (
     MAX_TEXT,
@@ -116,6 +116,8 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
         return
     action, name, rest = str(args[0]).upper(), str(args[1]), args[2:]
     held = run.get(name)
+    if held is not None:
+        run.spend(len(held.words) >> 5)
     if action in ("APPEND", "PREPEND", "INSERT"):
         index = 0
         if action == "INSERT" and rest:
@@ -189,6 +191,7 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
         _store(run, name, sorted(words, reverse="DESCENDING" in rest), known)
     elif action == "FILTER" and len(rest) == 3:
         kept: list[Word] = []
+        run.spend(REGEX_STEPS * len(words) >> 2)
         for item in words:
             pattern = usable(rest[2], item)
             hit = pattern.search(item) is not None if pattern is not None else rest[0] == "INCLUDE"
@@ -236,6 +239,8 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
         run.set_unknown(output, rest[0].at)
         return
     made: list[Word] = []
+    if pattern_text or action == "REPLACE":
+        run.spend(REGEX_STEPS * len(words) >> 2)
     for index, item in enumerate(words):
         if isinstance(chosen, set) and index not in chosen:
             made.append(item)
@@ -335,6 +340,7 @@ def string(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 def _regex(run: Interpreter, rest: list[Word], sure: bool, put) -> None:
     """string(REGEX MATCH | MATCHALL | REPLACE)."""
+    run.spend(REGEX_STEPS)
     mode = rest[0]
     if mode == "REPLACE" and len(rest) >= 5:
         put(rest[3], _regex_replace(rest[1], rest[2], "".join(rest[4:])))
@@ -598,6 +604,7 @@ def _glob(run: Interpreter, call: Call, recursive: bool, rest: list[Word]) -> No
             patterns.append(item)
         index += 1
     hits: list[Word] = []
+    run.spend(20 * len(patterns))
     for pattern in patterns:
         relative = run.relative(run.resolve(pattern))
         if relative is None:

@@ -10,7 +10,10 @@ import re
 from functools import lru_cache
 from typing import Literal
 
-_MAX_STEPS = 2_000_000
+_MAX_STEPS = 250_000
+
+# What one match may cost at most, in commands (see Interpreter.spend).
+REGEX_STEPS = 25
 
 
 @lru_cache(maxsize=512)
@@ -81,15 +84,12 @@ def usable(pattern: str, text: str) -> re.Pattern[str] | None:
     if made is None:
         return None
     length = len(text)
-    if nested and length > 20:
+    if nested and length > 16:
         return None
-    if repeats > 1 and length and repeats * _digits(length) > _digits(_MAX_STEPS):
+    # A backtracking match takes up to length**repeats steps.
+    if repeats > 1 and repeats * length.bit_length() > _MAX_STEPS.bit_length():
         return None
     return made
-
-
-def _digits(number: int) -> float:
-    return number.bit_length()
 
 
 def match(pattern: str, text: str) -> tuple[str, ...] | Literal[False] | None:
