@@ -405,7 +405,7 @@ class View:
         return known
 
     def _cmake_elsewhere(self, name: str) -> list[Provider]:
-        found = [p for p in self.providers.cmake(name) if p.name != name or p.kind != "ros"]
+        found = [p for p in self.providers.cmake(name) if (p.name != name or p.kind != "ros") and p.name not in _BROAD]
         modules = [p for p in found if p.kind == "ros" and p.name in ("cmake_modules", "eigen3_cmake_module")]
         if modules and name in ("Eigen", "TinyXML", "TinyXML2", "NUMPY", "GSL", "UUID", "Xenomai"):
             # The library alone brings no find module of this name; catkin itself did until hydro.
@@ -482,6 +482,9 @@ class View:
         for use in digest.references:
             reference = use.reference
             name = reference.package
+            if not name and reference.kind == "plugin":
+                # Nodelets and plugins are called `package/Class` or `package::Class`.
+                name = re.split(r"/|::", reference.name, maxsplit=1)[0]
             if not name or name == package.name or "$" in name or not self._is_package(name):
                 continue
             how = {"plugin": "plugin", "command": "shell"}.get(reference.kind, "launch")

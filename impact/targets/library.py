@@ -134,7 +134,7 @@ class _StandardRow(NamedTuple):
 
 # Headers that do not compile below a standard, by the start of their path. Newest first.
 _STANDARDS = (
-    _StandardRow("rclcpp/", "rclcpp", False, "16.0.0", 17, "REP-2000: Humble targets C++17"),
+    _StandardRow("rclcpp/", "rclcpp", False, "9.0.0", 17, "rclcpp 9: any_subscription_callback.hpp includes <variant>"),
     _StandardRow("rclcpp/", "rclcpp", False, "0.5.0", 14, "REP-2000: Crystal and newer target C++14"),
     _StandardRow("pcl/", "pcl", True, "1.10", 14, "PCL 1.10 change log: C++14 is required"),
     _StandardRow("pcl/", "pcl", True, "1.9", 11, "PCL 1.9 change log"),

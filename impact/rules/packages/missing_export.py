@@ -51,7 +51,7 @@ def _directories(view: View, package):
         inside = item[len(package.path) :].lstrip("/") if package.path and item.startswith(package.path + "/") else item
         if inside in (".", "") or package.has_files(inside) or inside.startswith(".."):
             continue
-        yield Hit(export.at, inside, f"the exported include directory `{inside}` does not exist, so catkin stops",
+        yield Hit(export.at, "INCLUDE_DIRS", f"the exported include directory `{inside}` does not exist, so catkin stops",
                   "create it, or drop INCLUDE_DIRS", package.name, severity="error")  # fmt: skip
 
 

@@ -37,14 +37,14 @@ def missing_find_package(view: View):
         build = package.build
         if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
             continue
+        yield from _find_modules(view, package)
+        yield from _no_components(view, package)
         found = found_names(view, package)
         if found is None:
             continue
         reachable = view.spread(found)
         closure = view.closure(package)
         told = set()
-        yield from _find_modules(view, package)
-        yield from _no_components(view, package)
         for at, name in _given_to_targets(view, package):
             if name in reachable or name in told or name in package.digest.modules or name == package.name:
                 continue

@@ -165,7 +165,7 @@ def _catkin_order(view: View, package):
         own = head == package.name
         cure = "${" + (f"{package.name}" if own else "catkin") + "_EXPORTED_TARGETS}"
         names = sorted({t.name for _, t in uses})
-        yield Hit(target.at, f"{head}_{kind}",
+        yield Hit(target.at, f"${{PROJECT_NAME}}_{kind}" if own else f"{head}_{kind}",
                   f"{_several(names)} `{include.path}` and may be built before it is generated",
                   f"add_dependencies({names[0]} {cure})", package.name)  # fmt: skip
 

@@ -44,7 +44,7 @@ _WITH_CLIENT = frozenset(
     "roscpp rospy rosconsole rostime xmlrpcpp roslib cpp_common roscpp_traits roscpp_serialization class_loader pluginlib "
     "nodelet tf tf2 tf2_ros tf2_msgs eigen_conversions tf_conversions message_filters rclcpp rclcpp_components rclcpp_lifecycle "
     "rclpy rcl rcutils builtin_interfaces std_msgs geometry_msgs sensor_msgs nav_msgs catkin actionlib dynamic_reconfigure "
-    "message_generation message_runtime genmsg rcl_interfaces".split()
+    "message_generation message_runtime genmsg rcl_interfaces opencv2 opencv3".split()
 )
 # Keys that most graphs of dependencies bring anyway.
 _COMMON_KEYS = frozenset({"boost", "libboost-dev", "libboost-all-dev", "libopencv-dev", "opencv2", "python3-dev", "python-dev", "eigen",
