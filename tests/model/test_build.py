@@ -15,7 +15,7 @@ from rosimpact.impact.model.build import Build, Declared, extras_of, interpret
 from rosimpact.impact.model.cmake.conditions import Token, evaluate, version_key
 from rosimpact.impact.model.cmake.genex import reduced, rejoin
 from rosimpact.impact.model.cmake.interpreter import Interpreter
-from rosimpact.impact.model.cmake.language import calculate
+from rosimpact.impact.model.cmake.lists import calculate
 from rosimpact.impact.model.cmake.regex import match
 from rosimpact.impact.model.cmake.standard import flag_standard
 from rosimpact.impact.model.cmake.values import split_list, word
@@ -377,6 +377,12 @@ USES = [
 @pytest.mark.parametrize(("source", "expected"), USES)
 def test_uses(source, expected):
     assert [f"{use.kind} {use.name}" for use in build(source).uses] == expected
+
+
+def test_a_variable_that_nothing_sets_tells_where_it_is_read():
+    (use,) = build("add_library(x a.cpp)\ntarget_link_libraries(x ${A_LIBRARIES})").uses
+    assert (use.kind, use.name, use.context, use.at.line, use.at.column) == ("variable", "A_LIBRARIES",
+                                                                           "target_link_libraries", 2, 25)  # fmt: skip
 
 
 def test_several_files_share_their_scopes_as_cmake_has_it():

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 from ...facts.cmake import CMakeFile
 from ..build import Build, Declared
-from . import ament, catkin, find, install, language, targets
+from . import ament, catkin, find, install, language, lists, paths, targets
 from .interpreter import Interpreter
 
 # Importing these registers what their commands mean.
-_FAMILIES = (language, find, targets, install, catkin, ament)
+_FAMILIES = (language, lists, paths, find, targets, install, catkin, ament)
 
 
 def interpret_package(

@@ -92,6 +92,7 @@ class Interpreter:
         self.recording = 0
         self.call_site: At | None = None
         self.via = ""  # the command of another package that is running
+        self.command = ""  # the one whose arguments are being read
         self.silent = 0
         self.steps = 0
         self.nesting = 0
@@ -247,7 +248,7 @@ class Interpreter:
     def run_call(self, call: Call) -> int:
         """Runs one command."""
         self.spend(1)
-        name = call.name
+        name = self.command = call.name
         handler = HANDLERS.get(name)
         if handler is not None:
             if name not in BUILTIN_COMMANDS:
@@ -389,6 +390,7 @@ class Interpreter:
 
     def decide(self, head: Call) -> tuple[bool | None, str]:
         """The value of a test and its text."""
+        self.command = head.name
         tokens = self.condition_tokens(head)
         value = tests.evaluate(tokens, self)
         if value is not None:
@@ -435,6 +437,7 @@ class Interpreter:
 
     def run_foreach(self, block: Block) -> int:
         """Runs a foreach() in any of its forms."""
+        self.command = "foreach"
         args = self.expand(block.head.templates)
         if not args:
             return NORMAL
@@ -805,7 +808,7 @@ class Interpreter:
         """Notes a variable that is read and that nothing sets, when its name tells that a package should."""
         if self.silent or not name.endswith(READ_SUFFIXES) or name.startswith("CMAKE_"):
             return
-        self.uses[Use("variable", name, self.place(at), "", self.conditions)] = None
+        self.uses[Use("variable", name, self.place(at), self.command, self.conditions)] = None
 
     def is_target(self, name: str) -> bool | None:
         """True when the tree makes this target."""

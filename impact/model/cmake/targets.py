@@ -7,7 +7,7 @@ from .blocks import Call
 from .drafts import TargetDraft
 from .genex import reduced, rejoin
 from .interpreter import Interpreter, handles
-from .standard import feature_standard, flag_standard, is_default, note_options
+from .standard import feature_standard, flag_standard, note_options
 from .values import Value, Word, following, position, split_words, word
 
 _LIBRARY_KINDS = {
@@ -329,8 +329,3 @@ def protobuf_generate(run: Interpreter, call: Call, args: list[Word]) -> None:
     files = tuple(run.tree_path(item) for item in args if item.endswith(".proto"))
     if not run.silent:
         run.generated.append(GeneratedInterfaces("protobuf", target, files, (), run.place(call.at), run.conditions))
-
-
-def default_standard(run: Interpreter, number: int, call: Call) -> None:
-    """A standard that a wrapper sets unless one is set already."""
-    run.add_standard(number, call.at, is_default(run), False)

@@ -1,0 +1,180 @@
+"""Commands over paths and files: what they answer comes from the tree alone."""
+
+from __future__ import annotations
+
+import posixpath
+
+from .blocks import Call
+from .interpreter import Interpreter, handles
+from .values import (
+    MAX_WORDS,
+    UNSET,
+    Value,
+    Word,
+    following,
+    position,
+    word,
+)
+
+
+@handles("get_filename_component")
+def get_filename_component(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """get_filename_component()."""
+    if len(args) < 3:
+        return
+    name, path, mode = args[0], args[1], str(args[2])
+    text = str(path)
+    base = posixpath.basename(text.rstrip("/"))
+    if mode in ("DIRECTORY", "PATH"):
+        result = posixpath.dirname(text.rstrip("/"))
+    elif mode == "NAME":
+        result = base
+    elif mode == "EXT":
+        result = base[base.find(".") :] if "." in base else ""
+    elif mode == "LAST_EXT":
+        result = posixpath.splitext(base)[1]
+    elif mode == "NAME_WE":
+        result = base[: base.find(".")] if "." in base else base
+    elif mode == "NAME_WLE":
+        result = posixpath.splitext(base)[0]
+    elif mode in ("ABSOLUTE", "REALPATH"):
+        start = following(args, "BASE_DIR")
+        result = run.resolve(text, str(start) if start is not None else None)
+    else:
+        run.set_unknown(name, call.at)
+        return
+    run.assign(run.scope, str(name), Value((word(result, path.at, run.conditions, path.sure),), path.sure))
+
+
+@handles("cmake_path")
+def cmake_path(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """cmake_path(), the forms that scripts use."""
+    if len(args) < 2:
+        return
+    action, name, rest = str(args[0]), str(args[1]), args[2:]
+    if action == "SET":
+        rest = [item for item in rest if item != "NORMALIZE"]
+        if rest:
+            text = posixpath.normpath(rest[0]) if "NORMALIZE" in args else str(rest[0])
+            run.assign(run.scope, name, Value((word(text, rest[0].at, run.conditions, rest[0].sure),), rest[0].sure))
+        return
+    held = run.get(name)
+    if held is None and action in ("APPEND", "APPEND_STRING"):
+        held = UNSET
+    output = name
+    if "OUTPUT_VARIABLE" in rest:
+        index = position(rest, "OUTPUT_VARIABLE")
+        output = str(rest[index + 1]) if index + 1 < len(rest) else name
+        rest = rest[:index] + rest[index + 2 :]
+    text = held.text if held is not None else ""
+    base = posixpath.basename(text)
+    if action == "GET" and len(rest) >= 2:
+        last = "LAST_ONLY" in rest
+        stem_end = base.rfind(".") if last else base.find(".", 1)
+        stem_end = stem_end if stem_end > 0 else len(base)
+        result = {
+            "FILENAME": base,
+            "PARENT_PATH": posixpath.dirname(text),
+            "EXTENSION": base[stem_end:],
+            "STEM": base[:stem_end],
+            "RELATIVE_PART": text.lstrip("/"),
+            "ROOT_PATH": "/" if text.startswith("/") else "",
+            "ROOT_NAME": "",
+            "ROOT_DIRECTORY": "/" if text.startswith("/") else "",
+        }.get(rest[0])
+        output = str(rest[-1])
+    elif action in ("APPEND", "APPEND_STRING"):
+        result = posixpath.join(text, *rest) if action == "APPEND" else text + "".join(rest)
+    elif action == "NORMAL_PATH":
+        result = posixpath.normpath(text) if text else ""
+    elif action == "ABSOLUTE_PATH":
+        start = following(rest, "BASE_DIRECTORY")
+        result = run.resolve(text, str(start) if start is not None else None)
+    elif action == "REMOVE_FILENAME":
+        result = text[: len(text) - len(base)]
+    elif action == "REPLACE_FILENAME" and rest:
+        result = text[: len(text) - len(base)] + rest[0]
+    elif action in ("REMOVE_EXTENSION", "REPLACE_EXTENSION"):
+        stem_end = base.rfind(".") if "LAST_ONLY" in rest else base.find(".", 1)
+        stem = base[:stem_end] if stem_end > 0 else base
+        suffix = rest[-1] if action == "REPLACE_EXTENSION" and rest else ""
+        suffix = f".{suffix}" if suffix and not suffix.startswith(".") else suffix
+        result = text[: len(text) - len(base)] + stem + suffix
+    else:
+        result = None
+        output = str(rest[-1]) if rest else name
+    if result is None or held is None:
+        run.set_unknown(output, call.at)
+    else:
+        run.assign(run.scope, output, Value((word(result, call.at, run.conditions, held.sure),), held.sure))
+
+
+@handles("file")
+def file(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """file(): GLOB is answered from the tree, paths are computed, everything else is not known."""
+    if len(args) < 2:
+        return
+    action, rest = str(args[0]).upper(), args[1:]
+    if action in ("GLOB", "GLOB_RECURSE"):
+        _glob(run, call, action == "GLOB_RECURSE", rest)
+    elif action == "RELATIVE_PATH" and len(rest) == 3:
+        known = rest[1].startswith("/") and rest[2].startswith("/")
+        result = posixpath.relpath(rest[2], rest[1]) if known else str(rest[2])
+        run.set_text(rest[0], "" if result == "." else result, call.at, known)
+    elif action in ("TO_CMAKE_PATH", "TO_NATIVE_PATH") and len(rest) == 2:
+        run.set(rest[1], [rest[0]])
+    elif action == "REAL_PATH" and len(rest) >= 2:
+        run.set_text(rest[1], run.resolve(rest[0]), call.at, rest[0].sure)
+    elif action in ("READ", "STRINGS", "TIMESTAMP", "SIZE", "READ_SYMLINK", "MD5", "SHA1", "SHA256") and len(rest) >= 2:
+        run.set_unknown(rest[1], call.at)
+
+
+def _glob(run: Interpreter, call: Call, recursive: bool, rest: list[Word]) -> None:
+    """file(GLOB) and file(GLOB_RECURSE)."""
+    name, rest = rest[0], rest[1:]
+    start = ""
+    patterns: list[Word] = []
+    index = 0
+    while index < len(rest):
+        item = rest[index]
+        if item == "RELATIVE" and index + 1 < len(rest):
+            start = run.resolve(rest[index + 1])
+            index += 1
+        elif item == "LIST_DIRECTORIES" and index + 1 < len(rest):
+            index += 1
+        elif item not in ("FOLLOW_SYMLINKS", "CONFIGURE_DEPENDS"):
+            patterns.append(item)
+        index += 1
+    hits: list[Word] = []
+    run.spend(20 * len(patterns))
+    for pattern in patterns:
+        relative = run.relative(run.resolve(pattern))
+        if relative is None:
+            run.give_up(pattern.at, f"file(GLOB) outside the tree: {run.shown(pattern)}")
+            continue
+        for path in sorted(run.glob(relative, recursive))[: MAX_WORDS - len(hits)]:
+            full = run.absolute(path)
+            hits.append(word(posixpath.relpath(full, start) if start else full, pattern.at))
+    run.set(name, dict.fromkeys(hits))
+
+
+@handles("aux_source_directory")
+def aux_source_directory(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """aux_source_directory()."""
+    if len(args) < 2:
+        return
+    relative = run.relative(run.resolve(args[0]))
+    hits = [] if relative is None else run.glob(posixpath.join(relative, "*"), False)
+    sources = [path for path in sorted(hits) if path.endswith((".c", ".C", ".cc", ".cpp", ".cxx", ".c++", ".m", ".mm"))]
+    held = run.get(args[1])
+    before = held.words if held is not None else ()
+    run.set(args[1], (*before, *(word(run.absolute(path), args[0].at) for path in sources)))
+
+
+@handles("configure_file")
+def configure_file(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """configure_file(): a generated file, remembered so that it counts as existing in the build folder."""
+    if len(args) >= 2:
+        value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
+        made = run.resolve(args[1], value.text if value is not None else None)
+        run.configured[run.shown(made)] = None
