@@ -446,7 +446,7 @@ class Interpreter:
         rest = args[1:]
         mode = rest[0] if rest else ""
         if mode == "RANGE":
-            rounds = [(word(str(number), block.head.at),) for number in self.numbers(rest[1:], block.head)]
+            rounds = ((word(str(number), block.head.at),) for number in self.numbers(rest[1:], block.head))
         elif "IN" in args[1:] and ("LISTS" in rest or "ITEMS" in rest or "ZIP_LISTS" in rest):
             split = position(args, "IN")
             variables = args[:split]
