@@ -173,7 +173,7 @@ def _apt_names(rule: object) -> Iterator[str]:
 # Folders below /usr/include that a package's own flags put on the include path (its .pc or CMake file says -I there).
 # Most carry a version in their name; these do not.
 _ROOTS = frozenset(
-    "OGRE bullet jsoncpp suitesparse cairo ni nite OpenNI2 openni2 nss qwt openmpi mpi ImageMagick tirpc postgresql mysql mariadb "
+    "OGRE opencv bullet jsoncpp suitesparse cairo ni nite OpenNI2 openni2 nss qwt openmpi mpi ImageMagick tirpc postgresql mysql mariadb "
     "Imath OpenEXR nspr superlu libxml2 schroedinger libcec coin Inventor opencascade oce hdf5 webkitgtk "
     "eigen2 serial atlas xenomai raul schifra ompl freetype".split()
 )
@@ -287,10 +287,13 @@ class _Reach(NamedTuple):
     package: str
 
 
-def reach(keys: Keys, suites: Iterable[Suite]) -> dict[str, dict[str, _Reach]]:
-    """Debian package to the keys that bring it on some suite: how far down the dependencies, and what the key installs."""
+def reach(keys: Keys, suites: Iterable[Suite]) -> tuple[dict[str, dict[str, _Reach]], list[set[str]]]:
+    """Debian package to the keys that bring it on some suite; and for each suite the packages that any key brings there."""
     found: dict[str, dict[str, _Reach]] = defaultdict(dict)
+    by_suite = []
     for suite in suites:
+        here: set[str] = set()
+        by_suite.append(here)
         for key, names in keys.debian.items():
             for start in names:
                 if start not in suite.depends:
@@ -298,6 +301,7 @@ def reach(keys: Keys, suites: Iterable[Suite]) -> dict[str, dict[str, _Reach]]:
                 ring, seen = [start], {start}
                 for distance in range(_HEADER_DEPTH + 1):
                     following = []
+                    here.update(ring)
                     for name in ring:
                         old = found[name].get(key)
                         near = 0 if suite.source.get(name) == suite.source.get(start) else distance
@@ -308,7 +312,7 @@ def reach(keys: Keys, suites: Iterable[Suite]) -> dict[str, dict[str, _Reach]]:
                     ring = following
                     if not ring:
                         break
-    return found
+    return found, by_suite
 
 
 class _Names(NamedTuple):
@@ -351,7 +355,7 @@ class Tables(NamedTuple):
 
 def join(suites: list[Suite], keys: Keys) -> Tables:
     """Names of all suites with the rosdep keys that bring them, best key first."""
-    reached = reach(keys, suites)
+    reached, by_suite = reach(keys, suites)
     named = frozenset(package for packages in keys.debian.values() for package in packages)
     tables = [_Names({}, {}) for _ in range(5)]
     header, cmake, pkgconfig, module, program = tables
@@ -363,8 +367,10 @@ def join(suites: list[Suite], keys: Keys) -> Tables:
         return any(package in compiler for package in packages)
 
     for place, suite in enumerate(suites):
-        bit = 1 << place
+        installable = by_suite[place] | compiler | essential
         for path, packages in suite.files():
+            # A package that another suite's keys bring tells who provides a name, not that this suite has it by default.
+            bit = 0 if installable.isdisjoint(packages) else 1 << place
             packages = tuple(p for p in packages if p not in suite.ros or p in named)
             if not any(p in reached or p in compiler or p in essential for p in packages):
                 if not path.startswith("usr/lib/python"):

@@ -29,6 +29,7 @@ class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     back_in: str = ""
     deprecated_in: str = ""
     new_since: str = ""
+    new_in: dict[str, str] = {}
     ambiguous: bool = False
     unless: tuple[str, ...] = ()
     note: str = ""
@@ -40,7 +41,8 @@ class Row(NamedTuple):
     kind: as in Change. package: a ROS package or, where library is set, a platform library. old: an include path, a
     package, or an identifier as a scanner finds it (`cv::SURF`, `CV_BGR2GRAY`, `numpy.float`); new: what stands instead.
     removed_in, deprecated_in, new_since: a version, or the first ROS distro; `ros2` is all of ROS 2; empty: not known or
-    not yet. back_in: a version that has the old name again. ambiguous: the bare name is a common word. unless: endings
+    not yet. new_in: where the distro's name does not tell, distro to the first version that has the new name (empty:
+    never there). back_in: a version that has the old name again. ambiguous: the bare name is a common word. unless: endings
     of include paths that bring the old name back.
     """
 
@@ -53,6 +55,7 @@ class Row(NamedTuple):
     back_in: str
     deprecated_in: str
     new_since: str
+    new_in: dict[str, str]
     ambiguous: bool
     unless: tuple[str, ...]
     source: str
@@ -110,8 +113,8 @@ def _file() -> _File:
 def all_rows() -> tuple[Row, ...]:
     """Every known change. Raises SnapshotError when the data file cannot be read."""
     rows = [
-        Row(g.kind, g.package, old, new, g.library, g.removed_in, g.back_in, g.deprecated_in, g.new_since, g.ambiguous,
-            g.unless, g.source, g.note)
+        Row(g.kind, g.package, old, new, g.library, g.removed_in, g.back_in, g.deprecated_in, g.new_since, g.new_in,
+            g.ambiguous, g.unless, g.source, g.note)
         for g in _file().changes
         for old, new in g.names.items()
     ]  # fmt: skip
@@ -153,7 +156,7 @@ def changes_in_force(target: Target, providers: Providers | None = None) -> tupl
     found = []
     for row in all_rows():
         version = _version(row, target)
-        if version is None:
+        if not version:
             if row.kind in ("package-removed", "package-renamed") and _reached(row.removed_in, "", target):
                 found.append(_change(row, "removed", ""))
             continue
@@ -176,20 +179,45 @@ def _version(row: Row, target: Target) -> str | None:
 
 
 def _state(row: Row, version: str, target: Target, table: Providers) -> State | None:
-    gone = _reached(row.removed_in, version, target) and not _reached(row.back_in, version, target)
-    old = new = None
-    if row.kind.startswith("header-") and not row.library:
-        old = table.has_header(row.package, row.old, target.distro, version)
-        new = table.has_header(row.package, row.new, target.distro, version) if row.new else None
     if row.kind.startswith("package-"):
         # The package is there: at most on its way out.
         return "deprecated" if _reached(row.deprecated_in, version, target) else None
-    if old is False or (old is None and gone):
-        # A header that this release has not got yet, while the new one is there, cannot be told from a removed one.
-        return "removed" if old is None or new is not False else None
-    if new is False or (new is None and row.new and row.new_since and not _reached(row.new_since, version, target)):
+    gone = _reached(row.removed_in, version, target) and not _reached(row.back_in, version, target)
+    new = None
+    if row.kind.startswith("header-") and not row.library:
+        old = table.has_header(row.package, row.old, target.distro, version)
+        if old is not None:
+            gone = not old
+            if gone and not _had(row, target, table):
+                return None
+        new = table.has_header(row.package, row.new, target.distro, version) if row.new else None
+    if gone:
+        return "removed"
+    if new is None and row.new:
+        new = _new_by_table(row, version, target)
+    if new is False:
         return "absent"
     return "deprecated" if _reached(row.deprecated_in, version, target) else None
+
+
+def _had(row: Row, target: Target, table: Providers) -> bool:
+    """Whether an earlier release of this ROS generation had the header, so that it is gone rather than not there yet."""
+    here = DISTROS.get(target.distro, len(DISTROS))
+    return any(
+        span.distro in DISTROS and DISTROS[span.distro] <= here and _same_generation(span.distro, target)
+        for span in table.header_history(row.package, row.old)
+    )
+
+
+def _same_generation(distro: str, target: Target) -> bool:
+    return (DISTROS[distro] >= DISTROS["ardent"]) == (target.ros == 2)
+
+
+def _new_by_table(row: Row, version: str, target: Target) -> bool | None:
+    if target.distro in row.new_in:
+        first = row.new_in[target.distro]
+        return bool(first) and at_least(version, first)
+    return _reached(row.new_since, version, target) if row.new_since else None
 
 
 def _reached(bound: str, version: str, target: Target) -> bool:
@@ -200,8 +228,7 @@ def _reached(bound: str, version: str, target: Target) -> bool:
         return target.ros == 2
     if bound in DISTROS:
         place = DISTROS.get(target.distro)
-        first_of_2 = DISTROS["ardent"]
-        return place is not None and DISTROS[bound] <= place and (DISTROS[bound] < first_of_2) == (place < first_of_2)
+        return place is not None and DISTROS[bound] <= place and _same_generation(bound, target)
     return bool(version) and at_least(version, bound)
 
 

@@ -77,6 +77,7 @@ class Providers:
         self._lock = threading.Lock()
         self._sets: dict[int, tuple[Provider, ...]] = {}
         self._spans: dict[int, tuple[HeaderSpan, ...]] = {}
+        self._releases: dict[str, tuple[HeaderSpan, ...]] = {}
 
     def __reduce__(self):
         return Providers, (self._data, self._cache)
@@ -183,9 +184,11 @@ class Providers:
 
     def known_releases(self, package: str) -> tuple[HeaderSpan, ...]:
         """Releases of a ROS package whose source trees were read, as spans by distro."""
-        for (number,) in self._rows("SELECT pattern FROM ros_package WHERE name = ?", package):
-            return self._pattern(number)
-        return ()
+        known = self._releases.get(package)
+        if known is None:
+            rows = self._rows("SELECT pattern FROM ros_package WHERE name = ?", package)
+            known = self._releases[package] = self._pattern(rows[0][0]) if rows else ()
+        return known
 
     def has_header(self, package: str, header: str, distro: str, version: str) -> bool | None:
         """Whether a package's release in a distro has a header; None when that release's tree is not known."""
