@@ -482,9 +482,9 @@ class View:
         for use in digest.references:
             reference = use.reference
             name = reference.package
-            if not name and reference.kind == "plugin":
-                # Nodelets and plugins are called `package/Class` or `package::Class`.
-                name = re.split(r"/|::", reference.name, maxsplit=1)[0]
+            if not name and reference.kind == "plugin" and ".launch" in use.at.path:
+                # Nodelets are called `package/Class`.
+                name = reference.name.partition("/")[0] if "/" in reference.name else ""
             if not name or name == package.name or "$" in name or not self._is_package(name):
                 continue
             how = {"plugin": "plugin", "command": "shell"}.get(reference.kind, "launch")

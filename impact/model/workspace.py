@@ -17,12 +17,12 @@ import msgspec
 from ..facts.kinds import EXTRACTORS
 from ..facts.manifest import Manifest
 from ..gather import Gathered
-from .build import Build, interpret
+from .build import Build, extras_of, interpret
 from .discovery import Discovered, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
 # Raise with every change of what a digest or the CMake interpreter says.
-DIGEST_VERSION = "5"
+DIGEST_VERSION = "6"
 _VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 
@@ -245,6 +245,10 @@ def generation(discovered: Discovered, gathered: Gathered) -> int:
     return 2 if two * 2 >= total and two else 1
 
 
+def _named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(d.name for d in manifest.dependencies if d.kind in kinds))
+
+
 class _Linker:
     def __init__(self, tree, gathered: Gathered, discovered: Discovered, ros: int, watched: Watched):
         self.tree, self.gathered, self.discovered, self.ros, self.watched = tree, gathered, discovered, ros, watched
@@ -283,11 +287,17 @@ class _Linker:
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
-        digest = hashlib.sha1(f"{_VERSIONS} {self.watched.version} {self.ros} {place.path}\n".encode())
+        digest = hashlib.sha1(f"{_VERSIONS} {self.watched.version} {self.ros} {self._extras_key} {place.path}\n".encode())
         digest.update(
             "\n".join([f"{path} {ids.get(path, '')}" for path in self.paths_of[place.path]]).encode("utf-8", "surrogateescape")
         )
         return digest.digest()
+
+    @cached_property
+    def _extras_key(self) -> str:
+        """Which CMake files packages give their dependants; what is in them is told by the digests that read them."""
+        given = [path for place in self.discovered.packages for path in self.extras(place.name)]
+        return hashlib.sha1("\n".join(given).encode("utf-8", "surrogateescape")).hexdigest()
 
     def join(self, place) -> tuple[Digest, dict[str, str]]:
         gathered = self.gathered
@@ -300,8 +310,6 @@ class _Linker:
         def cmake(path: str):
             path = posixpath.normpath(path)
             if gathered.kinds.get(path) != "cmake":
-                if path in self.all_paths and path.endswith((".cmake.in", ".cmake.em")):
-                    pass
                 return None
             if not (path.startswith(place.path + "/") or not place.path):
                 read[path] = gathered.ids.get(path, "")
@@ -310,7 +318,8 @@ class _Linker:
 
         build = interpret(
             place.path, cmake, self.all_paths.__contains__, self.glob(place, files), package=manifest.name,
-            dependencies=tuple(dict.fromkeys(d.name for d in manifest.dependencies if d.kind in ("build", "buildtool", "build_export", "test"))),
+            dependencies=_named(manifest, "build", "buildtool"), test_dependencies=_named(manifest, "test"),
+            exported_dependencies=_named(manifest, "build_export", "buildtool_export", "exec"),
             extras=self.extras,
         ) if (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths else Build()  # fmt: skip
         digest = digest_of(
@@ -341,8 +350,4 @@ class _Linker:
         place = self.by_name.get(package)
         if place is None:
             return ()
-        start = place.path + "/cmake/" if place.path else "cmake/"
-        return tuple(
-            p for p in self.paths_of[place.path]
-            if p.endswith((".cmake", ".cmake.in", ".cmake.em")) and (p.startswith(start) or p.endswith(("-extras.cmake", "-extras.cmake.in", "-extras.cmake.em")))
-        )  # fmt: skip
+        return extras_of(place.path, self.glob(place, self.paths_of[place.path]))

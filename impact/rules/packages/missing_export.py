@@ -26,6 +26,7 @@ from ...targets.library import variables
 from ..evidence import weight
 from ..rule import Hit, rule
 from .missing_find_package import found_names
+from .undeclared_package import WITH_CLIENT
 
 
 @rule(severity="warning")
@@ -126,7 +127,7 @@ def _ament(view: View, package):
             continue
         told.add(name)
         includers = _includers(view, package) if includers is None else includers
-        severity = "warning" if apart and (includers or "ament_export_libraries" in hows or "ament_export_targets" in hows) else "note"
+        severity = "warning" if apart and name not in WITH_CLIENT and (includers or "ament_export_libraries" in hows or "ament_export_targets" in hows) else "note"
         yield Hit(need.at, name, f"an installed header includes `{need.subject}` and `{name}` is not exported",
                   f"add `{name}` to ament_export_dependencies", package.name, severity=severity)  # fmt: skip
 

@@ -40,12 +40,13 @@ _LAUNCHING = frozenset({"launch", "launch_ros", "launch_xml", "launch_yaml", "ro
 
 
 # Client libraries and what their own headers include: always there with them, and customarily not declared apart.
-_WITH_CLIENT = frozenset(
+WITH_CLIENT = frozenset(
     "roscpp rospy rosconsole rostime xmlrpcpp roslib cpp_common roscpp_traits roscpp_serialization class_loader pluginlib "
     "nodelet tf tf2 tf2_ros tf2_msgs eigen_conversions tf_conversions message_filters rclcpp rclcpp_components rclcpp_lifecycle "
     "rclpy rcl rcutils builtin_interfaces std_msgs geometry_msgs sensor_msgs nav_msgs catkin actionlib dynamic_reconfigure "
     "message_generation message_runtime genmsg rcl_interfaces opencv2 opencv3".split()
 )
+_MESSAGES = ("_msgs", "_srvs", "_interfaces")
 # Keys that most graphs of dependencies bring anyway.
 _COMMON_KEYS = frozenset({"boost", "libboost-dev", "libboost-all-dev", "libopencv-dev", "opencv2", "python3-dev", "python-dev", "eigen",
                           "libpcl-all-dev", "python", "python3", "liborocos-kdl-dev"})  # fmt: skip
@@ -89,7 +90,7 @@ def undeclared_package(view: View):
 def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dict[str, str]):
     """What built code uses directly and only a dependency of a dependency brings, so that it leaves when that one does."""
     for name, needs in borrowed.items():
-        if name in _WITH_CLIENT or name.startswith(("ament_", "rosidl_", "rmw")):
+        if name in WITH_CLIENT or name.startswith(("ament_", "rosidl_", "rmw")) or name.endswith(_MESSAGES):
             continue
         ours = name in view.workspace.packages
         ros = ours or view.target.version(name) is not None

@@ -36,7 +36,7 @@ def language_standard(view: View):
         have = _order(fixed[0]) if fixed else default
         if have is None:
             continue
-        if fixed and not package.build.standard_by_flag and view.target.ros == 2:
+        if view.target.ros == 2 and not (fixed and package.build.standard_by_flag):
             # CMake raises CMAKE_CXX_STANDARD to what the exported targets of rclcpp and others ask for.
             continue
         for include in package.digest.includes:
