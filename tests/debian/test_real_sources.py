@@ -20,15 +20,14 @@ NAMES = ("ros-ros-comm", "ros-image-pipeline")
 
 # Of the versions that were read: packages counted by hand, and defects as severity, rule, package, path and subject.
 READ = {
-    # Python 2 in scripts that Debian starts with python3; imports that would close a cycle if they were declared; and
-    # Debian's own patch, which takes the system's libb64 in place of a copy.
+    # Python 2 in scripts that no rule installs, and imports that would close a cycle if they were declared.
     ("ros-ros-comm", "1.15.15"): (
         32,
         """
-        error   python-version      topic_tools  tools/topic_tools/scripts/demux_add     `except X, e`
-        error   python-version      topic_tools  tools/topic_tools/scripts/demux_delete  `except X, e`
-        error   python-version      topic_tools  tools/topic_tools/scripts/demux_list    `except X, e`
-        error   python-version      topic_tools  tools/topic_tools/scripts/demux_select  `except X, e`
+        note    python-version      topic_tools  tools/topic_tools/scripts/demux_add     `except X, e`
+        note    python-version      topic_tools  tools/topic_tools/scripts/demux_delete  `except X, e`
+        note    python-version      topic_tools  tools/topic_tools/scripts/demux_list    `except X, e`
+        note    python-version      topic_tools  tools/topic_tools/scripts/demux_select  `except X, e`
         warning undeclared-package  rospy        clients/rospy/src/rospy/logger_level_service_caller.py  rosnode
         warning undeclared-package  rospy        clients/rospy/src/rospy/logger_level_service_caller.py  rosservice
         warning undeclared-package  topic_tools  tools/topic_tools/scripts/relay_field   rostopic

@@ -30,7 +30,7 @@ class Sorter:
 
     def on_arrival(self, position):
         """Take the potato out and go on."""
-        rospy.loginfo(f"took one out at {position.data:.3f} m, {len(self.waiting)} waiting")
+        rospy.loginfo("took one out at %.3f m, %d waiting", position.data, len(self.waiting))
         self.busy = False
         self.go_on()
 
