@@ -1,6 +1,9 @@
 """The README's commands are those that are run, and what it points to is there."""
 
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -27,6 +30,25 @@ def test_two_commands_set_up_and_run():
 def test_ci_runs_the_test_command_word_for_word():
     lines = [line.strip() for line in (ROOT / ".ci/run").read_text(encoding="utf-8").splitlines()]
     assert commands()[1] in lines
+
+
+def test_the_output_shown_is_real(tmp_path):
+    """Run the command and paste what it prints when this fails; only the seconds may differ."""
+    shown = re.search(r"```console\n\$ (.+)\n((?s:.)+?)```", README)
+    assert shown
+    program, *arguments = shown[1].split()
+    result = subprocess.run(
+        [Path(sys.executable).parent / program, *arguments],
+        cwd=ROOT,
+        env=os.environ | {"XDG_CACHE_HOME": str(tmp_path), "PYTHONUTF8": "1"},
+        capture_output=True,
+        encoding="utf-8",
+    )
+    assert without_seconds(result.stdout) == without_seconds(shown[2])
+
+
+def without_seconds(text: str) -> str:
+    return re.sub(r"· [\d.]+ s$", "", text.rstrip())
 
 
 @pytest.mark.parametrize("document", ["README.md", "CONTRIBUTING.md", "docs/ci.md", "examples/README.md"])
