@@ -191,6 +191,7 @@ def open_workspace(
     with Store(options.cache) as store:
         gathered = gather(tree, store, jobs=options.jobs, progress=progress)
         workspace = link(tree, gathered, store, None, watched())
+        gathered.problems.extend(workspace.discovered.problems)
         targets = choose_targets(options.targets, config, workspace, tree)
         views = [View(workspace, chosen.target, default_providers(), config) for chosen in targets]
         yield Opened(tree, store, gathered, workspace, targets, views, config)

@@ -266,6 +266,8 @@ def _idl(text: str) -> Interface:
             annotations.clear()
             while idl.at < len(idl.tokens) and idl.next().text not in (";", "}"):
                 pass
+    if idl.modules and not idl.problems:
+        idl.problems.append(Problem(idl.line(), "ends in the middle"))
     return _assemble(idl)
 
 
