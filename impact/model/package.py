@@ -205,6 +205,7 @@ class _Join:
 
     def digest(self) -> Digest:
         allows, problems = [], []
+        aside = _ASIDE_NAME.search(self.name) or self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         python: dict[str, PythonFile] = {}
         references, plugins, registered, setup, interfaces = [], [], [], [], []
         for path in self.files:
@@ -242,7 +243,8 @@ class _Join:
             self.name, self.path, self.manifest_path, self.manifest, self.build_type, self.build,
             includes=tuple(includes), imports=tuple(imports),
             references=tuple(
-                ReferenceUse(r, At(p, r.line, r.column), role_of_folder(self.inside(p)) or "run") for p, r in references
+                ReferenceUse(r, At(p, r.line, r.column), role_of_folder(self.inside(p)) or ("aside" if aside else "run"))
+                for p, r in references
             ),
             names=tuple(names + python_names), needed_headers=tuple(needed), interfaces=tuple(interfaces),
             syntax=tuple(syntax), headers=tuple(p for p in self.cpp if is_header(p)),
@@ -337,6 +339,8 @@ class _Join:
         names: list[NameUse] = []
         needed: list[NeededHeader] = []
         watched = self.watched
+        # What the package defines itself is its own, whatever a library of that name did.
+        defined = {name for facts in self.cpp.values() for name in facts.defined}
         for path, (role, public, targets, conditions) in roles.items():
             facts = self.cpp.get(path)
             if facts is None:
@@ -361,7 +365,7 @@ class _Join:
                                                    conditions + name.conditions))  # fmt: skip
             if facts.words:
                 words = facts.words.split(" ")
-                for word in watched.words.intersection(words):
+                for word in watched.words.intersection(words) - defined:
                     names.append(self.bare(word, path, role, public, targets, conditions))
                 for word in watched.headers_of.keys() & set(words):
                     reach = self.reach(path) if reach is None else reach
@@ -433,6 +437,8 @@ class _Join:
         inside = self.inside(path)
         if inside in ("setup.py", "conanfile.py"):
             return "build"
+        if _ASIDE_NAME.search(self.name):
+            return "aside"
         return role_of_folder(inside) or ("run" if self.is_installed(path) else "aside")
 
     def is_installed(self, path: str) -> bool:

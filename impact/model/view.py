@@ -59,6 +59,8 @@ class Misnamed(NamedTuple):
 
 # Metapackages whose name other packages' headers begin with (ros/ros.h is roscpp's).
 _UMBRELLAS = frozenset({"ros", "moveit", "ecl", "pcl", "opencv2", "gazebo", "boost", "rtt", "visp", "flann"})
+# Headers that the package's build writes from templates in some releases.
+_GENERATED = ("rclcpp/node_interfaces/", "rclcpp/logging.hpp")
 # System packages so broad that they bring half of ROS along.
 _BROAD = frozenset({"mrpt"})
 _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
@@ -97,7 +99,7 @@ class View:
             return target.version(name) or target.library(name.lower())
 
         return Environment(
-            ros_distro=target.distro, ros_version=str(target.ros), python=(target.python_major, target.python) if target.python else None,
+            ros_distro=target.distro, ros_version=str(target.ros), python=(2, 7) if target.python_major == 2 else (3, target.python) if target.python else None,
             codename=target.platform.split(" ")[-1], versions=version, headers=self._has_header, testing=True,
         )  # fmt: skip
 
@@ -193,6 +195,12 @@ class View:
         if not lacking:
             return None
         name, version = lacking[0]
+        if any(self.nested_header(owner, path) for owner, _ in lacking) or path.startswith(_GENERATED):
+            return None
+        if not any(
+            self.providers.has_header(name, header, target.distro, version) for header, _ in self.providers.headers_of(name)
+        ):
+            return None  # a release without any header in its tree gets them while it is built
         spans = self.providers.header_history(name, path)
         if not spans:
             head, _, rest = path.partition("/")
@@ -201,6 +209,18 @@ class View:
             return None
         other = self._renamed(name, path, version)
         return Misnamed(f"`{path}` is not in {name} {version}", f"include `{other}`" if other else "")
+
+    def has_released_header(self, package: str, path: str) -> bool | None:
+        """Whether the target's release of a package has a header; None when its tree is not known."""
+        version = self.target.version(package)
+        return self.providers.has_header(package, path, self.target.distro, version) if version else None
+
+    def nested_header(self, package: str, path: str) -> bool:
+        """True when the release has the header in a subfolder that it exports too (xmlrpcpp/XmlRpc.h as XmlRpc.h)."""
+        version = self.target.version(package)
+        return "/" not in path and bool(version) and bool(
+            self.providers.has_header(package, f"{package}/{path}", self.target.distro, version)
+        )
 
     def _renamed(self, name: str, path: str, version: str) -> str:
         """The same header under another ending that the version has."""

@@ -8,8 +8,8 @@ Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
-    error for compiled code that is not guarded; warning for installed headers that the package does not compile itself,
-    for tests, and under conditions that are not known.
+    error for compiled code that is not guarded; warning for tests; note for installed headers that the package
+    does not compile itself and under conditions that are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -35,18 +35,19 @@ def removed_header(view: View):
             path = include.path
             if not view.active(include.conditions) or view.workspace.provides_header(path):
                 continue
-            severity = "note" if include.role == "aside" else (
-                "error" if include.role == "build" and include.targets and view.certain(include.conditions) else "warning"
-            )
+            if include.role == "aside" or not include.targets:
+                severity = "note"
+            else:
+                severity = "note" if not view.certain(include.conditions) else "error" if include.role == "build" else "warning"
             change = gone.get(path)
-            if change is not None:
+            if change is not None and not view.nested_header(change.package, path):
                 where = f"{change.package} {change.version}".strip()
                 yield Hit(include.at, path, f"`{path}` is gone in {where}",
                           f"include `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
                           package.name, severity=severity)  # fmt: skip
                 continue
             change = early.get(path)
-            if change is not None:
+            if change is not None and view.has_released_header(change.package, path) is False:
                 where = f"{change.package} {change.version}".strip()
                 yield Hit(include.at, path, f"`{path}` is not there yet in {where}",
                           f"include `{change.old}`, or choose with __has_include", package.name, severity=severity)  # fmt: skip

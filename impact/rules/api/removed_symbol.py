@@ -24,6 +24,12 @@ from ..rule import Hit, rule
 _KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
 
 
+# Its header includes OpenCV's types_c.h, which keeps most of the C constants.
+_BRIDGE = "cv_bridge/cv_bridge"
+# Namespaces of libraries whose names are in the table without them.
+_ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
+
+
 @rule(severity="error")
 def removed_symbol(view: View):
     cpp, python = {}, {}
@@ -34,15 +40,17 @@ def removed_symbol(view: View):
         included = None
         for use in package.digest.names:
             change = (python if use.language == "python" else cpp).get(use.text)
-            if change is None and use.language == "cpp" and "::" in use.text:
+            if change is None and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
                 change = cpp.get(use.text.rsplit("::", 1)[-1])
-            if change is None or not view.active(use.conditions) or not view.concerned(package, change, use.at.path):
+            if change is None or change.new and use.text.endswith(change.new) or not view.active(use.conditions) or not view.concerned(package, change, use.at.path):
                 continue
             endings = excuses(change)
             if endings:
                 included = included or tuple(i.path for i in package.digest.includes)
                 if any(path.endswith(endings) for path in included):
                     continue
+            if change.package == "opencv" and use.text.startswith("CV_") and _BRIDGE in {i.path.rpartition(".")[0] for i in package.digest.includes}:
+                continue
             sure = use.role in ("build", "run") and view.certain(use.conditions) and change.kind != "api-changed"
             verb = "changed" if change.kind == "api-changed" else "is gone"
             yield Hit(use.at, use.text, f"`{use.text}` {verb} in {change.package} {change.version}".strip(),

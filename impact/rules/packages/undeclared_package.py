@@ -10,8 +10,8 @@ Why it breaks
 
 Severity
     error: an unconditional find_package(REQUIRED), catkin component or include of compiled code that is sure to miss its
-    package on the target. warning: tests, installed headers that the package itself does not compile, imports, launch files, conditional code, or where the manifests that would
-    settle it are not known for the target. note: examples and documentation.
+    package on the target. warning: tests, imports, launch files, conditional code, or where the manifests that would
+    settle it are not known for the target. note: examples, documentation, and installed headers that the package itself does not compile.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -105,6 +105,8 @@ def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dic
         if not strong:
             continue
         first = min(strong, key=weight)
+        if ours and first.how == "include" and closure.get(name, "") in view.workspace.packages and view.target.ros == 1:
+            continue  # one repository, built in its order
         through = closure.get(name) or next((closure[p.name] for p in first.providers if p.name in closure), "")
         yield Hit(
             first.at, name, f"{_how(first)}, and `{name}` only comes along with `{through}`",
@@ -119,16 +121,18 @@ def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
         return "note"
     if not present(view, name):
         return None  # unreleased-package says it
-    if need.how in ("find_package", "component") and not need.required:
+    if need.how in ("find_package", "component") and (not need.required or not any(p.sure for p in need.providers)):
         return "note"
     if need.how in ("launch", "plugin", "shell") or name in _LAUNCHING:
         loud = need.required and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
         return "warning" if loud else "note"
     if need.role == "test" or need.how == "import":
-        return "warning" if need.required and name not in _ON_THE_DESK else "note"
+        return "warning" if need.required and name not in _ON_THE_DESK and (need.role != "test" or name not in WITH_CLIENT) else "note"
     if not need.certain:
         return "note"
-    if blind or not view.target.knows_manifests or need.how == "include" and not need.targets:
+    if need.how == "include" and not need.targets:
+        return "note"
+    if blind or not view.target.knows_manifests:
         return "warning"
     ros = name in view.workspace.packages or view.target.version(name) is not None
     return "error" if ros or need.how == "find_package" else "warning"
