@@ -31,7 +31,6 @@ READ = {
         warning undeclared-package  rospy        clients/rospy/src/rospy/logger_level_service_caller.py  rosnode
         warning undeclared-package  rospy        clients/rospy/src/rospy/logger_level_service_caller.py  rosservice
         warning undeclared-package  topic_tools  tools/topic_tools/scripts/relay_field   rostopic
-        warning undeclared-package  xmlrpcpp     utilities/xmlrpcpp/src/XmlRpcValue.cpp  libb64-dev
         """,
     ),
     # CMake names are case-sensitive; a script that a launch file starts stays behind.
