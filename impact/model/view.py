@@ -279,6 +279,25 @@ class View:
         """Known upstream changes of these kinds that are in force on the target."""
         return [c for kind in kinds for c in self._changes.get(kind, ())]
 
+    @cached_property
+    def later(self) -> dict[str, Change]:
+        """Changes of platform libraries and Python that the newest distro of this generation has and the target has not
+        yet: what breaks when this machine, or a colleague's, is updated. By old name."""
+        horizon = self.target.newest()
+        if horizon is None:
+            return {}
+        here = {(c.kind, c.package, c.old) for c in self.target.changes() if c.state == "removed"}
+        return {
+            c.old: c for c in horizon.changes()
+            if c.state == "removed" and c.library and (c.kind, c.package, c.old) not in here
+        }  # fmt: skip
+
+    @property
+    def horizon(self) -> str:
+        """Name of the newest distro of this generation."""
+        newest = self.target.newest()
+        return newest.distro if newest is not None else ""
+
     def concerned(self, package: Package, change: Change, path: str) -> bool:
         """True when a file can mean the changed package by a name: the package declares or includes something of it."""
         head = change.package

@@ -1,4 +1,4 @@
-"""Known upstream changes: what a version of a ROS package or platform library removed, renamed or stopped bringing along.
+"""Known upstream changes: what a version of a ROS package or platform library removed, renamed or stopped bringing.
 
 The facts are in `data/changes*.json`, reviewed, each with its source. A change is judged on a target by versions; for
 headers of ROS packages whose source trees are in the provider table, by what the very release has.
@@ -39,11 +39,11 @@ class Row(NamedTuple):
     """One known change, on any target.
 
     kind: as in Change. package: a ROS package or, where library is set, a platform library. old: an include path, a
-    package, or an identifier as a scanner finds it (`cv::SURF`, `CV_BGR2GRAY`, `numpy.float`); new: what stands instead.
-    removed_in, deprecated_in, new_since: a version, or the first ROS distro; `ros2` is all of ROS 2; empty: not known or
-    not yet. new_in: where the distro's name does not tell, distro to the first version that has the new name (empty:
-    never there). back_in: a version that has the old name again. ambiguous: the bare name is a common word. unless: endings
-    of include paths that bring the old name back.
+    package, or an identifier as a scanner finds it (`cv::SURF`, `CV_BGR2GRAY`, `numpy.float`); new: what stands for it.
+    removed_in, deprecated_in, new_since: a version, or the first ROS distro; `ros2` is all of ROS 2; empty: not known
+    or not yet. new_in: where the distro's name does not tell, distro to the first version that has the new name (empty:
+    never there). back_in: a version that has the old name again. ambiguous: the bare name is a common word. unless:
+    endings of include paths that bring the old name back.
     """
 
     kind: str
@@ -123,7 +123,7 @@ def all_rows() -> tuple[Row, ...]:
 
 @cache
 def transitive_includes() -> tuple[TransitiveInclude, ...]:
-    """Every header that is known to have stopped coming along. Raises SnapshotError when the data file cannot be read."""
+    """Every header that is known to have stopped coming along. Raises SnapshotError when the data cannot be read."""
     return tuple(
         TransitiveInclude(name, g.headers, g.library, g.since, g.through, g.sure, g.source)
         for g in _file().transitive
@@ -167,7 +167,7 @@ def changes_in_force(target: Target, providers: Providers | None = None) -> tupl
 
 
 def _change(row: Row, state: str, version: str) -> Change:
-    return Change(row.kind, row.package, row.old, row.new, state, version, row.new_since, row.source)
+    return Change(row.kind, row.package, row.old, row.new, state, version, row.new_since, row.source, row.library)
 
 
 def _version(row: Row, target: Target) -> str | None:
@@ -182,15 +182,22 @@ def _state(row: Row, version: str, target: Target, table: Providers) -> State | 
     if row.kind.startswith("package-"):
         # The package is there: at most on its way out.
         return "deprecated" if _reached(row.deprecated_in, version, target) else None
-    gone = _reached(row.removed_in, version, target) and not _reached(row.back_in, version, target)
+    if _reached(row.back_in, version, target):
+        return None
+    gone = _reached(row.removed_in, version, target)
     new = None
     if row.kind.startswith("header-") and not row.library:
         old = table.has_header(row.package, row.old, target.distro, version)
+        if old is None and target.distro != "rolling" and _still(table, row.package, row.old, target.distro, version):
+            old = True
         if old is not None:
             gone = not old
             if gone and not _had(row, target, table):
                 return None
-        new = table.has_header(row.package, row.new, target.distro, version) if row.new else None
+        if row.new:
+            new = table.has_header(row.package, row.new, target.distro, version)
+            if new is None and _still(table, row.package, row.new, target.distro, version):
+                new = True
     if gone:
         return "removed"
     if new is None and row.new:
@@ -200,8 +207,16 @@ def _state(row: Row, version: str, target: Target, table: Providers) -> State | 
     return "deprecated" if _reached(row.deprecated_in, version, target) else None
 
 
+def _still(table: Providers, package: str, header: str, distro: str, version: str) -> bool:
+    """Whether the distro's newest release that was read has a header: later ones of a distro rarely drop any."""
+    return any(
+        span.distro == distro and span.last is None and at_least(version, span.first)
+        for span in table.header_history(package, header)
+    )
+
+
 def _had(row: Row, target: Target, table: Providers) -> bool:
-    """Whether an earlier release of this ROS generation had the header, so that it is gone rather than not there yet."""
+    """Whether an earlier release of this ROS generation had the header: then it is gone rather than not there yet."""
     here = DISTROS.get(target.distro, len(DISTROS))
     return any(
         span.distro in DISTROS and DISTROS[span.distro] <= here and _same_generation(span.distro, target)
@@ -211,6 +226,18 @@ def _had(row: Row, target: Target, table: Providers) -> bool:
 
 def _same_generation(distro: str, target: Target) -> bool:
     return (DISTROS[distro] >= DISTROS["ardent"]) == (target.ros == 2)
+
+
+def _released(distro: str) -> str:
+    """The ISO day of a distro's release; `9` (after every day) when the data does not tell."""
+    return _release_days().get(distro, "9")
+
+
+@cache
+def _release_days() -> dict[str, str]:
+    from .distro import known_distros
+
+    return {known.name: known.released for known in known_distros() if known.released}
 
 
 def _new_by_table(row: Row, version: str, target: Target) -> bool | None:
@@ -228,7 +255,10 @@ def _reached(bound: str, version: str, target: Target) -> bool:
         return target.ros == 2
     if bound in DISTROS:
         place = DISTROS.get(target.distro)
-        return place is not None and DISTROS[bound] <= place and _same_generation(bound, target)
+        if place is None or not _same_generation(bound, target):
+            return False
+        # What came with a distro came to rolling at some day before: for sure only from the distro's release on.
+        return _released(bound) <= target.date if target.distro == "rolling" else DISTROS[bound] <= place
     return bool(version) and at_least(version, bound)
 
 

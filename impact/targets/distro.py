@@ -5,6 +5,8 @@ synced commit of rosdistro had. Before a distro's first known sync (tags exist f
 and the target is approximate.
 """
 
+from __future__ import annotations
+
 import datetime
 import functools
 import operator
@@ -380,6 +382,10 @@ class DistroTarget(Target):
         manifest = self._manifest(package)
         return manifest[1] if manifest else ""
 
+    def newest(self) -> DistroTarget | None:
+        """The newest long-term distro of this generation, None when this distro is it or newer."""
+        return _newest(self.distro, self._data)
+
     def similar_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         """What the package declares in the nearest distro of the same generation whose manifest of it is known.
 
@@ -607,6 +613,17 @@ def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
         return bool(evaluate_condition(condition, variables))
     except Exception:
         return False
+
+
+@functools.cache
+def _newest(distro: str, data: Snapshot) -> DistroTarget | None:
+    known = known_distros(data)
+    here = next((k for k in known if k.name == distro), None)
+    if here is None or distro == "rolling":
+        return None
+    lasting = [k for k in known if k.ros == here.ros and k.lts]
+    last = lasting[-1] if lasting else None
+    return DistroTarget(last.name, data=data) if last and last.released > here.released else None
 
 
 def _platform_order() -> dict[str, int]:

@@ -1,5 +1,7 @@
 """Target: what another developer has. Answers which version, does a key resolve, what library, who provides."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 
@@ -38,6 +40,7 @@ class Change(NamedTuple):
     cmake-removed, msg-field, msg-removed, python-removed, ...
     state: `removed` (gone on this target), `deprecated` (still there), `absent` (the new spelling is not there yet).
     version: version of the package on the target, empty when unknown. since: first distro or version with `new`.
+    library: package is a platform library.
     """
 
     kind: str
@@ -48,6 +51,7 @@ class Change(NamedTuple):
     version: str
     since: str
     source: str
+    library: bool = False
 
 
 class Target:
@@ -108,6 +112,10 @@ class Target:
 
     def last_distro(self, package: str) -> str:
         """The newest distro of the same generation that has released a package, empty when none has."""
+        raise NotImplementedError
+
+    def newest(self) -> Target | None:
+        """The newest long-term distro of this generation as of the data's day, None when this is it or a newer one."""
         raise NotImplementedError
 
     def changes(self) -> tuple[Change, ...]:

@@ -52,6 +52,12 @@ def removed_header(view: View):
                 yield Hit(include.at, path, f"`{path}` is not there yet in {where}",
                           f"include `{change.old}`, or choose with __has_include", package.name, severity=severity)  # fmt: skip
                 continue
+            change = view.later.get(path)
+            if change is not None and change.kind.startswith("header"):
+                yield Hit(include.at, path, f"`{path}` is there, and gone in {change.package} {change.version} of {view.horizon}",
+                          f"include `{change.new}`" if change.new else "", package.name,
+                          severity="warning" if severity == "error" else "note")  # fmt: skip
+                continue
             lost = view.lost_header(path)
             if lost is not None:
                 yield Hit(include.at, path, lost.message, lost.help, package.name, severity=severity)

@@ -42,6 +42,11 @@ def removed_symbol(view: View):
             change = (python if use.language == "python" else cpp).get(use.text)
             if change is None and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
                 change = cpp.get(use.text.rsplit("::", 1)[-1])
+            later = None
+            if change is None:
+                change = later = view.later.get(use.text)
+                if later is not None and later.kind.startswith("header"):
+                    continue
             if change is None or change.new and use.text.endswith(change.new) or not view.active(use.conditions) or not view.concerned(package, change, use.at.path):
                 continue
             endings = excuses(change)
@@ -52,6 +57,11 @@ def removed_symbol(view: View):
             if change.package == "opencv" and use.text.startswith("CV_") and _BRIDGE in {i.path.rpartition(".")[0] for i in package.digest.includes}:
                 continue
             sure = use.role in ("build", "run") and view.certain(use.conditions) and change.kind != "api-changed"
+            if later is not None:
+                yield Hit(use.at, use.text, f"`{use.text}` is there, and gone in {change.package} {change.version} of {view.horizon}",
+                          f"use `{change.new}`" if change.new else "", package.name,
+                          severity="warning" if use.role in ("build", "run") and view.certain(use.conditions) and change.kind != "api-changed" else "note")  # fmt: skip
+                continue
             verb = "changed" if change.kind == "api-changed" else "is gone"
             yield Hit(use.at, use.text, f"`{use.text}` {verb} in {change.package} {change.version}".strip(),
                       f"use `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
