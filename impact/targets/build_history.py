@@ -36,14 +36,26 @@ class Surface(NamedTuple):
 
 _HEADER = re.compile(r"\.(?:h|hh|hpp|hxx|h\+\+|inl|ipp|tcc|cuh)(?:\.in|\.em)?$")
 _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
-_ASIDE = frozenset("test tests testing doc docs example examples benchmark benchmarks .github third_party thirdparty 3rdparty".split())
-_NO_MODULE = _ASIDE | frozenset("launch scripts script cfg config msg srv action include src cmake resource rviz urdf worlds models".split())
+_ASIDE = frozenset(
+    (
+        *("test", "tests", "testing", "doc", "docs", "example", "examples", "benchmark", "benchmarks"),
+        *("third_party", "thirdparty", "3rdparty"),
+    )
+)
+_NO_MODULE = _ASIDE | frozenset(
+    (
+        *("launch", "scripts", "script", "cfg", "config", "msg", "srv", "action", "include", "src", "cmake"),
+        *("resource", "rviz", "urdf", "worlds", "models"),
+    )
+)
 # Sources that are installed as headers from where they lie, as rviz does.
 _INSTALLED_SOURCES = re.compile(
     r"install\s*\(\s*DIRECTORY\s+(\.?/?(?:src/)?[\w./${}-]*)\s+DESTINATION\s+\$\{CATKIN_PACKAGE_INCLUDE_DESTINATION\}",
     re.IGNORECASE,
 )
 _SHIPS_MODULES = re.compile(r"cmake_modules$|_cmake_modules?$|_vendor$|cmake_helpers$")
+# A package's CMake extras that put a folder below include/ on the path as well, as xmlrpcpp does for its old names.
+_EXTRA_INCLUDE = re.compile(r"_INCLUDE_DIRS\b[^)]*?(?:include|INCLUDE_DESTINATION@)/(\w+)\b")
 _TREE = "tree"
 
 
@@ -77,6 +89,7 @@ class Reader:
         headers: set[str] = set()
         modules: set[str] = set()
         cmake: set[str] = set()
+        beside: set[str] = set()
         for path, entry in _walk(tree, ""):
             where, _, file = path.rpartition("/")
             if _HEADER.search(file):
@@ -89,18 +102,23 @@ class Reader:
                     modules.add(folders[1])
                 elif len(folders) == 1 and folders[0] and folders[0] not in _NO_MODULE:
                     modules.add(folders[0])
-            elif file.endswith((".cmake", ".cmake.in")):
+            elif file.endswith(".cmake") or (".cmake." in file and file.endswith(".in")):
+                if "extras" in file:
+                    beside.update(_EXTRA_INCLUDE.findall(entry.data.decode("utf-8", "replace")))
                 plain = file.removesuffix(".in").removesuffix(".cmake")
                 if plain.startswith("Find") and _SHIPS_MODULES.search(name):
                     cmake.add(plain[len("Find") :])
                 for end in ("Config", "-config"):
-                    if plain.endswith(end) and _folded(plain.removesuffix(end)) == _folded(name.removesuffix("_vendor")):
-                        cmake.add(plain.removesuffix(end))
+                    asked = plain.removesuffix(end)
+                    if asked != plain and _folded(asked) == _folded(name.removesuffix("_vendor")):
+                        cmake.add(asked)
             elif file == "CMakeLists.txt" and path.count("/") < 3:
                 for match in _INSTALLED_SOURCES.finditer(entry.data.decode("utf-8", "replace")):
                     folder = match.group(1).replace("${PROJECT_NAME}", name)
                     if not folder.startswith("include"):
                         headers.update(self._installed(name, tree, where, folder))
+        for folder in beside:
+            headers.update([h.removeprefix(f"{folder}/") for h in headers if h.startswith(f"{folder}/")])
         return Surface(name, frozenset(headers), frozenset(modules - {name}), frozenset(cmake - {name, ""}))
 
     def _installed(self, name: str, tree, where: str, folder: str) -> Iterator[str]:
@@ -128,7 +146,7 @@ def _walk(tree, prefix: str):
             yield prefix + entry.name, entry
 
 
-# -- releases ------------------------------------------------------------------------------------------------------------
+# Releases
 
 
 class Release(NamedTuple):

@@ -4,7 +4,7 @@ The system part joins the Contents and Packages indices of Debian and Ubuntu sui
 names of rosdep's keys (from the shipped snapshot). The ROS part reads git trees of ROS repositories: which package of
 which release has which header. Only names, versions and their relations are kept.
 
-    python -m rosimpact.impact.targets.build_providers --suite "ubuntu jammy=LISTS" ... --repositories FOLDER --output DATA
+    python -m rosimpact.impact.targets.build_providers --suite "ubuntu jammy=LISTS" --repositories FOLDER --output DATA
 
 LISTS is a `Dir::State::lists` folder of an apt that was told to fetch Contents indices as well.
 """
@@ -33,6 +33,12 @@ from .snapshot import DATA, Snapshot, default
 _HEADER_DEPTH = 4
 _MODULE_DEPTH = 2
 _PROGRAM_DEPTH = 1
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
 _APT_MANAGERS = frozenset({"apt"})
 _OTHER_MANAGERS = frozenset({"pip", "gem", "source", "npm", "snap", "dnf", "yum", "packages"})
 
@@ -80,7 +86,10 @@ def _cat(path: Path) -> Iterator[bytes]:
 
 
 def read_suite(platform: str, lists: Path) -> Suite:
-    """Reads one suite's Contents and Packages indices from an apt lists folder. Raises FileNotFoundError without them."""
+    """Reads one suite's Contents and Packages indices from an apt lists folder.
+
+    Raises FileNotFoundError without them.
+    """
     contents = sorted(lists.glob("*Contents-*"))
     packages = sorted(lists.glob("*_Packages*"))
     if not contents or not packages:
@@ -133,7 +142,7 @@ def _relations(text: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-# -- rosdep keys ---------------------------------------------------------------------------------------------------------
+# rosdep keys
 
 
 class Keys(NamedTuple):
@@ -168,26 +177,35 @@ def _apt_names(rule: object) -> Iterator[str]:
                 yield from _apt_names(value)
 
 
-# -- what a path means ---------------------------------------------------------------------------------------------------
+# What a path means
 
 # Folders below /usr/include that a package's own flags put on the include path (its .pc or CMake file says -I there).
 # Most carry a version in their name; these do not.
-_ROOTS = frozenset(
-    "OGRE opencv bullet jsoncpp suitesparse cairo ni nite OpenNI2 openni2 nss qwt openmpi mpi ImageMagick tirpc postgresql mysql mariadb "
-    "Imath OpenEXR nspr superlu libxml2 schroedinger libcec coin Inventor opencascade oce hdf5 webkitgtk "
-    "eigen2 serial atlas xenomai raul schifra ompl freetype".split()
+_ROOTS = _words(
+    """
+    OGRE opencv bullet jsoncpp suitesparse cairo ni nite OpenNI2 openni2 nss qwt openmpi mpi ImageMagick tirpc
+    postgresql mysql mariadb Imath OpenEXR nspr superlu libxml2 schroedinger libcec coin Inventor opencascade oce
+    hdf5 webkitgtk eigen2 serial atlas xenomai raul schifra ompl freetype
+    """
 )
 _VERSIONED = re.compile(r"[A-Za-z][\w.+-]*?[-_.]?v?\d[\d.]*$")
-_NOT_ROOTS = frozenset("opencv2 tinyxml2 asm-x86_64 lib3ds p11-kit-1 cppunit gtest sdbus-c++ i2c".split()) | frozenset({"g2o", "tf2", "openni2_camera", "ceres", "boost"})
+_NOT_ROOTS = frozenset(("opencv2", "tinyxml2", "asm-x86_64", "i2c", "tf2"))
+_ASIDE_INCLUDE = re.compile(r"usr/(?:lib|share)/(?!.*dist-packages)")
 _MULTIARCH = re.compile(r"(?:x86_64|i386|aarch64)-linux-gnu/")
 _COMPILER = re.compile(r"(?:c\+\+/[\d.]+|(?:x86_64-linux-gnu)/c\+\+/[\d.]+)/(.+)")
 _GCC = re.compile(r"usr/lib/gcc(?:-cross)?/[^/]+/[\d.]+/(?:include|include-fixed)/(.+)")
-_NO_HEADER = re.compile(r"\.(?:cmake|pc|mod|pas|txt|vala|a|so|py|json|xml|in|cu|cl|f90|f|inc\.gz|gz|html|tcl|la|o|sh|rst|md|am|dox|png)$")
-_PRIVATE = re.compile(r"(?:^|/)\d+\.\d+\.\d+/|/private/|(?:^|/)boost/(?:mpl/aux_/preprocessed|.*/preprocessed)/|/arch-|__pycache__")
+_NO_HEADER = re.compile(
+    r"\.(?:cmake|pc|mod|pas|txt|vala|a|so|py|json|xml|in|cu|cl|f90|f|gz|html|tcl|la|o|sh|rst|md|am|dox|png)$"
+)
+_PRIVATE = re.compile(r"(?:^|/)\d+\.\d+\.\d+/|/private/|(?:^|/)boost/.*/preprocessed/|/arch-|__pycache__")
+
+
+def _is_root(folder: str) -> bool:
+    return folder in _ROOTS or (folder not in _NOT_ROOTS and _VERSIONED.fullmatch(folder) is not None)
 
 
 def include_paths(path: str) -> tuple[str, ...]:
-    """How code may include an installed file: `usr/include/eigen3/Eigen/Core` gives `eigen3/Eigen/Core` and `Eigen/Core`.
+    """How code may include an installed file: `usr/include/eigen3/Eigen/Core` gives that and `Eigen/Core`.
 
     Empty for what is no header. The first one is the path below the default include folder.
     """
@@ -196,9 +214,7 @@ def include_paths(path: str) -> tuple[str, ...]:
         return (gcc.group(1),)
     if path.startswith("usr/include/"):
         rest = path[len("usr/include/") :]
-    elif path.startswith(("usr/lib/", "usr/share/")) and "/include/" in path and "dist-packages" not in path:
-        rest = path.split("/include/", 1)[1]
-    elif "/dist-packages/numpy/" in path and "/include/" in path:
+    elif "/include/" in path and ("/dist-packages/numpy/" in path or _ASIDE_INCLUDE.match(path)):
         rest = path.split("/include/", 1)[1]
     else:
         return ()
@@ -215,9 +231,7 @@ def include_paths(path: str) -> tuple[str, ...]:
         again = parts.index(head, 1) if head in parts[1:-1] else 0
         if again:
             parts = parts[again:]
-        elif head.startswith("Qt") and len(parts) == 2:
-            parts = parts[1:]
-        elif len(found) == 1 and (head in _ROOTS or (_VERSIONED.fullmatch(head) and head not in _NOT_ROOTS)):
+        elif (head.startswith("Qt") and len(parts) == 2) or (len(found) == 1 and _is_root(head)):
             parts = parts[1:]
         else:
             break
@@ -228,13 +242,16 @@ def include_paths(path: str) -> tuple[str, ...]:
 
 
 # Names that any project gives its own headers: without a folder they say nothing about whose they are.
-_TOO_COMMON = frozenset(
-    "config.h types.h common.h util.h utils.h version.h defs.h error.h errors.h log.h logger.h logging.h debug.h main.h list.h "
-    "queue.h thread.h threads.h timer.h vector.h matrix.h array.h buffer.h object.h node.h event.h export.h global.h "
-    "image.h info.h macros.h memory.h message.h misc.h options.h parser.h point.h settings.h socket.h stream.h "
-    "string.h table.h test.h tools.h tree.h value.h window.h file.h base.h color.h core.h data.h constants.h context.h "
-    "client.h server.h driver.h device.h camera.h frame.h function.h graph.h hash.h io.h math.h model.h filter.h "
-    "platform.h visibility.h config.hpp types.hpp common.hpp utils.hpp version.hpp thread.hpp timer.hpp".split()
+_TOO_COMMON = _words(
+    """
+    config.h types.h common.h util.h utils.h version.h defs.h error.h errors.h log.h logger.h logging.h debug.h
+    main.h list.h queue.h thread.h threads.h timer.h vector.h matrix.h array.h buffer.h object.h node.h event.h
+    export.h global.h image.h info.h macros.h memory.h message.h misc.h options.h parser.h point.h settings.h
+    socket.h stream.h string.h table.h test.h tools.h tree.h value.h window.h file.h base.h color.h core.h data.h
+    constants.h context.h client.h server.h driver.h device.h camera.h frame.h function.h graph.h hash.h io.h math.h
+    model.h filter.h platform.h visibility.h config.hpp types.hpp common.hpp utils.hpp version.hpp thread.hpp
+    timer.hpp
+    """
 )
 _CMAKE_CONFIG = re.compile(r"([^/]+?)(Config|-config)\.cmake$")
 _CMAKE_FIND = re.compile(r"usr/share/cmake-[\d.]+/Modules/Find([^/]+)\.cmake$")
@@ -256,7 +273,7 @@ def cmake_names(path: str) -> tuple[str, ...]:
 
 
 def module_names(path: str) -> tuple[str, ...]:
-    """Python modules that a file gives, outermost first: `…/dist-packages/ruamel/yaml/main.py` gives ruamel, ruamel.yaml."""
+    """Python modules that a file gives, outermost first: `…/dist-packages/ruamel/yaml/x.py` gives two names."""
     match = _MODULE.match(path)
     if not match or ".egg-info" in path or ".dist-info" in path:
         return ()
@@ -274,7 +291,7 @@ def module_names(path: str) -> tuple[str, ...]:
     return tuple(names)
 
 
-# -- the join ------------------------------------------------------------------------------------------------------------
+# The join
 
 
 class _Reach(NamedTuple):
@@ -288,7 +305,7 @@ class _Reach(NamedTuple):
 
 
 def reach(keys: Keys, suites: Iterable[Suite]) -> tuple[dict[str, dict[str, _Reach]], list[set[str]]]:
-    """Debian package to the keys that bring it on some suite; and for each suite the packages that any key brings there."""
+    """Debian package to the keys that bring it on some suite; for each suite the packages that any key brings there."""
     found: dict[str, dict[str, _Reach]] = defaultdict(dict)
     by_suite = []
     for suite in suites:
@@ -326,10 +343,15 @@ class _Names(NamedTuple):
         self.suites[name] = self.suites.get(name, 0) | bit
 
 
+_COMPILER_PACKAGE = re.compile(
+    r"libc6-dev(?:-\w+)?|linux-libc-dev|libcrypt-dev|libnsl-dev|gcc|(?:gcc|g\+\+|cpp)-[\d.]+"
+    r"|lib(?:32|x32|64)?(?:stdc\+\+|gcc)-[\d.]+-dev"
+)
+
+
 def _compiler_packages(suite: Suite) -> frozenset[str]:
     """Debian packages behind the compiler and the C library: build-essential's headers, which everybody has."""
-    bases = re.compile(r"(?:libc6-dev|linux-libc-dev|libstdc\+\+-[\d.]+-dev|libgcc-[\d.]+-dev|gcc-[\d.]+|gcc|g\+\+-[\d.]+|libc6-dev-\w+|libcrypt-dev|libnsl-dev|binutils-dev|cpp-[\d.]+|lib(?:32|x32|64)(?:gcc|stdc\+\+)-[\d.]+-dev)$")
-    return frozenset(name for name in suite.depends if bases.match(name))
+    return frozenset(name for name in suite.depends if _COMPILER_PACKAGE.fullmatch(name))
 
 
 def _same_python(names: Iterable[str]) -> set[str]:
@@ -369,7 +391,7 @@ def join(suites: list[Suite], keys: Keys) -> Tables:
     for place, suite in enumerate(suites):
         installable = by_suite[place] | compiler | essential
         for path, packages in suite.files():
-            # A package that another suite's keys bring tells who provides a name, not that this suite has it by default.
+            # A package that only another suite's keys bring tells who provides a name, not that this suite has it.
             bit = 0 if installable.isdisjoint(packages) else 1 << place
             packages = tuple(p for p in packages if p not in suite.ros or p in named)
             if not any(p in reached or p in compiler or p in essential for p in packages):
@@ -459,7 +481,7 @@ def _without_repetition(
     }
 
 
-# -- writing -------------------------------------------------------------------------------------------------------------
+# Writing
 
 
 def write(tables: Tables, platforms: list[str], ros: RosFacts, output: Path) -> bytes:

@@ -59,7 +59,7 @@ _LIBC = Provider("system", "", "")
 
 
 class HeaderSpan(NamedTuple):
-    """An unbroken run of a distro's releases of a package that have a header; last is None when it is there to the end."""
+    """An unbroken run of a distro's releases that have a header; last is None when it is there to the end."""
 
     distro: str
     first: str
@@ -82,7 +82,7 @@ class Providers:
     def __reduce__(self):
         return Providers, (self._data, self._cache)
 
-    # -- lookups -----------------------------------------------------------------------------------------------------
+    # Lookups
 
     def header(self, path: str) -> list[Provider]:
         """Who installs a header that is included as path (`ros/ros.h`, `opencv2/core.hpp`), best first.
@@ -171,7 +171,7 @@ class Providers:
         """Platforms whose system packages are in the table."""
         return tuple(name for (name,) in self._rows("SELECT name FROM platform ORDER BY bit"))
 
-    # -- headers of released packages over time ------------------------------------------------------------------------
+    # Headers of released packages over time
 
     def header_history(self, package: str, header: str) -> tuple[HeaderSpan, ...]:
         """Releases of a ROS package that have a header (include path), by distro; empty when none is known to.
@@ -213,7 +213,7 @@ class Providers:
                 return [provider._replace(sure=False) for provider in found]
         return []
 
-    # -- rows --------------------------------------------------------------------------------------------------------
+    # Rows
 
     def _facts(self, kind: str, name: str) -> list[Provider]:
         found: list[Provider] = []
@@ -297,7 +297,7 @@ def _within(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
     )
 
 
-# -- the file ------------------------------------------------------------------------------------------------------------
+# The file
 
 
 class _Info(msgspec.Struct, frozen=True):
@@ -390,7 +390,7 @@ def _in_memory(raw: bytes, facts: bytes) -> sqlite3.Connection:
 
 
 def add_facts(connection: sqlite3.Connection, facts: bytes) -> None:
-    """Loads data/providers.yaml: kind of name, name, then providers (`key`, `key debian-package`, `ros:package`, ``)."""
+    """Loads data/providers.yaml: kind, name, then providers (`key`, `key debian-package`, `ros:package`, empty)."""
     import yaml
 
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)

@@ -6,20 +6,28 @@ additions and removals (PEP 594, PEP 632 and others).
 
 from __future__ import annotations
 
-_ALWAYS_3 = frozenset(
-    "__future__ __main__ _thread abc aifc antigravity argparse array ast atexit base64 bdb binascii bisect builtins bz2 "
-    "cProfile calendar cmath cmd code codecs codeop collections colorsys compileall concurrent configparser contextlib "
-    "copy copyreg crypt csv ctypes curses datetime dbm decimal difflib dis doctest email encodings ensurepip enum errno "
-    "faulthandler fcntl filecmp fileinput fnmatch fractions ftplib functools gc genericpath getopt getpass gettext glob "
-    "grp gzip hashlib heapq hmac html http idlelib imaplib importlib inspect io ipaddress itertools json keyword lib2to3 "
-    "linecache locale logging lzma mailbox marshal math mimetypes mmap modulefinder msvcrt multiprocessing netrc nt "
-    "ntpath nturl2path numbers opcode operator optparse os pathlib pdb pickle pickletools pkgutil platform plistlib "
-    "poplib posix posixpath pprint profile pstats pty pwd py_compile pyclbr pydoc pydoc_data pyexpat queue quopri random "
-    "re readline reprlib resource rlcompleter runpy sched select selectors shelve shlex shutil signal site smtplib socket "
-    "socketserver sqlite3 sre_compile sre_constants sre_parse ssl stat statistics string stringprep struct subprocess "
-    "symtable sys sysconfig syslog tabnanny tarfile tempfile termios test textwrap this threading time timeit tkinter "
-    "token tokenize trace traceback tracemalloc tty turtle turtledemo types unicodedata unittest urllib uuid venv "
-    "warnings wave weakref webbrowser winreg winsound wsgiref xml xmlrpc zipapp zipfile zipimport zlib asyncio".split()
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+_ALWAYS_3 = _words(
+    """
+    __future__ __main__ _thread abc aifc antigravity argparse array ast atexit base64 bdb binascii bisect builtins
+    bz2 cProfile calendar cmath cmd code codecs codeop collections colorsys compileall concurrent configparser
+    contextlib copy copyreg crypt csv ctypes curses datetime dbm decimal difflib dis doctest email encodings
+    ensurepip enum errno faulthandler fcntl filecmp fileinput fnmatch fractions ftplib functools gc genericpath
+    getopt getpass gettext glob grp gzip hashlib heapq hmac html http idlelib imaplib importlib inspect io ipaddress
+    itertools json keyword lib2to3 linecache locale logging lzma mailbox marshal math mimetypes mmap modulefinder
+    msvcrt multiprocessing netrc nt ntpath nturl2path numbers opcode operator optparse os pathlib pdb pickle
+    pickletools pkgutil platform plistlib poplib posix posixpath pprint profile pstats pty pwd py_compile pyclbr
+    pydoc pydoc_data pyexpat queue quopri random re readline reprlib resource rlcompleter runpy sched select
+    selectors shelve shlex shutil signal site smtplib socket socketserver sqlite3 sre_compile sre_constants
+    sre_parse ssl stat statistics string stringprep struct subprocess symtable sys sysconfig syslog tabnanny tarfile
+    tempfile termios test textwrap this threading time timeit tkinter token tokenize trace traceback tracemalloc tty
+    turtle turtledemo types unicodedata unittest urllib uuid venv warnings wave weakref webbrowser winreg winsound
+    wsgiref xml xmlrpc zipapp zipfile zipimport zlib asyncio
+    """
 )
 _ADDED = {"zipapp": 5, "typing": 5, "secrets": 6, "contextvars": 7, "dataclasses": 7, "zoneinfo": 9, "graphlib": 9,
           "tomllib": 11, "_colorize": 13, "annotationlib": 14, "compression": 14}  # fmt: skip
@@ -31,7 +39,6 @@ REMOVED: dict[str, tuple[int, str]] = {
     "symbol": (10, ""),
     "macpath": (8, ""),
     "dummy_threading": (9, "threading"),
-    "_dummy_thread": (9, "_thread"),
     "binhex": (11, ""),
     "asynchat": (12, "asyncio"),
     "asyncore": (12, "asyncio"),
@@ -144,9 +151,12 @@ PYTHON_2_ONLY: dict[str, str] = {
 }
 """Module of Python 2.7 to its home in Python 3 (empty: none)."""
 
-_NOT_IN_2 = frozenset(
-    "_thread asyncio builtins concurrent configparser copyreg dbm ensurepip enum faulthandler html http ipaddress lzma "
-    "nt pathlib queue reprlib selectors socketserver statistics tkinter tracemalloc turtledemo venv winreg xmlrpc zipapp".split()
+_NOT_IN_2 = _words(
+    """
+    _thread asyncio builtins concurrent configparser copyreg dbm ensurepip enum faulthandler html http ipaddress
+    lzma nt pathlib queue reprlib selectors socketserver statistics tkinter tracemalloc turtledemo venv winreg
+    xmlrpc zipapp
+    """
 )
 _TOP_2 = frozenset(name for name in PYTHON_2_ONLY if "." not in name)
 
@@ -159,9 +169,7 @@ def stdlib(module: str, minor: int, major: int = 3) -> bool:
     """
     name = module.partition(".")[0]
     if major == 2:
-        return name in _TOP_2 or (name in _ALWAYS_3 and name not in _NOT_IN_2) or (
-            name in REMOVED and name not in ("_dummy_thread",)
-        )
+        return name in _TOP_2 or (name in _ALWAYS_3 and name not in _NOT_IN_2) or name in REMOVED
     if name in REMOVED:
         return minor < REMOVED[name][0]
     if name in _ADDED:
@@ -175,11 +183,13 @@ def ever_stdlib(module: str) -> bool:
     return name in _ALWAYS_3 or name in _ADDED or name in REMOVED or name in _TOP_2 or name in _PRIVATE
 
 
-_PRIVATE = frozenset(
-    "_abc _ast _asyncio _bisect _bootlocale _bz2 _codecs _collections _collections_abc _compat_pickle _compression "
-    "_contextvars _csv _ctypes _curses _curses_panel _datetime _dbm _decimal _elementtree _functools _gdbm _hashlib _heapq "
-    "_imp _io _json _locale _lsprof _lzma _markupbase _multibytecodec _multiprocessing _opcode _operator _osx_support "
-    "_pickle _posixshmem _posixsubprocess _py_abc _pydatetime _pydecimal _pyio _queue _random _signal _sitebuiltins "
-    "_socket _sqlite3 _sre _ssl _stat _statistics _string _strptime _struct _symtable _sysconfigdata _threading_local "
-    "_tkinter _tracemalloc _typing _uuid _warnings _weakref _weakrefset _winapi _zoneinfo".split()
+_PRIVATE = _words(
+    """
+    _abc _ast _asyncio _bisect _bootlocale _bz2 _codecs _collections _collections_abc _compat_pickle _compression
+    _contextvars _csv _ctypes _curses _curses_panel _datetime _dbm _decimal _elementtree _functools _gdbm _hashlib
+    _heapq _imp _io _json _locale _lsprof _lzma _markupbase _multibytecodec _multiprocessing _opcode _operator
+    _osx_support _pickle _posixshmem _posixsubprocess _py_abc _pydatetime _pydecimal _pyio _queue _random _signal
+    _sitebuiltins _socket _sqlite3 _sre _ssl _stat _statistics _string _strptime _struct _symtable _sysconfigdata
+    _threading_local _tkinter _tracemalloc _typing _uuid _warnings _weakref _weakrefset _winapi _zoneinfo
+    """
 )
