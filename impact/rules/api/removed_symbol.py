@@ -38,6 +38,7 @@ def removed_symbol(view: View):
             (python if change.kind.startswith("python") else cpp).setdefault(change.old, change)
     for package in view:
         included = None
+        warned: dict[str, set[str]] = {}
         for use in package.digest.names:
             change = (python if use.language == "python" else cpp).get(use.text)
             if change is None and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
@@ -58,9 +59,16 @@ def removed_symbol(view: View):
                 continue
             sure = use.role in ("build", "run") and view.certain(use.conditions) and change.kind != "api-changed"
             if later is not None:
-                yield Hit(use.at, use.text, f"`{use.text}` is there, and gone in {change.package} {change.version} of {view.horizon}",
-                          f"use `{change.new}`" if change.new else "", package.name,
-                          severity="warning" if use.role in ("build", "run") and view.certain(use.conditions) and change.kind != "api-changed" else "note")  # fmt: skip
+                # Enough to see what is coming: the first names of each library loudly, the rest as notes.
+                names = warned.setdefault(later.package, set())
+                loud = (
+                    use.language == "cpp" and use.role == "build" and view.certain(use.conditions)
+                    and later.kind != "api-changed" and later.package != "python" and (len(names) < 2 or use.text in names)
+                )  # fmt: skip
+                if loud:
+                    names.add(use.text)
+                yield Hit(use.at, use.text, f"`{use.text}` is there, and gone in {later.package} {later.version} of {view.horizon}",
+                          f"use `{later.new}`" if later.new else "", package.name, severity="warning" if loud else "note")  # fmt: skip
                 continue
             verb = "changed" if change.kind == "api-changed" else "is gone"
             yield Hit(use.at, use.text, f"`{use.text}` {verb} in {change.package} {change.version}".strip(),

@@ -40,7 +40,7 @@ def library_component(view: View):
                 later = gone_component(newest, found.name, name) if newest is not None and not gone else None
                 if later:
                     yield Hit(at, name, f"`{name}` is there, and gone in {found.name} {later.version} of {newest.distro}", later.help,
-                              package.name, severity="warning" if found.required and view.certain(found.conditions) else "note")  # fmt: skip
+                              package.name, severity="warning" if found.required and name != "system" and view.certain(found.conditions) else "note")  # fmt: skip
                 if gone:
                     sure = found.required and view.certain(found.conditions)
                     yield Hit(at, name, f"{found.name} {gone.version} has no component `{name}`", gone.help, package.name,

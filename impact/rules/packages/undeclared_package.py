@@ -134,8 +134,7 @@ def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
         return "note"
     if blind or not view.target.knows_manifests:
         return "warning"
-    ros = name in view.workspace.packages or view.target.version(name) is not None
-    return "error" if ros or need.how == "find_package" else "warning"
+    return "error"
 
 
 def _how(need: Need) -> str:
