@@ -1,5 +1,6 @@
 """Known upstream changes, judged on targets by version, distro, day and release tree."""
 
+import json
 import re
 
 import pytest
@@ -11,6 +12,7 @@ from rosimpact.impact.targets.changes import (
     transitive_includes,
 )
 from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.snapshot import DATA
 from rosimpact.impact.targets.version import parts
 
 
@@ -90,9 +92,16 @@ def test_a_change_says_what_instead_and_where_from():
     assert "imgproc/imgproc_c.h" in excuses(change)
 
 
+def reviewed_rows():
+    """The rows of data/changes.json, without those that other files of the folder derive from release tags."""
+    groups = json.loads((DATA / "changes.json").read_text())["changes"]
+    names = {(group["kind"], group["package"], name) for group in groups for name in group["names"]}
+    return [row for row in all_rows() if (row.kind, row.package, row.old) in names]
+
+
 def test_every_row_is_complete():
     wrong = []
-    for row in all_rows():
+    for row in reviewed_rows():
         bounds = [b for b in (row.removed_in, row.deprecated_in, row.new_since, row.back_in, *row.new_in.values()) if b]
         if not row.source or not row.old or row.old == row.new:
             wrong.append((row, "incomplete"))
@@ -116,11 +125,11 @@ def test_every_row_is_complete():
     ],
 )
 def test_old_names_are_what_a_scanner_finds(kind, shape):
-    assert not [row.old for row in all_rows() if row.kind.startswith(kind) and not re.match(shape, row.old)]
+    assert not [row.old for row in reviewed_rows() if row.kind.startswith(kind) and not re.match(shape, row.old)]
 
 
 def test_no_name_twice_for_one_package():
-    seen = [(row.package, row.old, row.kind.partition("-")[0]) for row in all_rows()]
+    seen = [(row.package, row.old, row.kind.partition("-")[0]) for row in reviewed_rows()]
     assert sorted({name for name in seen if seen.count(name) > 1}) == []
 
 

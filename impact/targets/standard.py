@@ -1,0 +1,137 @@
+"""What libstdc++'s headers bring along: which standard header reaches the definition of a name in which GCC.
+
+`data/providers_std.json` was made by preprocessing each standard header of GCC 5, 7 and 9 to 15 under the language
+standards in use, and listing the standard headers that it read. Where standards differ, all that any of them reads
+counts.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import msgspec
+
+from .snapshot import DATA, SnapshotError
+
+_INTEGERS = (
+    *("int8_t", "int16_t", "int32_t", "int64_t", "uint8_t", "uint16_t", "uint32_t", "uint64_t"),
+    *("intptr_t", "uintptr_t"),
+)
+_STL_ALGORITHMS = (
+    *("sort", "stable_sort", "find_if", "copy_n", "copy_if", "remove_if", "transform", "count_if", "count"),
+    *("max_element", "min_element", "minmax_element", "reverse", "replace", "for_each", "unique", "binary_search"),
+    *("upper_bound", "nth_element", "any_of", "all_of", "none_of", "clamp", "shuffle", "random_shuffle", "generate"),
+    *("set_difference", "partial_sort", "rotate", "search", "merge", "includes", "next_permutation", "partition"),
+    *("remove", "find", "minmax"),
+)
+
+DEFINED_IN: dict[str, tuple[str, ...]] = {
+    **{f"std::{name}": ("cstdint",) for name in _INTEGERS},
+    **dict.fromkeys(_INTEGERS, ("cstdint", "stdint.h")),
+    **{f"std::{name}": ("algorithm", "bits/stl_algo") for name in _STL_ALGORITHMS},
+    "std::function": ("functional", "bits/std_function"),
+    "std::bind": ("functional",),
+    "std::mem_fn": ("functional",),
+    "std::ref": ("functional", "bits/refwrap"),
+    "std::cref": ("functional", "bits/refwrap"),
+    "std::placeholders::_1": ("functional",),
+    "std::placeholders::_2": ("functional",),
+    "std::placeholders::_3": ("functional",),
+    "std::numeric_limits": ("limits",),
+    "std::unique_ptr": ("memory", "bits/unique_ptr"),
+    "std::make_unique": ("memory", "bits/unique_ptr"),
+    "std::shared_ptr": ("memory", "bits/shared_ptr"),
+    "std::weak_ptr": ("memory", "bits/shared_ptr"),
+    "std::make_shared": ("memory", "bits/shared_ptr"),
+    "std::pair": ("utility", "bits/stl_pair"),
+    "std::make_pair": ("utility", "bits/stl_pair"),
+    "std::exchange": ("utility",),
+    "std::thread": ("thread", "bits/std_thread"),
+    "std::this_thread::sleep_for": ("thread", "bits/this_thread_sleep"),
+    "std::this_thread::sleep_until": ("thread", "bits/this_thread_sleep"),
+    "std::mutex": ("mutex", "bits/std_mutex"),
+    "std::lock_guard": ("mutex", "bits/std_mutex"),
+    "std::unique_lock": ("mutex", "bits/unique_lock"),
+    "std::recursive_mutex": ("mutex",),
+    "std::call_once": ("mutex",),
+    "std::once_flag": ("mutex",),
+    "std::condition_variable": ("condition_variable",),
+    "std::atomic": ("atomic",),
+    "std::array": ("array",),
+    "std::optional": ("optional",),
+    "std::nullopt": ("optional",),
+    "std::variant": ("variant",),
+    "std::any": ("any",),
+    "std::string_view": ("string_view",),
+    "std::runtime_error": ("stdexcept",),
+    "std::logic_error": ("stdexcept",),
+    "std::invalid_argument": ("stdexcept",),
+    "std::out_of_range": ("stdexcept",),
+    "std::length_error": ("stdexcept",),
+    "std::domain_error": ("stdexcept",),
+    "std::vector": ("vector", "bits/stl_vector"),
+    "std::map": ("map", "bits/stl_map"),
+    "std::set": ("set", "bits/stl_set"),
+    "std::list": ("list", "bits/stl_list"),
+    "std::deque": ("deque", "bits/stl_deque"),
+    "std::unordered_map": ("unordered_map",),
+    "std::unordered_set": ("unordered_set",),
+    "std::regex": ("regex",),
+    "std::smatch": ("regex",),
+    "std::stringstream": ("sstream",),
+    "std::ostringstream": ("sstream",),
+    "std::istringstream": ("sstream",),
+    "std::ifstream": ("fstream",),
+    "std::ofstream": ("fstream",),
+    "std::cout": ("iostream",),
+    "std::cerr": ("iostream",),
+    "std::setprecision": ("iomanip",),
+    "std::setw": ("iomanip",),
+    "std::setfill": ("iomanip",),
+    "std::accumulate": ("numeric",),
+    "std::iota": ("numeric",),
+    "std::inner_product": ("numeric",),
+    "std::future": ("future",),
+    "std::promise": ("future",),
+    "std::async": ("future",),
+    "std::ostream_iterator": ("iterator",),
+    "std::istream_iterator": ("iterator",),
+    "std::stack": ("stack",),
+    "std::queue": ("queue",),
+    "std::priority_queue": ("queue",),
+    "std::bitset": ("bitset",),
+    "std::complex": ("complex",),
+}
+"""Name to the headers that define it, the public one first; a `bits/` one is libstdc++'s own that does."""
+
+
+@cache
+def _tables() -> tuple[tuple[int, dict[str, frozenset[str]]], ...]:
+    path = DATA / "providers_std.json"
+    try:
+        read = msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, str]])
+    except (OSError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    return tuple(
+        (int(major), {header: frozenset(text.split()) for header, text in table.items()})
+        for major, table in sorted(read.items(), key=lambda item: int(item[0]))
+    )
+
+
+def brought_by(header: str, gcc: int) -> frozenset[str]:
+    """Standard headers (and `bits/` ones of DEFINED_IN) that a standard header reads in a GCC, itself included.
+
+    gcc: major version; one that is not known is answered as the nearest older one, or the oldest. Raises SnapshotError
+    when the data cannot be read.
+    """
+    older = [table for major, table in _tables() if major <= gcc]
+    table = older[-1] if older else _tables()[0][1]
+    return table.get(header, frozenset()) | {header}
+
+
+def reaches(headers: frozenset[str], name: str, gcc: int) -> bool | None:
+    """Whether any of these standard headers brings the definition of a name in a GCC; None for an unknown name."""
+    wanted = DEFINED_IN.get(name)
+    if wanted is None:
+        return None
+    return any(not brought_by(header, gcc).isdisjoint(wanted) for header in headers)
