@@ -21,7 +21,7 @@ from .build import At
 from .conditions import Environment, all_hold
 from .package import role_of_folder
 from .spelling import Names
-from .workspace import Package, Workspace, is_interface_header, snake
+from .workspace import Package, Workspace, snake
 
 # Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's Depends).
 _INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
@@ -77,6 +77,9 @@ class View:
         self._cmake: dict[str, tuple[Provider, ...]] = {}
         self._modules: dict[str, tuple[Provider, ...]] = {}
         self._debian: dict[str, frozenset[str]] = {}
+        self._held: dict[tuple[Condition, ...], bool | None] = {}
+        self._standard: dict[str, bool] = {}
+        self._lost: dict[str, Misnamed | None] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
 
     def __iter__(self) -> Iterator[Package]:
@@ -121,12 +124,17 @@ class View:
     def active(self, conditions: Iterable[Condition]) -> bool:
         """False only when a statement under these conditions surely does not count on the target."""
         conditions = tuple(conditions)
-        return not conditions or all_hold(conditions, self.environment) is not False
+        return not conditions or self._hold(conditions) is not False
 
     def certain(self, conditions: Iterable[Condition]) -> bool:
         """True only when a statement under these conditions surely counts on the target."""
         conditions = tuple(conditions)
-        return not conditions or all_hold(conditions, self.environment) is True
+        return not conditions or self._hold(conditions) is True
+
+    def _hold(self, conditions: tuple[Condition, ...]) -> bool | None:
+        if conditions not in self._held:
+            self._held[conditions] = all_hold(conditions, self.environment)
+        return self._held[conditions]
 
     def active_manifest(self, condition: str) -> bool:
         """False only when the condition attribute of a dependency surely does not hold on the target."""
@@ -175,10 +183,18 @@ class View:
 
     def is_standard(self, header: str) -> bool:
         """True for headers of the C and C++ standard libraries and of the operating system."""
-        return any(not p.name for p in self.providers.header(header))
+        known = self._standard.get(header)
+        if known is None:
+            known = self._standard[header] = any(not p.name for p in self.providers.header(header))
+        return known
 
     def lost_header(self, path: str) -> Misnamed | None:
         """What is wrong when every released package that has, or had, a header lacks it in its version here."""
+        if path not in self._lost:
+            self._lost[path] = self._lost_header(path)
+        return self._lost[path]
+
+    def _lost_header(self, path: str) -> Misnamed | None:
         target = self.target
         owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
         if not owners or any(p.kind != "ros" for p in self.header(path)):
@@ -540,8 +556,7 @@ def interface_of(view: View, include: str) -> str | None:
     head, _, rest = include.partition("/")
     package = view.workspace.packages.get(head)
     if package is not None:
-        names = view.workspace.interface_names.get(head, ())
-        return head if package.is_interface_package and is_interface_header(rest, names) else None
+        return head if package.is_interface_package and view.workspace.is_interface_header(head, rest) else None
     if not head.endswith(("_msgs", "_srvs", "_interfaces", "_actions")) and not rest.startswith(("msg/", "srv/", "action/")):
         return None
     return head

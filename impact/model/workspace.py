@@ -10,7 +10,7 @@ import hashlib
 import posixpath
 import re
 from collections.abc import Callable, Iterable
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import msgspec
 
@@ -81,6 +81,8 @@ class Workspace:
     def __init__(self, packages: Iterable[Digest], discovered: Discovered, ros: int, gathered: Gathered, read: Callable[[str], bytes]):
         self.packages: dict[str, Package] = {d.name: Package(d) for d in packages}
         self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
+        self._interface_stems: dict[str, tuple[frozenset[str], frozenset[str]]] = {}
+        self._provided: dict[str, list[str]] = {}
 
     def __iter__(self):
         return iter(self.packages.values())
@@ -155,6 +157,12 @@ class Workspace:
 
     def provides_header(self, include: str) -> list[str]:
         """Packages of the workspace whose files, or whose generated files, answer an include path."""
+        known = self._provided.get(include)
+        if known is None:
+            known = self._provided[include] = self._provides_header(include)
+        return known
+
+    def _provides_header(self, include: str) -> list[str]:
         owners = self.headers.get(include)
         if owners:
             return owners
@@ -172,7 +180,25 @@ class Workspace:
             return True
         if rest.rsplit("/", 1)[-1] in ("visibility_control.h", "visibility_control.hpp", "version.h", "version.hpp", "export.h"):
             return True
-        return package.is_interface_package and is_interface_header(rest, self.interface_names.get(package.name, ()))
+        return package.is_interface_package and self.is_interface_header(package.name, rest)
+
+    def is_interface_header(self, package: str, rest: str) -> bool:
+        """True when `rest` (an include path after `package/`) is generated from an interface of the workspace's package."""
+        stems = self._interface_stems.get(package)
+        if stems is None:
+            stems = self._interface_stems[package] = _stems(self.interface_names.get(package, ()))
+        return _names_interface(rest, stems)
+
+    @cached_property
+    def includers(self) -> dict[str, set[str]]:
+        """Package to the other packages of the workspace that include its headers."""
+        found: dict[str, set[str]] = {}
+        for package in self:
+            for path in {i.path for i in package.digest.includes}:
+                for owner in self.provides_header(path):
+                    if owner != package.name:
+                        found.setdefault(owner, set()).add(package.name)
+        return found
 
 
 def importable(package: Package) -> set[str]:
@@ -195,6 +221,7 @@ def importable(package: Package) -> set[str]:
 _ROS1_SUFFIXES = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback", "Request", "Response", "")
 
 
+@lru_cache(maxsize=20000)
 def snake(name: str) -> str:
     """A message name as rosidl spells it in header names (`TransformStamped` gives `transform_stamped`).
 
@@ -203,14 +230,27 @@ def snake(name: str) -> str:
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
 
-def is_interface_header(rest: str, names: Iterable[str]) -> bool:
-    """True when `rest` (an include path after `package/`) is generated from one of the named interfaces."""
+def _stems(names: Iterable[str]) -> tuple[frozenset[str], frozenset[str]]:
+    """Stems of the headers generated from interfaces: in ROS 2's spelling and in ROS 1's."""
+    names = tuple(names)
+    return frozenset(snake(n) for n in names), frozenset(n + s for n in names for s in _ROS1_SUFFIXES)
+
+
+def _names_interface(rest: str, stems: tuple[frozenset[str], frozenset[str]]) -> bool:
     parts = rest.split("/")
     if parts[0] in ("msg", "srv", "action") and len(parts) > 1:
-        stem = re.split(r"__|\.", parts[-1])[0]
-        return any(snake(n) == stem or snake(n) + "_" == stem[: len(snake(n)) + 1] for n in names)
-    stem = parts[-1].removesuffix(".h")
-    return len(parts) == 1 and any(stem == n + s for n in names for s in _ROS1_SUFFIXES)
+        stem = parts[-1].partition(".")[0].partition("__")[0]
+        while stem:
+            if stem in stems[0]:
+                return True
+            stem = stem.rpartition("_")[0]
+        return False
+    return len(parts) == 1 and parts[-1].removesuffix(".h") in stems[1]
+
+
+def is_interface_header(rest: str, names: Iterable[str]) -> bool:
+    """True when `rest` (an include path after `package/`) is generated from one of the named interfaces."""
+    return _names_interface(rest, _stems(names))
 
 
 def link(tree, gathered: Gathered, store, ros: int | None, watched: Watched) -> Workspace:

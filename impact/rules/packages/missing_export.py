@@ -85,14 +85,6 @@ def _sets(package, stem: str) -> bool:
     return False
 
 
-def _includers(view: View, package) -> set[str]:
-    """Packages of the workspace that include the package's headers."""
-    return {
-        other.name for other in view
-        if other.name != package.name and any(package.name in view.workspace.provides_header(i.path) for i in other.digest.includes)
-    }  # fmt: skip
-
-
 def _ament(view: View, package):
     exports = [e for e in package.build.exports if view.active(e.conditions)]
     hows = {e.how for e in exports}
@@ -101,7 +93,7 @@ def _ament(view: View, package):
             libraries = [t for t in package.build.targets if t.kind in ("library", "interface") and t.name in _installed(package)]
             if libraries and any("/include/" in f"/{h}" for h in package.digest.public_headers):
                 first = package.build.ament_package
-                if not _includers(view, package):
+                if package.name not in view.workspace.includers:
                     return
                 yield Hit(first, "ament_export_include_directories", f"`{package.name}` installs headers and exports neither them nor a target",
                           "call ament_export_targets or ament_export_include_directories", package.name)  # fmt: skip
@@ -118,7 +110,7 @@ def _ament(view: View, package):
     told = set()
     # Until Galactic all headers lay in one folder, so a missing export went unnoticed.
     apart = view.target.distro not in ("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic")
-    includers = None
+    includers = view.workspace.includers.get(package.name)
     for need in sorted(view.needs(package), key=weight):
         if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, reach):
             continue
@@ -126,7 +118,6 @@ def _ament(view: View, package):
         if name is None or name in told or name == package.name or need.providers[0].kind != "ros":
             continue
         told.add(name)
-        includers = _includers(view, package) if includers is None else includers
         severity = "warning" if apart and name not in WITH_CLIENT and (includers or "ament_export_libraries" in hows or "ament_export_targets" in hows) else "note"
         yield Hit(need.at, name, f"an installed header includes `{need.subject}` and `{name}` is not exported",
                   f"add `{name}` to ament_export_dependencies", package.name, severity=severity)  # fmt: skip

@@ -20,7 +20,6 @@ Use instead
 """
 
 from ...model.view import View
-from ...model.workspace import is_interface_header
 from ..rule import Hit, rule
 
 _ROS1_PRIMITIVE = frozenset("bool int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64 string time duration char byte "
@@ -135,7 +134,6 @@ def _orders(package) -> dict[str, set[str]]:
 def _catkin_order(view: View, package):
     orders = _orders(package)
     targets = {t.name: t for t in package.build.targets if t.kind in ("executable", "library", "test")}
-    mine = {i.name for i in package.digest.interfaces}
     generates = any(g.how == "catkin" for g in package.build.generated)
     configures = any(g.how == "reconfigure" for g in package.build.generated)
     wanted: dict[tuple[str, str], list] = {}
@@ -146,13 +144,13 @@ def _catkin_order(view: View, package):
         if head == package.name:
             if configures and rest.endswith("Config.h"):
                 kind = "gencfg"
-            elif generates and is_interface_header(rest, mine):
+            elif generates and view.workspace.is_interface_header(head, rest):
                 kind = "generate_messages_cpp"
             else:
                 continue
         else:
             other = view.workspace.packages.get(head)
-            if other is None or not is_interface_header(rest, view.workspace.interface_names.get(head, ())):
+            if other is None or not view.workspace.is_interface_header(head, rest):
                 continue
             kind = "generate_messages_cpp"
         for name in include.targets:
