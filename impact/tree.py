@@ -348,11 +348,11 @@ class WorkingTree:
         return self.known_id(path) or self.read_with_id(path)[1]
 
     def read(self, path: str) -> bytes:
-        with open(self._absolute(path), "rb") as file:
+        with open(self._readable(path), "rb") as file:
             return file.read()
 
     def read_with_id(self, path: str) -> tuple[bytes, str]:
-        with open(self._absolute(path), "rb") as file:
+        with open(self._readable(path), "rb") as file:
             data = file.read()
             status = os.fstat(file.fileno())
         content = blob_id(data)
@@ -365,6 +365,13 @@ class WorkingTree:
         elif self._remembered.pop(path, None):
             self._fresh = True
         return data, content
+
+    def _readable(self, path: str) -> str:
+        """The absolute path of a regular file; opening a named pipe would wait for ever."""
+        place = self._absolute(path)
+        if path not in self._stats and stat.S_ISFIFO(os.stat(place).st_mode):
+            raise OSError(22, "neither a file nor a folder", path)
+        return place
 
     def _absolute(self, path: str) -> str:
         clean = inside(path)
