@@ -84,7 +84,8 @@ def read_pinned(path: Path) -> dict[str, str]:
     import yaml
 
     try:
-        data: Any = yaml.load(path.read_bytes(), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        # Not the C loader: it has no limit of depth and takes the process with it.
+        data: Any = yaml.load(path.read_bytes(), Loader=yaml.SafeLoader)
     except OSError as error:
         raise BaseError(f"{path}: cannot be read ({error.strerror}); give a revision or a .repos file") from None
     except (yaml.YAMLError, ValueError, RecursionError) as error:

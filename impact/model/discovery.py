@@ -289,7 +289,8 @@ class _Search:
 
         text = self._text(path)
         try:
-            data = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+            # Not the C loader: it has no limit of depth, and takes the whole process with it.
+            data = yaml.load(text, Loader=yaml.SafeLoader)
         except (yaml.YAMLError, ValueError, RecursionError) as error:
             reason = " ".join(str(getattr(error, "problem", None) or error).split())
             self.problems.append(PathProblem(path, f"is no YAML ({reason}), so colcon's settings in it are not known"))
