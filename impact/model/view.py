@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Iterable, Iterator
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from ..facts.condition import Condition
@@ -78,6 +78,7 @@ class View:
         self._modules: dict[str, tuple[Provider, ...]] = {}
         self._debian: dict[str, frozenset[str]] = {}
         self._held: dict[tuple[Condition, ...], bool | None] = {}
+        self._reached: dict[int, tuple[object, frozenset[str], set[str]]] = {}
         self._standard: dict[str, bool] = {}
         self._lost: dict[str, Misnamed | None] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
@@ -399,21 +400,31 @@ class View:
             known = self._debian[name] = frozenset(resolution.packages if resolution else ())
         return known
 
-    def answered(self, providers: Iterable[Provider], names: dict[str, str] | set[str]) -> bool:
-        """True when one of the providers is among the names, as itself or as a key that installs the same package."""
-        providers = tuple(providers)
+    def answered(self, providers: Iterable[Provider], names: dict[str, str] | dict[str, set[str]] | set[str]) -> bool:
+        """True when one of the providers is among the names, as itself, as a key that installs the same package, or as the
+        package that vendors it."""
         for provider in providers:
             if not provider.name or provider.name in names:
                 return True
-        stems = {_stem(p.name) for p in providers}
-        if any(n.endswith("_vendor") and n.removesuffix("_vendor").removeprefix("rviz_") in stems for n in names):
-            return True
-        wanted = {p.package for p in providers if p.package}
+        vendored, installed = self._reach(names)
         for provider in providers:
-            wanted |= self.debian(provider.name)
-        return bool(wanted) and any(
-            wanted & self.debian(n) for n in names if n not in self.workspace.packages
-        )
+            if vendored and _stem(provider.name) in vendored:
+                return True
+            if provider.package in installed or not installed.isdisjoint(self.debian(provider.name)):
+                return True
+        return False
+
+    def _reach(self, names) -> tuple[frozenset[str], set[str]]:
+        """What a set of names vendors, and the system packages that its keys install."""
+        known = self._reached.get(id(names))
+        if known is None or known[0] is not names:
+            vendored = frozenset(n.removesuffix("_vendor").removeprefix("rviz_") for n in names if n.endswith("_vendor"))
+            installed: set[str] = set()
+            for name in names:
+                if name not in self.workspace.packages:
+                    installed |= self.debian(name)
+            known = self._reached[id(names)] = (names, vendored, installed)
+        return known[1], known[2]
 
     # -- who provides --------------------------------------------------------------------------------------------------
 
@@ -546,6 +557,7 @@ class View:
             yield Need(how, name, (Provider("ros", name),), use.at, use.role, not reference.conditional, not reference.conditional)
 
 
+@lru_cache(maxsize=10000)
 def _stem(name: str) -> str:
     """`libogre-1.9-dev` gives `ogre`: what `ogre_vendor` is called after."""
     return re.split(r"[-\d.]", name.removeprefix("lib"))[0].replace("-", "_")

@@ -598,15 +598,32 @@ _COMPARE = {
 }
 
 
+_TURNED = re.compile(r"""["']?(\w+)["']?\s*(==|!=|<=|>=|<|>)\s*\$(\w+)\Z""")
+
+
+def _compared(term: str, variables: Mapping[str, str]) -> bool | None:
+    """One comparison, None when it is none of a variable with a text."""
+    term = term.strip()
+    simple = _COMPARISON.match(term)
+    if simple is None:
+        turned = _TURNED.match(term)
+        if turned is None:
+            return None
+        return bool(_COMPARE[turned[2]](turned[1], variables.get(turned[3], "")))
+    name, compare, *values = simple.groups()
+    return bool(_COMPARE[compare](variables.get(name, ""), next(value for value in values if value is not None)))
+
+
 def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
     """A manifest condition by REP 149: texts are compared, an unset variable is empty.
 
-    One comparison, as most conditions are, is done here: catkin_pkg's parser costs 60 ms to load.
+    Comparisons in a row, as most conditions are, are done here: catkin_pkg's parser costs 60 ms to load.
     """
-    simple = _COMPARISON.match(condition)
-    if simple:
-        name, compare, *values = simple.groups()
-        return _COMPARE[compare](variables.get(name, ""), next(value for value in values if value is not None))
+    if "(" not in condition:
+        # `and` binds closer than `or`.
+        terms = [[_compared(term, variables) for term in re.split(r"\band\b", part)] for part in re.split(r"\bor\b", condition)]
+        if not any(term is None for part in terms for term in part):
+            return any(all(part) for part in terms)
     from catkin_pkg.condition import evaluate_condition
 
     try:

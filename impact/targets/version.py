@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 _NUMBER = re.compile(r"\d+")
 
 
+@lru_cache(maxsize=20000)
 def parts(version: str) -> tuple[int, ...]:
     """`4.5.4+dfsg-9ubuntu4` gives (4, 5, 4): epoch, revision and packaging suffixes are left out."""
     text = version.split(":", 1)[-1]

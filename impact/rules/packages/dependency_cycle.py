@@ -23,21 +23,25 @@ from ..rule import Hit, rule
 
 @rule(severity="error")
 def dependency_cycle(view: View):
-    import networkx
+    from graphlib import CycleError, TopologicalSorter
 
-    graph = networkx.DiGraph()
+    needs: dict[str, set[str]] = {}
     for package in view:
-        for name, kinds in view.declared(package).items():
-            if name in view.workspace.packages and name != package.name and kinds - {"test", "doc"}:
-                graph.add_edge(package.name, name)
-    for circle in networkx.strongly_connected_components(graph):
-        if len(circle) < 2:
-            continue
-        cycle = networkx.find_cycle(graph.subgraph(circle))
-        names = [a for a, _ in cycle]
+        needs[package.name] = {
+            name for name, kinds in view.declared(package).items()
+            if name in view.workspace.packages and name != package.name and kinds - {"test", "doc"}
+        }  # fmt: skip
+    while True:
+        try:
+            TopologicalSorter(needs).prepare()
+            return
+        except CycleError as error:
+            # graphlib gives each name before those that need it.
+            names = list(reversed(error.args[1]))[:-1]
         first = min(names)
         names = names[names.index(first) :] + names[: names.index(first)]
         package = view.workspace.packages[first]
         dependency = next(d for d in package.manifest.dependencies if d.name == names[1])
         yield Hit(view.manifest_place(package, dependency), names[1], "dependency cycle: " + " → ".join([*names, first]),
                   "cut one of these dependencies", first)  # fmt: skip
+        needs[first].discard(names[1])
