@@ -21,6 +21,7 @@ from .rules.cure import Declare, Insert, Replace
 from .rules.rule import Cure, Finding, Hit, Rule, all_rules
 from .targets.providers import default_providers
 from .targets.resolve import Chosen, choose_targets
+from .targets.snapshot import SnapshotError
 from .tree import GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
 
 __version__ = "0.1.0"
@@ -191,10 +192,22 @@ def open_workspace(
     with Store(options.cache) as store:
         gathered = gather(tree, store, jobs=options.jobs, progress=progress)
         workspace = link(tree, gathered, store, None, watched())
-        gathered.problems.extend(workspace.discovered.problems)
+        gathered.problems += [*workspace.discovered.problems, *_left_out(workspace, gathered)]
         targets = choose_targets(options.targets, config, workspace, tree)
         views = [View(workspace, chosen.target, default_providers(), config) for chosen in targets]
         yield Opened(tree, store, gathered, workspace, targets, views, config)
+
+
+def _left_out(workspace: Workspace, gathered: Gathered) -> Iterator[PathProblem]:
+    """Packages that another of the same name stands for; build tools refuse such a workspace."""
+    present = {package.path: package.name for package in workspace}
+    paths = {package.name: package.path for package in workspace}
+    for place in workspace.discovered.packages:
+        if place.path not in present and place.manifest_path in gathered.kinds:
+            other = shown(paths.get(place.name) or ".")
+            yield PathProblem(
+                place.manifest_path, f"not analysed, since another package named `{place.name}` is in {other}"
+            )
 
 
 def settings_of(root: Path, tree: Tree, file: Path | None) -> Config:
@@ -341,6 +354,8 @@ def _hits(
             try:
                 for hit in run_rule():
                     yield rule.name, target, hit
+            except SnapshotError:
+                raise  # no rule can do without the data
             except Exception as error:
                 # What the other rules say stays true; the failure is named and decides the exit status.
                 targets = crashed.setdefault((rule.name, crash(error)), [])

@@ -213,13 +213,11 @@ def _names(values: list[str] | None) -> tuple[str, ...]:
 
 
 def main() -> None:
-    """Entry point. Prints one line and exits with 2 when the tool itself fails; no traceback reaches a user."""
+    """Entry point."""
     try:
         app()
-    except KeyboardInterrupt:
-        print("interrupted; what was parsed is kept", file=sys.stderr)
-        raise SystemExit(130) from None
     except BrokenPipeError:
+        # Whoever read has read enough; Python would complain once more when it closes the stream.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise SystemExit(0) from None
 

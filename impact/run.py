@@ -93,6 +93,9 @@ def check(
                 write_step_summary(report, os.environ)
     except Failed as error:
         return failed(str(error), format, output)
+    except KeyboardInterrupt:
+        _say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
+        return 130
     if report.failure or incomplete:
         return 2
     return int(fails(report.findings, fail_on or checked.config.fail_on or "error"))

@@ -120,7 +120,7 @@ def read(path: Path) -> Machine:
     """Reads a captured file. Raises TargetError with what is wrong and what to do."""
     try:
         data: Any = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise TargetError(
             f"{path}: cannot be read as a captured machine: {error}; write it anew with `rosimpact env capture`"
         ) from None
@@ -149,7 +149,10 @@ def as_target(captured: Machine, name: str, where: str) -> DistroTarget:
     if not captured.distro:
         raise TargetError(f"{where}: names no ROS distro; set `distro` in it, or capture with ROS sourced")
     versions = {**captured.libraries, **captured.packages}
-    return DistroTarget(captured.distro, captured.date or None, captured.platform or None, versions, name)
+    try:
+        return DistroTarget(captured.distro, captured.date or None, captured.platform or None, versions, name)
+    except TargetError as error:
+        raise TargetError(f"{where}: {error}") from None
 
 
 class Difference(NamedTuple):
