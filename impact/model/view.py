@@ -197,6 +197,10 @@ class View:
 
     def _lost_header(self, path: str) -> Misnamed | None:
         target = self.target
+        if path in self.workspace.broken_headers:
+            return Misnamed(f"no package of the workspace has or generates `{path}`", "")
+        if self.providers.system_has(path, target.platform) is False and all(p.kind == "system" for p in self.header(path)):
+            return Misnamed(f"no package of {target.platform} has `{path}`", "")
         owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
         if not owners or any(p.kind != "ros" for p in self.header(path)):
             return None
@@ -462,8 +466,10 @@ class View:
             own = self.workspace.provides_cmake.get(name)
             found = [Provider("ros", own)] if own else []
             if not own:
-                if self.target.version(name) is not None:
-                    found.append(Provider("ros", name))
+                # `x-config.cmake` answers to any spelling of X, and ROS packages name theirs so.
+                for spelling in dict.fromkeys((name, name.lower())):
+                    if self.target.version(spelling) is not None or spelling in self.workspace.packages:
+                        found.append(Provider("ros", spelling))
                 found.extend(self._cmake_elsewhere(name))
                 if not found and self.target.ever_released(name):
                     found.append(Provider("ros", name, "", False))

@@ -190,6 +190,33 @@ class Workspace:
         return _names_interface(rest, stems)
 
     @cached_property
+    def broken_headers(self) -> frozenset[str]:
+        """Include paths that begin with a package of the workspace, and that neither a file nor a generator of it answers.
+
+        Only of packages whose headers all lie in the tree, or that are generated from interfaces alone."""
+        found = set()
+        for package in self:
+            for include in package.digest.includes:
+                head, _, rest = include.path.partition("/")
+                owner = self.packages.get(head)
+                if owner is None or not rest or "_export." in rest or include.path in self._provided and self._provided[include.path]:
+                    continue
+                if owner.manifest.metapackage or not self._closed(owner) or self.provides_header(include.path):
+                    continue
+                found.add(include.path)
+        return frozenset(found)
+
+    def _closed(self, package: Package) -> bool:
+        """True when nothing in a package makes headers but its interfaces and dynamic_reconfigure."""
+        if any(g.how not in ("rosidl", "catkin", "reconfigure") for g in package.build.generated) or package.build.unresolved:
+            return False
+        if any(path.endswith((".in", ".em", ".proto", ".ui", ".fbs", ".idl", ".xtext")) for path in package.digest.files):
+            return False
+        if any(t.kind in ("custom", "external", "fetched", "unknown") for t in package.build.targets):
+            return False
+        return bool(package.digest.headers or package.digest.interfaces)
+
+    @cached_property
     def includers(self) -> dict[str, set[str]]:
         """Package to the other packages of the workspace that include its headers."""
         found: dict[str, set[str]] = {}

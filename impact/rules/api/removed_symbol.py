@@ -17,6 +17,7 @@ Use instead
     cv::imread(path, cv::IMREAD_ANYDEPTH)       // there since OpenCV 3
 """
 
+from ...model.package import is_header
 from ...model.view import View
 from ...targets.changes import excuses
 from ..rule import Hit, rule
@@ -24,8 +25,6 @@ from ..rule import Hit, rule
 _KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
 
 
-# Its header includes OpenCV's types_c.h, which keeps most of the C constants.
-_BRIDGE = "cv_bridge/cv_bridge"
 # Namespaces of libraries whose names are in the table without them.
 _ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
 
@@ -52,11 +51,10 @@ def removed_symbol(view: View):
                 continue
             endings = excuses(change)
             if endings:
-                included = included or tuple(i.path for i in package.digest.includes)
-                if any(path.endswith(endings) for path in included):
+                if included is None:
+                    included = _by_file(package)
+                if any(path.endswith(endings) for path in included.get(use.at.path, ())):
                     continue
-            if change.package == "opencv" and use.text.startswith("CV_") and _BRIDGE in {i.path.rpartition(".")[0] for i in package.digest.includes}:
-                continue
             sure = use.role in ("build", "run") and view.certain(use.conditions) and change.kind != "api-changed"
             if later is not None:
                 # Enough to see what is coming: the first names of each library loudly, the rest as notes.
@@ -74,3 +72,12 @@ def removed_symbol(view: View):
             yield Hit(use.at, use.text, f"`{use.text}` {verb} in {change.package} {change.version}".strip(),
                       f"use `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
                       package.name, severity="note" if use.role == "aside" else "error" if sure else "warning")  # fmt: skip
+
+
+def _by_file(package) -> dict[str, set[str]]:
+    """What each file includes of others, with what the package's own headers do, since any of them may come before."""
+    found: dict[str, set[str]] = {}
+    shared = {i.path for i in package.digest.includes if is_header(i.at.path)}
+    for include in package.digest.includes:
+        found.setdefault(include.at.path, set(shared)).add(include.path)
+    return found

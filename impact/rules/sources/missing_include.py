@@ -9,8 +9,9 @@ Why it breaks
     machine that has that version.
 
 Severity
-    error when the target's compiler or library is known to have dropped it and nothing else could bring it; warning when
-    another included library may still bring it.
+    error when only standard headers reach a source file and none of them brings the name in the target's compiler; warning
+    for headers, which something may precede, and
+    when a library that used to bring it no longer does, or another may; note when that lies ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
@@ -22,24 +23,23 @@ Not reported
     Names for which no target has the version that dropped the header.
 """
 
+from ...model.package import is_header
 from ...model.view import View
-from ...targets.version import at_least
+from ...targets.standard import reaches
+from ...targets.version import at_least, parts
 from ..rule import Hit, rule
 
 
 @rule(severity="warning")
 def missing_include(view: View):
-    dropped = {}
-    for row in view.transitive:
-        version = view.target.library(row.library) or view.target.version(row.library)
-        if version and at_least(version, row.since):
-            dropped[row.name] = row, version
-    if not dropped:
-        return
+    here, coming = _dropped(view, view.target), {}
+    newest = view.target.newest()
+    if newest is not None:
+        coming = {name: known for name, known in _dropped(view, newest).items() if name not in here}
     for package in view:
         told = set()
         for need in package.digest.needed_headers:
-            known = dropped.get(need.name)
+            known = here.get(need.name) or coming.get(need.name)
             if known is None or need.role == "aside" or not view.active(need.conditions):
                 continue
             row, version = known
@@ -47,12 +47,35 @@ def missing_include(view: View):
             if (need.at.path, header) in told:
                 continue
             outside = [r for r in need.reach if not view.is_standard(r)]
-            sure = not outside and view.certain(need.conditions)
-            if row.through and not any(r.startswith(row.through) for r in need.reach):
+            if row.through and not any(r.startswith(row.through) for r in need.reach) or outside and not row.through:
                 continue
-            if outside and not row.through:
+            missed = row.through or _out_of_reach(need, row.library, version)
+            if not missed:
                 continue
             told.add((need.at.path, header))
-            yield Hit(need.at, header, f"`{need.name}` is used without `<{header}>`, which {row.library} {version} no longer brings along",
-                      f"#include <{header}>", package.name,
-                      severity="error" if sure and need.role == "build" and not row.through and row.sure else "warning")  # fmt: skip
+            now = need.name in here
+            sure = (
+                now and need.role == "build" and not row.through and not outside and not is_header(need.at.path)
+                and view.certain(need.conditions)
+            )  # fmt: skip
+            where = "" if now else f" of {view.horizon}"
+            yield Hit(need.at, header, f"`{need.name}` is used without `<{header}>`, which {row.library} {version}{where} no longer brings along",
+                      f"#include <{header}>", package.name, severity="error" if sure else "warning" if now or row.through else "note")  # fmt: skip
+
+
+def _dropped(view: View, target):
+    """Names whose header a target's compiler or libraries no longer bring along, with the row and the version."""
+    found = {}
+    for row in view.transitive:
+        version = target.library(row.library) or target.version(row.library)
+        if version and at_least(version, row.since):
+            found[row.name] = row, version
+    return found
+
+
+def _out_of_reach(need, library: str, version: str) -> bool:
+    """True when no standard header that reaches the file brings the name in that GCC, by what its headers include."""
+    if library != "gcc":
+        return True
+    headers = frozenset(r for r in need.reach)
+    return reaches(headers, need.name, parts(version)[0]) is False
