@@ -12,7 +12,7 @@ from .check import Checked, CheckError, Options, __version__, crash, open_worksp
 from .check import run as run_check
 from .config import ConfigError
 from .findings import SettingsError, fails
-from .report.report import Coverage, Report
+from .report.report import Coverage, Report, counted
 from .targets.distro import TargetError
 from .targets.snapshot import SnapshotError
 from .tree import TreeError, WorkingTree, shown
@@ -125,7 +125,7 @@ def _new_baseline(file: Path, report: Report) -> int:
         raise Failed(f"{file}: not written, since nothing was analysed")
     found = in_order([*report.findings, *report.known])
     _save(file, baseline(found))
-    _say(f"{file}: {len(found)} findings")
+    _say(f"{file}: {counted(len(found), 'finding')}")
     return 2 if report.failure else 0
 
 
@@ -155,7 +155,7 @@ def _fixed(path: Path, checked: Checked) -> bool:
             _say(f"rosimpact: {shown(name)}: not fixed, it cannot be written: {error.strerror}")
     for edit, reason in applied.refused:
         _say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
-    _say(f"{done} {'file' if done == 1 else 'files'} changed")
+    _say(f"{counted(done, 'file')} changed")
     return done == len(applied.files)
 
 
@@ -296,9 +296,12 @@ def env_capture(output: Path | None) -> int:
 
     try:
         with told():
-            _deliver(to_json(capture()), output)
+            machine = capture()
+            _deliver(to_json(machine), output)
     except Failed as error:
         return failed(str(error))
+    if not machine.distro:
+        _say("no ROS distro was found on this machine: set `distro` in the file before it is used as a target")
     if output is not None:
         _say(f"{output}: written; use it with --target {output}")
     return 0
@@ -319,20 +322,26 @@ def env_diff(first: str, second: str, path: Path | None, format: str) -> int:
             rows = [d._replace(used_by=used.get(d.name, ())) for d in differences(a, b)]
     except Failed as error:
         return failed(str(error))
-    rows.sort(key=lambda d: (not d.used_by, d.kind not in ("distro", "platform", "date"), d.kind != "library", d.name))
+    kinds = ("distro", "date", "platform", "library", "package")
+    rows.sort(key=lambda d: (d.kind in kinds[3:], not d.used_by, kinds.index(d.kind), d.name))
     if format == "json":
         import json
 
         _write(json.dumps([d._asdict() for d in rows], indent=1))
         return 0
-    width = max((len(d.name) for d in rows), default=0)
+    # Beside a workspace, what it does not use is counted; libraries are not packages that one can leave alone.
+    shown_rows = [d for d in rows if path is None or d.used_by or d.kind != "package"]
+    width = max((len(d.name) for d in shown_rows), default=0)
     lines = []
-    for d in rows:
+    for d in shown_rows:
         mark = "*" if d.used_by else " "
         users = f"  used by {', '.join(d.used_by[:4])}{' …' if len(d.used_by) > 4 else ''}" if d.used_by else ""
         lines.append(f"{mark} {d.name:{width}s}  {d.first or '-':>14s}  {d.second or '-':>14s}{users}")
-    used_here = f", {sum(bool(d.used_by) for d in rows)} used by {path}" if path is not None else ""
-    _write("\n".join([*lines, f"{len(rows)} differences{used_here}"]))
+    end = counted(len(rows), "difference")
+    if path is not None:
+        end += f", {sum(bool(d.used_by) for d in rows)} used by {path}; {len(rows) - len(shown_rows):,} packages that "
+        end += "nothing uses are not listed"
+    _write("\n".join([*lines, end]))
     return 0
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from .check import Options, open_workspace
 from .model.view import View
+from .report.report import counted
 from .targets.distro import DistroTarget
 
 
@@ -46,7 +47,9 @@ def _answers(view: View, name: str) -> list[Answer]:
         ("Python module", view.module(name)),
         ("executable", tuple(view.providers.executable(name))),
     ):
-        offers = tuple(_offer(view, p.name, p.package) for p in providers if p.name)
+        offers = tuple(dict.fromkeys(_offer(view, p.name, p.package) for p in providers if p.name))
+        # What is not there is told only where nothing else is.
+        offers = tuple(offer for offer in offers if offer.kind != "absent") or offers[:1]
         if not offers and any(not p.name for p in providers):
             offers = (Offer("system", "", "", "", "comes with the compiler, CMake or Python"),)
         if offers:
@@ -64,7 +67,7 @@ def _answers(view: View, name: str) -> list[Answer]:
     )
     if not found:
         found = [("name", ())]
-    return [Answer(view.target.name, what, offers, used, undeclared, changes[:12]) for what, offers in found]
+    return [Answer(view.target.name, what, offers, used, undeclared, changes[:8]) for what, offers in found]
 
 
 def _offer(view: View, name: str, package: str) -> Offer:
@@ -117,30 +120,34 @@ def _uses(view: View, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def as_text(name: str, found: list[Answer]) -> str:
-    """The answers for people."""
-    lines = []
-    for answer in found:
-        lines.append(f"{answer.target}: `{name}` as {answer.as_what}")
-        for offer in answer.offers:
-            parts = [
-                f"  {offer.kind} {offer.name}".rstrip(),
-                offer.version,
-                f"since {offer.since}" if offer.since else "",
-                offer.note,
-            ]
-            lines.append("  ".join(p for p in parts if p))
-        if not answer.offers:
-            lines.append("  nobody is known to provide it there")
-        lines += [f"  {change}" for change in answer.changes]
-    if found:
-        used = found[0].used
-        lines.append(f"used at {len(used)} places" + (":" if used else ""))
-        lines += [f"  {place}" for place in used[:12]]
-        if len(used) > 12:
-            lines.append(f"  and {len(used) - 12} more")
-        undeclared = sorted({p for a in found for p in a.undeclared})
-        if undeclared:
-            lines.append("not safe: used and not declared in " + ", ".join(undeclared))
-        elif used:
-            lines.append("safe: every package that uses it declares it, or something that brings it")
+    """The answers for people. Meanings of a name that lead to the same offers are told together."""
+    lines: list[str] = []
+    for target in dict.fromkeys(answer.target for answer in found):
+        here = [answer for answer in found if answer.target == target]
+        meanings: dict[tuple[Offer, ...], list[str]] = {}
+        for answer in here:
+            meanings.setdefault(answer.offers, []).append(answer.as_what)
+        for offers, whats in meanings.items():
+            lines.append(f"{target}: `{name}` as {', '.join(whats)}")
+            lines += [_offer_line(offer) for offer in offers] or ["  nobody is known to provide it there"]
+        lines += [f"  {change}" for change in here[0].changes]
+    if not found:
+        return ""
+    used = found[0].used
+    lines.append(f"used at {counted(len(used), 'place')}" + (":" if used else ""))
+    lines += [f"  {place}" for place in used[:12]]
+    if len(used) > 12:
+        lines.append(f"  and {len(used) - 12} more")
+    undeclared = sorted({package for answer in found for package in answer.undeclared})
+    if undeclared:
+        lines.append("not safe: used and not declared in " + ", ".join(undeclared))
+    elif used:
+        lines.append("safe: every package that uses it declares it, or something that brings it")
     return "\n".join(lines)
+
+
+def _offer_line(offer: Offer) -> str:
+    since = f"since {offer.since}" if offer.since else ""
+    return "  " + "  ".join(
+        part for part in (f"{offer.kind} {offer.name}".rstrip(), offer.version, since, offer.note) if part
+    )

@@ -11,13 +11,11 @@ import sqlite3
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import pygit2
 import pytest
-from rosimpact.impact import cli
 from rosimpact.impact.targets import providers, snapshot
 
 MANIFEST = """<?xml version="1.0"?>
@@ -52,56 +50,18 @@ def write(root: Path, files: dict[str, str | bytes]) -> Path:
     return root
 
 
-class Said(NamedTuple):
-    """What a command said, and its exit status."""
-
-    status: int
-    out: str
-    err: str
-
-    @property
-    def text(self) -> str:
-        return self.out + self.err
-
-
-@pytest.fixture(scope="session")
-def cache(tmp_path_factory) -> Path:
-    """A cache folder that the tests of this module share, so that the data is unpacked once."""
-    return tmp_path_factory.mktemp("cache")
-
-
-@pytest.fixture
-def say(capfd, cache, monkeypatch) -> Callable[..., Said]:
-    """Runs the command line in this process."""
-    monkeypatch.setenv("NO_COLOR", "1")
-    monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
-    for name in ("ROS_DISTRO", "GITHUB_WORKSPACE", "GITHUB_STEP_SUMMARY"):
-        monkeypatch.delenv(name, raising=False)
-
-    def run(*arguments: object) -> Said:
-        monkeypatch.setattr(sys, "argv", ["rosimpact", *map(os.fsdecode, map(str, arguments))])
-        capfd.readouterr()
-        with pytest.raises(SystemExit) as ended:
-            cli.main()
-        out, err = capfd.readouterr()
-        code = ended.value.code
-        return Said(code if isinstance(code, int) else 0 if code is None else 1, out, err)
-
-    return run
-
-
 @pytest.fixture
 def ws(tmp_path) -> Path:
     return write(tmp_path / "ws", HEALTHY | BAD)
 
 
-def clean(said: Said) -> None:
+def clean(said) -> None:
     """What holds for every answer, whatever was asked."""
     assert "Traceback" not in said.text
     assert "this is a fault of rosimpact" not in said.text
 
 
-def is_named(said: Said, words: tuple[str, ...]) -> None:
+def is_named(said, words: tuple[str, ...]) -> None:
     for word in words:
         assert word in said.text
 
@@ -136,7 +96,10 @@ FILES = [
     manifest("empty", "", "not well-formed"),
     manifest("truncated", GOOD[:200]),
     manifest("entity bomb", BOMB + GOOD.split("?>")[1].replace("<description>d", "<description>&j;")),
-    manifest("external entity", "<!DOCTYPE x [<!ENTITY e SYSTEM 'file:///etc/passwd'>]>" + GOOD.split("?>")[1].replace(">d<", ">&e;<")),
+    manifest(
+        "external entity",
+        "<!DOCTYPE x [<!ENTITY e SYSTEM 'file:///etc/passwd'>]>" + GOOD.split("?>")[1].replace(">d<", ">&e;<"),
+    ),
     manifest("of null bytes", b"\0" * 500),
     manifest("with a null byte", GOOD.replace("Apache", "A\0")),
     manifest("in Latin-1 that says UTF-8", GOOD.replace(">a<", ">M\xfcller<").encode("latin-1")),
@@ -165,19 +128,28 @@ FILES = [
     cmake("in Latin-1", CMAKE.encode() + "# M\xfcller\nset(X \xfc)\n".encode("latin-1")),
     cmake("null bytes", CMAKE.encode() + b"\0\0\0find_package(x\0)"),
     cmake("include of itself", CMAKE + "include(${CMAKE_CURRENT_LIST_FILE})\ninclude(CMakeLists.txt)\n"),
-    Bad("CMake include cycle", {
-        "src/bad/CMakeLists.txt": CMAKE + "include(cmake/a.cmake)\n",
-        "src/bad/cmake/a.cmake": "include(${CMAKE_CURRENT_LIST_DIR}/b.cmake)\n",
-        "src/bad/cmake/b.cmake": "include(${CMAKE_CURRENT_LIST_DIR}/a.cmake)\n",
-    }),
+    Bad(
+        "CMake include cycle",
+        {
+            "src/bad/CMakeLists.txt": CMAKE + "include(cmake/a.cmake)\n",
+            "src/bad/cmake/a.cmake": "include(${CMAKE_CURRENT_LIST_DIR}/b.cmake)\n",
+            "src/bad/cmake/b.cmake": "include(${CMAKE_CURRENT_LIST_DIR}/a.cmake)\n",
+        },
+    ),
     cmake("add_subdirectory of itself", CMAKE + "add_subdirectory(.)\nadd_subdirectory(../bad)\n"),
-    Bad("CMake add_subdirectory cycle", {
-        "src/bad/CMakeLists.txt": CMAKE + "add_subdirectory(a)\n",
-        "src/bad/a/CMakeLists.txt": "add_subdirectory(${CMAKE_SOURCE_DIR} x)\n",
-    }),
+    Bad(
+        "CMake add_subdirectory cycle",
+        {
+            "src/bad/CMakeLists.txt": CMAKE + "add_subdirectory(a)\n",
+            "src/bad/a/CMakeLists.txt": "add_subdirectory(${CMAKE_SOURCE_DIR} x)\n",
+        },
+    ),
     cmake("missing subdirectory", CMAKE + "add_subdirectory(nowhere)\ninclude(nowhere.cmake)\n"),
     cmake("recursive function", CMAKE + "function(f)\n  f()\n  f()\nendfunction()\nf()\n"),
-    cmake("recursive macros", CMAKE + "macro(f x)\n  g(${x}${x})\nendmacro()\nmacro(g x)\n  f(${x}${x})\nendmacro()\nf(a)\n"),
+    cmake(
+        "recursive macros",
+        CMAKE + "macro(f x)\n  g(${x}${x})\nendmacro()\nmacro(g x)\n  f(${x}${x})\nendmacro()\nf(a)\n",
+    ),
     cmake("while(TRUE)", CMAKE + "while(TRUE)\n  list(APPEND L x)\nendwhile()\n"),
     cmake("foreach over a huge range", CMAKE + "foreach(i RANGE 1000000000)\n  set(x ${i})\nendforeach()\n"),
     cmake("nested foreach", CMAKE + "foreach(a RANGE 999)\n" * 5 + "set(x 1)\n" + "endforeach()\n" * 5),
@@ -186,7 +158,7 @@ FILES = [
     cmake("regular expression that explodes", CMAKE + f'string(REGEX REPLACE "(a+)+b" "x" A "{"a" * 5000}")\n'),
     cmake("variables in a circle", CMAKE + "set(A ${B})\nset(B ${A}${A})\n" * 50 + "add_library(l ${A} ${${${A}}})\n"),
     cmake("generator expression that does not end", CMAKE + "add_library(l " + "$<IF:" * 3000 + ")\n"),
-    cmake("list(GET) far outside", CMAKE + "list(GET L 99999999999999999999 X)\nmath(EXPR Y \"1/0\")\n"),
+    cmake("list(GET) far outside", CMAKE + 'list(GET L 99999999999999999999 X)\nmath(EXPR Y "1/0")\n'),
     named("src/node.cpp", b"#include <a.h>\0\0\0int main() {}", "C++ null bytes"),
     named("src/node.cpp", "namespace a {" * 50_000, "C++ nested deeply"),
     named("src/node.cpp", "int x = " + "(" * 100_000, "C++ parentheses"),
@@ -203,46 +175,76 @@ FILES = [
     named("bad/node.py", "import rclpy\n".encode("utf-16"), "Python in UTF-16", "node.py"),
     named("bad/node.py", "def f(:\n", "Python syntax", "node.py"),
     named("bad/node.py", "x = 0x" + "f" * 100_000 + "\ny = " + "9" * 10_000, "Python huge numbers"),
-    named("setup.py", "raise SystemExit('never run this')\nimport os; os.remove('package.xml')\n", "setup.py that raises"),
+    named(
+        "setup.py", "raise SystemExit('never run this')\nimport os; os.remove('package.xml')\n", "setup.py that raises"
+    ),
     named("setup.py", "from setuptools import setup\nsetup(name=", "setup.py cut off", "setup.py"),
     named("setup.cfg", "[metadata\nname = x\n= y\n", "setup.cfg malformed", "setup.cfg"),
     named("pyproject.toml", "[project\nname = ", "pyproject.toml malformed", "pyproject.toml"),
     named("msg/Bad.msg", "int32 int32 int32\n=== \n\xff[[[\nfloat64[<=] x\n", "msg of garbage", "Bad.msg"),
     named("msg/Bad.msg", b"int32 a\0b\n\xff\xfe\n", "msg of bytes", "Bad.msg"),
-    named("msg/Bad.msg", "string x \"never closed\n" + "[" * 10_000, "msg open quote", "Bad.msg"),
+    named("msg/Bad.msg", 'string x "never closed\n' + "[" * 10_000, "msg open quote", "Bad.msg"),
     named("srv/Bad.srv", "---\n---\n---\nint32 a\n", "srv with four parts", "Bad.srv"),
     named("action/Bad.action", "int32 a\n", "action with one part", "Bad.action"),
     named("msg/Bad.idl", "module a { module b { struct C { sequence<sequence<", "idl cut off", "Bad.idl"),
     named("msg/Bad.idl", "module a {" * 20_000, "idl nested deeply", "Bad.idl"),
-    named("launch/a.launch.xml", "<launch>&nbsp;&undefined;<node pkg='rclcpp'/></launch>", "launch entity", "a.launch.xml"),
+    named(
+        "launch/a.launch.xml", "<launch>&nbsp;&undefined;<node pkg='rclcpp'/></launch>", "launch entity", "a.launch.xml"
+    ),
     named("launch/a.launch", BOMB + "<launch>&j;</launch>", "launch entity bomb", "a.launch"),
-    named("launch/a.launch.xml", "<launch><include file='$(dirname)/a.launch.xml'/></launch>", "launch that includes itself"),
+    named(
+        "launch/a.launch.xml",
+        "<launch><include file='$(dirname)/a.launch.xml'/></launch>",
+        "launch that includes itself",
+    ),
     named("launch/a.launch.xml", "<launch>" + "<group>" * 50_000, "launch nested deeply", "a.launch.xml"),
-    named("launch/a.launch.xml", "<launch>$(find $(find $(find" + "$(eval " * 5000 + "</launch>", "launch substitutions"),
+    named(
+        "launch/a.launch.xml", "<launch>$(find $(find $(find" + "$(eval " * 5000 + "</launch>", "launch substitutions"
+    ),
     named("launch/a.launch.py", "def generate_launch_description(:\n", "launch.py syntax", "a.launch.py"),
     named("launch/a.launch.yaml", "launch:\n  - node: {pkg: [", "launch.yaml cut off", "a.launch.yaml"),
     named(
         "config/a.yaml",
-        "a: &a [x,x,x,x,x,x,x,x,x]\n" + "".join(f"{chr(98 + n)}: &{chr(98 + n)} [{','.join(['*' + chr(97 + n)] * 9)}]\n" for n in range(12)),
+        "a: &a [x,x,x,x,x,x,x,x,x]\n"
+        + "".join(f"{chr(98 + n)}: &{chr(98 + n)} [{','.join(['*' + chr(97 + n)] * 9)}]\n" for n in range(12)),
         "YAML alias bomb",
     ),
     named("config/a.yaml", "a: &a\n  b: *a\n", "YAML that holds itself"),
     named("config/a.yaml", "type: a/b\nc: " + "[" * 50_000, "YAML nested deeply", "a.yaml"),
     named("config/a.yaml", "!!python/object/apply:os.system ['touch pwned']\n", "YAML that would run code"),
-    named("urdf/a.urdf.xacro", "<robot><xacro:macro name='m'><xacro:m/></xacro:macro><xacro:m/>", "xacro recursive macro", "a.urdf.xacro"),
+    named(
+        "urdf/a.urdf.xacro",
+        "<robot><xacro:macro name='m'><xacro:m/></xacro:macro><xacro:m/>",
+        "xacro recursive macro",
+        "a.urdf.xacro",
+    ),
     named("plugins.xml", "<library path='x'><class type=</library>", "plugin malformed"),
     named("run.sh", "#!/bin/bash\nros2 run 'never closed\n$(" + "$(" * 10_000, "shell open quote"),
     named("CHANGELOG.rst", b"\xff\xfe\0", "changelog of bytes"),
-    Bad("colcon.pkg malformed", {"src/bad/colcon.pkg": "{a: [", }, ("colcon.pkg",)),
+    Bad(
+        "colcon.pkg malformed",
+        {
+            "src/bad/colcon.pkg": "{a: [",
+        },
+        ("colcon.pkg",),
+    ),
     Bad("colcon.meta malformed", {"colcon.meta": "names: ["}, ("colcon.meta",)),
     Bad("defaults.yaml malformed", {"defaults.yaml": "build: [\n"}, ("defaults.yaml",)),
     Bad("colcon.meta of other types", {"colcon.meta": "names: 3\npaths: [1]\n", "defaults.yaml": "- 1\n"}),
     Bad("names with control characters", {"src/bad/a\nb\x1b[31m.msg": "int32 a\n", "src/bad/src/\x07.cpp": "int a;\n"}),
-    Bad("names that are no UTF-8", {"src/bad/src/caf\udce9.cpp": "#include <a.h>\n", "src/bad/b\udcff.msg": "x\n"}, ("not valid UTF-8",)),
+    Bad(
+        "names that are no UTF-8",
+        {"src/bad/src/caf\udce9.cpp": "#include <a.h>\n", "src/bad/b\udcff.msg": "x\n"},
+        ("not valid UTF-8",),
+    ),
     Bad("a very deep folder", {"src/bad/" + "d/" * 300 + "CMakeLists.txt": CMAKE}),
-    Bad("a Git LFS pointer", {"src/bad/src/a.cpp": "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 5\n"}, ("LFS",)),
+    Bad(
+        "a Git LFS pointer",
+        {"src/bad/src/a.cpp": "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 5\n"},
+        ("LFS",),
+    ),
     Bad("50 MB of generated code", {"src/bad/src/big.cpp": b"int a;\n" * 7_500_000}, ("big.cpp", "MB")),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("bad", FILES, ids=lambda bad: bad.name)
@@ -261,7 +263,7 @@ def test_files(say, ws, tmp_path, bad):
 # -- workspaces --------------------------------------------------------------------------------------------------------
 
 
-def check(say, ws, *arguments) -> Said:
+def check(say, ws, *arguments):
     said = say("check", ws, "--target", "jazzy", "--notes", "--quiet", *arguments)
     clean(said)
     return said
@@ -526,7 +528,9 @@ ASKED = {
     "baseline is a folder": Asked(("--baseline", "WS/src"), {}, ("src", "--write-baseline")),
     "baseline, empty": known(""),
     "baseline, a list": known("[]"),
-    "baseline of another schema": known('{"schema": 7, "findings": []}', "schema 7") ._replace(words=("known.json", "schema 7")),
+    "baseline of another schema": known('{"schema": 7, "findings": []}', "schema 7")._replace(
+        words=("known.json", "schema 7")
+    ),
     "baseline of other types": known('{"schema": 1, "findings": [{"fingerprint": "a", "count": "many"}]}'),
     "baseline of bytes": known(b"\xff\xfe\0"),
     "baseline nested deeply": known("[" * 100_000),
@@ -536,26 +540,44 @@ ASKED = {
     "configuration cut off": setting('[targets.robot]\ndistro = "hum', "cannot be read"),
     "configuration of bytes": setting(b"\xff\xfe\0", "cannot be read"),
     "configuration nested deeply": setting("a = " + "[" * 100_000, "cannot be read"),
-    "configuration with an unknown table": setting("[target.robot]\ndistro = 'humble'\n", "`target`", "did you mean `targets`"),
+    "configuration with an unknown table": setting(
+        "[target.robot]\ndistro = 'humble'\n", "`target`", "did you mean `targets`"
+    ),
     "configuration with an unknown key": setting("[check]\nfailon = 'error'\n", "`failon`", "did you mean `fail_on`"),
     "configuration with a wrong threshold": setting("[check]\nfail_on = 'fatal'\n", "fatal", "never"),
     "configuration with a threshold of another type": setting("[check]\nfail_on = 3\n", "fail_on"),
     "configuration with an unknown rule": setting("[check]\nselect = ['nonsense']\n", "[check]", "nonsense"),
-    "configuration with an unknown severity": setting("[check]\nseverity = {removed-header = 'fatal'}\n", "[check]", "fatal", "off"),
-    "configuration with the severity of an unknown rule": setting("[check]\nseverity = {nonsense = 'off'}\n", "[check]", "nonsense"),
+    "configuration with an unknown severity": setting(
+        "[check]\nseverity = {removed-header = 'fatal'}\n", "[check]", "fatal", "off"
+    ),
+    "configuration with the severity of an unknown rule": setting(
+        "[check]\nseverity = {nonsense = 'off'}\n", "[check]", "nonsense"
+    ),
     "configuration with severities of another type": setting("[check]\nseverity = 'error'\n", "severity", "table"),
     "configuration with rules of another type": setting("[check]\nignore = [1]\n", "ignore", "list of strings"),
     "configuration where a table is a number": setting("check = 3\n", "[check]"),
     "configuration where a path is a list": setting("[paths]\n'src/**' = ['all']\n", "src/**", "table"),
-    "configuration with an unknown key of a path": setting("[paths.'src/**']\nignores = ['all']\n", "did you mean `ignore`"),
-    "configuration with an unknown rule of a path": setting("[paths.'src/**']\nignore = ['nonsense']\n", "src/**", "nonsense"),
-    "configuration with a target of no distro": setting("[targets.robot]\ndate = 2024-01-01\n", "targets.robot", "distro"),
+    "configuration with an unknown key of a path": setting(
+        "[paths.'src/**']\nignores = ['all']\n", "did you mean `ignore`"
+    ),
+    "configuration with an unknown rule of a path": setting(
+        "[paths.'src/**']\nignore = ['nonsense']\n", "src/**", "nonsense"
+    ),
+    "configuration with a target of no distro": setting(
+        "[targets.robot]\ndate = 2024-01-01\n", "targets.robot", "distro"
+    ),
     "configuration with a target of a wrong distro": setting("[targets.robot]\ndistro = 'gutsy'\n", "gutsy", "humble"),
-    "configuration with a target of a wrong date": setting("[targets.robot]\ndistro = 'humble'\ndate = 'x'\n", "robot", "`x`"),
-    "configuration with a target of versions": setting("[targets.robot]\ndistro = 'humble'\nversions = 4\n", "robot", "versions"),
+    "configuration with a target of a wrong date": setting(
+        "[targets.robot]\ndistro = 'humble'\ndate = 'x'\n", "robot", "`x`"
+    ),
+    "configuration with a target of versions": setting(
+        "[targets.robot]\ndistro = 'humble'\nversions = 4\n", "robot", "versions"
+    ),
     "configuration with a target that is a number": setting("[targets]\nrobot = 4\n", "targets.robot"),
     "configuration with a target of an unknown key": setting("[targets.robot]\ndistro = 'humble'\nos = 'x'\n", "`os`"),
-    "configuration that asks for an unknown target": setting("[check]\ntargets = ['robbot']\n", "robbot")._replace(words=("robbot", "Known distros")),
+    "configuration that asks for an unknown target": setting("[check]\ntargets = ['robbot']\n", "robbot")._replace(
+        words=("robbot", "Known distros")
+    ),
     "configuration of targets in a list": setting("targets = ['humble']\n", "[targets]"),
     "revision of no repository": Asked(("--rev", "HEAD"), {}, ("git repository",)),
     "base of no repository": Asked(("--base", "main"), {}, ("git repository",)),
@@ -569,9 +591,11 @@ ASKED = {
     ".repos that is text": repos("hello\n", "vcs export"),
     ".repos without versions": repos("repositories:\n  a: {type: git, url: x}\n", "vcs export"),
     ".repos of other types": repos("repositories:\n  a: 3\n  b: [1]\n", "vcs export"),
-    ".repos of other repositories": repos("repositories:\n  a: {type: git, version: main}\n")._replace(words=("no repository", "(a)")),
+    ".repos of other repositories": repos("repositories:\n  a: {type: git, version: main}\n")._replace(
+        words=("no repository", "(a)")
+    ),
     ".repos nested deeply": repos("[" * 100_000, "vcs export"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", ASKED)

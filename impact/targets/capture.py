@@ -102,7 +102,8 @@ def capture(
         if match:
             tools[name] = match[0]
     libraries.update({name: version for name, version in tools.items() if name in ("gcc", "cmake")})
-    libraries["python3"] = machine.python_version()
+    # The system's Python where it is known; this one may be of a virtual environment.
+    libraries.setdefault("python3", machine.python_version())
     return Machine(
         environment.get("ROS_DISTRO") or distro or _only_distro(root),
         datetime.date.today().isoformat(),
