@@ -1,65 +1,103 @@
 """Every rule on its own small workspaces: it speaks on `before`, and is silent on `after`, on every target.
 
 A case is a folder `<family>/<rule>/`, with underscores for dashes, that holds the workspaces `before` and `after`, and a
-file `targets` with one target a line. Rules of the interfaces family compare `after` (the base) with `before` (the
-change). One snapshot shows every finding of every rule over all `before` workspaces, so that a stray hit of another rule
-is seen in review.
+file `targets` with one target a line (without it, each workspace names its own in rosimpact.toml). A further case of the
+same rule is `<rule>__<what it shows>`. Rules of the interfaces family compare a workspace with `after`, the base. One
+snapshot shows every finding of every rule over all `before` workspaces, so that a stray hit of another rule is seen in
+review.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
-
 from rosimpact.impact.base import compare
 from rosimpact.impact.check import Options, check
+from rosimpact.impact.report.report import Report
 from rosimpact.impact.rules.rule import all_rules
 
 HERE = Path(__file__).parent
-CASES = sorted(p.parent for p in HERE.glob("*/*/before"))
+CASES = sorted(path.parent for path in HERE.glob("*/*/before"))
+Run = Callable[[Path, str], Report]
+
+
+def rule_of(case: Path) -> str:
+    return case.name.partition("__")[0].replace("_", "-")
 
 
 def name_of(case: Path) -> str:
-    return case.name.replace("_", "-")
+    return f"{case.parent.name}/{case.name}"
 
 
-def run(case: Path, which: str):
-    targets = tuple((case / "targets").read_text().split())
-    if case.parent.name == "interfaces":
-        findings = compare(case / which, case / "after", Options(targets=targets, preview=True)).findings
-    else:
-        findings = check(case / which, Options(targets=targets, preview=True)).findings
-    return findings
+@pytest.fixture(scope="module")
+def run(tmp_path_factory) -> Run:
+    """Checks one workspace of a case, once for all tests."""
+    store = tmp_path_factory.mktemp("cache")
+
+    @cache
+    def checked(case: Path, which: str) -> Report:
+        targets = case / "targets"
+        asked = tuple(targets.read_text().split()) if targets.exists() else ()
+        options = Options(targets=asked, preview=True, cache=store, jobs=1)
+        if case.parent.name == "interfaces":
+            return compare(case / which, case / "after", options)
+        return check(case / which, options)
+
+    return checked
 
 
 @pytest.mark.parametrize("case", CASES, ids=name_of)
-def test_it_speaks_before(case):
-    assert name_of(case) in {f.rule for f in run(case, "before")}
+def test_it_speaks_before(case: Path, run: Run):
+    assert rule_of(case) in {finding.rule for finding in run(case, "before").findings}
 
 
 @pytest.mark.parametrize("case", CASES, ids=name_of)
-def test_it_is_silent_after(case):
-    said = [f for f in run(case, "after") if f.rule == name_of(case) or f.severity == "error"]
-    assert said == []
+def test_all_is_well_after(case: Path, run: Run):
+    report = run(case, "after")
+    assert report.failure == ""
+    assert [f for f in report.findings if f.rule == rule_of(case) or f.severity != "note"] == []
+
+
+@pytest.mark.parametrize("case", CASES, ids=name_of)
+def test_everything_is_read(case: Path, run: Run):
+    coverage = run(case, "after").coverage
+    assert (coverage.unresolved, coverage.files - coverage.parsed) == ({}, 0)
 
 
 def test_every_rule_has_a_case():
-    assert {name_of(c) for c in CASES} == set(all_rules())
+    assert {rule_of(case) for case in CASES} == set(all_rules())
 
 
-def test_all_findings_before(snapshot):
+@pytest.mark.parametrize("case", CASES, ids=name_of)
+def test_a_case_lies_in_the_folder_of_its_rules_family(case: Path):
+    assert all_rules()[rule_of(case)].family == case.parent.name
+
+
+def test_a_run_that_analysed_nothing_fails(run: Run):
+    report = run(HERE / "general/nothing_analysed", "before")
+    assert "all are ignored (`winch`: holds COLCON_IGNORE)" in report.failure
+    assert [finding.rule for finding in report.findings] == ["nothing-analysed"]
+
+
+def test_all_findings_before(run: Run, snapshot):
     lines = []
     for case in CASES:
-        lines.append(f"{case.parent.name}/{name_of(case)}")
-        for f in run(case, "before"):
+        lines.append(name_of(case))
+        for f in run(case, "before").findings:
             lines.append(f"  {f.severity} {f.rule} {f.path}:{f.line} {f.subject} [{', '.join(f.targets)}] {f.message}")
     assert "\n".join(lines) == snapshot
 
 
-@pytest.mark.parametrize("rule", all_rules().values(), ids=lambda r: r.name)
+@pytest.mark.parametrize("rule", all_rules().values(), ids=lambda rule: rule.name)
 def test_documentation_has_its_sections(rule):
     text = rule.documentation
     assert text.startswith(f"{rule.name}: ")
-    for section in ("What it does\n", "Why it "):
-        assert section in text, f"{rule.name} lacks the section {section.strip()}"
+    sections = [line for line in text.splitlines() if line and not line.startswith((" ", f"{rule.name}: "))]
+    order = ["What it does", "Why it breaks", "Why it matters", "Severity", "Example", "Use instead", "Not reported"]
+    assert sections == [section for section in order if section in sections], "sections missing, unknown or out of order"
+    assert {"What it does", "Severity"} < set(sections)
+    assert len({"Why it breaks", "Why it matters"} & set(sections)) == 1
+    assert ("Example" in sections) == ("Use instead" in sections)
