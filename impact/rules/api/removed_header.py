@@ -31,6 +31,7 @@ def removed_header(view: View):
     early = {c.new: c for c in view.changes("header-renamed", "header-moved") if c.state == "absent" and c.new}
     for package in view:
         dual = view.target.ros == 2 and any(i.path.startswith("ros/") for i in package.digest.includes)
+        coming = set()
         for include in package.digest.includes:
             path = include.path
             if not view.active(include.conditions) or view.workspace.provides_header(path):
@@ -56,7 +57,8 @@ def removed_header(view: View):
             if change is not None and change.kind.startswith("header"):
                 yield Hit(include.at, path, f"`{path}` is there, and gone in {change.package} {change.version} of {view.horizon}",
                           f"include `{change.new}`" if change.new else "", package.name,
-                          severity="warning" if severity == "error" else "note")  # fmt: skip
+                          severity="warning" if severity == "error" and change.package not in coming else "note")  # fmt: skip
+                coming.add(change.package)
                 continue
             lost = view.lost_header(path)
             if lost is not None:

@@ -2,19 +2,24 @@
 
 What it does
     Reports declared dependencies and find_package calls that name a package which the known-changes table says was
-    removed, without a successor of the same role, before the target's version of the distro.
+    taken out of ROS before, or with, the target's distro.
 
 Why it breaks
     Nothing installs the package there.
 
 Severity
-    error when it is used unconditionally; warning otherwise.
+    error for a build or run dependency and for a find_package(REQUIRED) that surely counts on the target; warning for
+    dependencies of tests and documentation, and for optional or guarded calls.
 
 Example
-    <depend>shape_tools</depend>                // merged away in kinetic
+    <exec_depend>ros1_bridge</exec_depend>              <!-- not released since Humble -->
 
 Use instead
-    What the table names, where it names something.
+    <exec_depend condition="$ROS_DISTRO == foxy">ros1_bridge</exec_depend>
+
+Not reported
+    Names that the workspace, the target's distro or rosdep provides all the same; dependencies under a condition that
+    does not hold on the target.
 """
 
 from ...model.view import View

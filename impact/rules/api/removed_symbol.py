@@ -61,7 +61,7 @@ def removed_symbol(view: View):
                 names = warned.setdefault(later.package, set())
                 loud = (
                     use.language == "cpp" and use.role == "build" and view.certain(use.conditions)
-                    and later.kind != "api-changed" and later.package != "python" and (len(names) < 2 or use.text in names)
+                    and later.kind != "api-changed" and later.package != "python" and (not names or use.text in names)
                 )  # fmt: skip
                 if loud:
                     names.add(use.text)

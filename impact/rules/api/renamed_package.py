@@ -6,12 +6,20 @@ What it does
 Why it breaks
     The old name is installed by nothing there, and the new one by nothing on older targets.
 
+Severity
+    error for a build or run dependency and for a find_package(REQUIRED) that surely counts on the target; warning for
+    dependencies of tests and documentation, and for optional or guarded calls.
+
 Example
-    <depend>hokuyo_node</depend>
+    <exec_depend>nav2_recoveries</exec_depend>          <!-- nav2_behaviors since Humble -->
 
 Use instead
-    <depend condition="$ROS_DISTRO == melodic">old_name</depend>
-    <depend condition="$ROS_DISTRO != melodic">new_name</depend>
+    <exec_depend condition="$ROS_DISTRO == galactic">nav2_recoveries</exec_depend>
+    <exec_depend condition="$ROS_DISTRO != galactic">nav2_behaviors</exec_depend>
+
+Not reported
+    Names that the workspace, the target's distro or rosdep provides all the same; dependencies under a condition that
+    does not hold on the target.
 """
 
 from ...model.view import View

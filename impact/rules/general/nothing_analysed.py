@@ -5,6 +5,9 @@ What it does
 
 Why it matters
     A check that looked at nothing must not pass for one that found nothing.
+
+Severity
+    error, and the exit status is 2 whatever --fail-on says.
 """
 
 from ...model.build import At

@@ -7,7 +7,7 @@ Why it matters
     What stands in such a file was not checked; silence about it means nothing.
 
 Severity
-    warning for CMake that the build itself reads; note otherwise, and for generated or very large files.
+    note: what else is wrong with the file is for its own reader to say; the coverage line counts it too.
 """
 
 from ...model.build import At

@@ -33,6 +33,7 @@ from ..rule import Hit, rule
 _VIEWERS = ("rviz", "rqt", "image_view", "joint_state_publisher", "moveit_ros_benchmarks", "joint_state_publisher_gui", "plotjuggler", "teleop_", "joy", "moveit_setup_assistant",
             "urdf_tutorial", "turtlesim")  # fmt: skip
 _ON_THE_DESK = frozenset("python3-matplotlib python-matplotlib python3-pytest python-pytest python-gtk2 python3-tk python-tk".split())
+_LOUD = 2
 # The macros that make tests bring these headers.
 _WITH_TESTS = ("gtest/", "gmock/")
 # Whoever starts a launch file has these: the launch tool itself brings them.
@@ -70,12 +71,17 @@ def undeclared_package(view: View):
         if not missing:
             continue
         blind = bool(view.blind(package))
+        spoken = 0
         for name, needs in missing.items():
             needs.sort(key=lambda n: weight(n))
             first = needs[0]
             severity = _severity(view, first, name, blind)
             if severity is None:
                 continue
+            if severity == "warning" and first.how in ("launch", "plugin", "shell", "import"):
+                # A package that leaves out many is told so by the first few; the rest follow as notes.
+                spoken += 1
+                severity = "warning" if spoken <= _LOUD else "note"
             yield Hit(
                 at=first.at,
                 subject=name,

@@ -8,6 +8,9 @@ What it does
 Why it breaks
     `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package.
 
+Severity
+    error, since `rosdep install` stops; note for names never seen in public, which may belong to a private repository.
+
 Example
     <depend>Eigen3</depend>
 
@@ -15,8 +18,8 @@ Use instead
     <depend>eigen</depend>
 
 Not reported
-    Names never seen in public: they may belong to a private repository, so they are a note. Dependencies under a
-    condition that does not hold on the target, and names listed in `[workspace] private`.
+    Packages that some distro has released (unreleased-package says it), dependencies under a condition that does not
+    hold on the target, and names listed in `[workspace] private`.
 """
 
 from ...model.view import View

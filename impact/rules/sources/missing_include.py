@@ -60,7 +60,7 @@ def missing_include(view: View):
             )  # fmt: skip
             where = "" if now else f" of {view.horizon}"
             yield Hit(need.at, header, f"`{need.name}` is used without `<{header}>`, which {row.library} {version}{where} no longer brings along",
-                      f"#include <{header}>", package.name, severity="error" if sure else "warning" if now or row.through else "note")  # fmt: skip
+                      f"#include <{header}>", package.name, severity="error" if sure else "warning" if now and not (row.through and is_header(need.at.path)) else "note")  # fmt: skip
 
 
 def _dropped(view: View, target):

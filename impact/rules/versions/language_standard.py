@@ -8,17 +8,17 @@ Why it breaks
     The compiler stops inside somebody else's header with errors about missing features.
 
 Severity
-    error for a -std= flag below what is needed, or none where the compiler's default is below; warning where the version
-    is not known exactly.
-
-Not reported
-    CMAKE_CXX_STANDARD in ROS 2: CMake raises it to what linked targets ask for.
+    error for a -std= flag below what is needed and, in ROS 1, for a lower CMAKE_CXX_STANDARD or compiler default;
+    warning where it is not certain that every use of the header needs it.
 
 Example
     add_compile_options(-std=c++11)             # and pcl 1.12 needs C++14
 
 Use instead
     set(CMAKE_CXX_STANDARD 17)
+
+Not reported
+    CMAKE_CXX_STANDARD in ROS 2: CMake raises it to what linked targets ask for.
 """
 
 from ...model.view import View
