@@ -8,11 +8,17 @@ Why it breaks
     catkin and bloom write the bound into the Debian package, so installing fails; rosdep ignores the bound, so a source
     build goes on and fails later, in the compiler or at run time.
 
+Severity
+    error where the target's release or library breaks the bound; warning where a package of the workspace itself does.
+
 Example
     <depend version_gte="2.9.0">moveit_core</depend>     # the robot, humble, has 2.5.9
 
 Use instead
     A bound that holds on every target, or code for both versions.
+
+Not reported
+    Bounds on packages whose version on the target is not known, and under a condition that does not hold there.
 """
 
 from ...model.view import View
