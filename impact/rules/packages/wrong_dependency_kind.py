@@ -9,6 +9,10 @@ Why it breaks
     A build without tests, or a machine that only builds, lacks the package. A dependant that includes the public header
     finds the header's own includes missing. An installed robot lacks what the node imports.
 
+Severity
+    warning; note where rosdep installs the package all the same (declared for running, needed to build), and where what
+    is needed to run is declared for tests.
+
 Example
     <test_depend>moveit_ros_planning</test_depend>      # and CMakeLists.txt finds it outside BUILD_TESTING
 
