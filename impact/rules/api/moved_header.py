@@ -7,13 +7,16 @@ Why it matters
     The next version, which another developer may have already, is without the old name.
 
 Severity
-    warning when another target asked for no longer has the old name; note otherwise.
+    note. A target that no longer has the old name gets an error from removed-header.
 
 Example
     #include <cv_bridge/cv_bridge.h>            // deprecated since cv_bridge 3.3
 
 Use instead
     #include <cv_bridge/cv_bridge.hpp>
+
+Not reported
+    Headers that the workspace itself provides, and includes under a condition that does not hold on the target.
 """
 
 from ...model.view import View
