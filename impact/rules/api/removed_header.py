@@ -2,14 +2,15 @@
 
 What it does
     Reports `#include` lines whose header the target's version of the providing package does not install: removed,
-    renamed, or only added in a later version; and ROS 1 spellings of generated headers on a ROS 2 target.
+    renamed, or only added in a later version; headers of platform libraries that the newest distro no longer has; and
+    spellings of generated headers that belong to the other ROS generation.
 
 Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
-    error for compiled code that is not guarded; warning for tests; note for installed headers that the package
-    does not compile itself and under conditions that are not known.
+    error for compiled code that is not guarded; warning for tests, and for what only the newest distro lacks; note for
+    examples, for installed headers that the package does not compile itself, and under conditions that are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -18,7 +19,8 @@ Use instead
     #include <tf2_geometry_msgs/tf2_geometry_msgs.hpp>   // there since 0.25
 
 Not reported
-    ROS 1 names in a package that also includes ROS 1 headers, as bridges do. Includes under `#if __has_include(...)` or a version test that excludes the target; headers of the workspace itself.
+    Includes under `#if __has_include(...)` or a version test that excludes the target; headers of the workspace itself;
+    ROS 1 names in a package that also includes ROS 1 headers, as bridges do.
 """
 
 from ...model.view import View
