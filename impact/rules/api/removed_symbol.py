@@ -1,20 +1,27 @@
 """removed-symbol: a class, function, constant or macro that is used is gone on a target.
 
 What it does
-    Reports names that the known-changes table says the target's version of a package or library no longer has, in files
-    that include a header of that package or library.
+    Reports names that the known-changes table says the target's version of a package or library no longer has, in
+    packages that declare or include that package or library; and names of platform libraries that the newest distro no
+    longer has.
 
 Why it breaks
-    The compiler stops: "was not declared in this scope".
+    The compiler stops with "was not declared in this scope", or Python with an AttributeError or ImportError.
 
 Severity
-    error for unguarded names that belong to nobody else; warning where the name alone does not settle it.
+    error for unguarded names in code that is built or run; warning in tests, under conditions that are not known, where
+    the name stays and changed its meaning, and for the first names of a library that only the newest distro lacks; note
+    in examples and for the rest of those.
 
 Example
     cv::imread(path, CV_LOAD_IMAGE_ANYDEPTH)    // gone in OpenCV 4
 
 Use instead
     cv::imread(path, cv::IMREAD_ANYDEPTH)       // there since OpenCV 3
+
+Not reported
+    Code that a version test excludes on the target; names that a header which the file includes brings back
+    (`cv_bridge` brings OpenCV's C constants); names that the package defines itself.
 """
 
 from ...model.package import is_header
