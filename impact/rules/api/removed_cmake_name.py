@@ -8,13 +8,17 @@ Why it breaks
     CMake stops at an unknown command or target; an unknown variable is empty and the build fails later.
 
 Severity
-    error for commands and targets that are surely reached; warning for variables.
+    error for commands and targets that are surely reached; warning for variables and under conditions that are not
+    known.
 
 Example
     ament_target_dependencies(node rclcpp)      # removed in ament_cmake 2.8.5
 
 Use instead
     target_link_libraries(node rclcpp::rclcpp)
+
+Not reported
+    Calls under a condition that does not hold on the target; names that the package or the workspace defines.
 """
 
 from ...model.view import View
