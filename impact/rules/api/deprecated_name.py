@@ -14,6 +14,9 @@ Example
 
 Use instead
     rclcpp::FutureReturnCode
+
+Not reported
+    Code that a version test excludes on the target.
 """
 
 from ...model.view import View
