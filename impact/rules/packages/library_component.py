@@ -9,8 +9,9 @@ Why it breaks
     CMake stops at a component that is gone (`signals` since Boost 1.69), or the linker at symbols of one never linked.
 
 Severity
-    error when a required component is gone on the target, or a `Boost::x` target is linked that nothing creates;
-    warning when headers of a compiled component are included and nothing links it.
+    error when a component that is surely required is gone on the target; warning when only the newest distro lacks it,
+    when `Boost::x` is linked and not asked for, and when a header of a compiled component is included while other
+    components are asked for; note where nothing tells how Boost is linked.
 
 Example
     find_package(Boost REQUIRED COMPONENTS signals)
