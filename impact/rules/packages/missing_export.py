@@ -10,13 +10,18 @@ Why it breaks
     exported configuration names a library that was never built.
 
 Severity
-    error where the package's own configuration stops (an include directory that does not exist); warning otherwise.
+    error where the package's own configuration stops (an include directory that does not exist); warning where a
+    dependant of the workspace, or an exported target or library, needs what is missing; note otherwise.
 
 Example
     ament_export_dependencies(rclcpp)           # and include/p/p.hpp includes angles/angles.h
 
 Use instead
     ament_export_dependencies(rclcpp angles)
+
+Not reported
+    What an exported package brings in turn; packages that ament_auto exports; until Galactic, where all headers lay in
+    one folder, a missing ament_export_dependencies is a note.
 """
 
 import posixpath
