@@ -1,22 +1,24 @@
 """missing-install: a file or target that is used or exported is not installed.
 
 What it does
-    Compares install rules (CMake, setup.py, setup.cfg) with what the package offers: executables and libraries, plugin
-    libraries and their descriptions, launch files and scripts that something starts, folders that `$(find pkg)` reaches;
-    and finds install rules whose file or folder does not exist.
+    Compares the install rules of CMake with what the package offers: executables and libraries, plugin libraries and
+    their descriptions, launch files and scripts that something of the workspace starts or opens; and finds install
+    rules whose file or folder does not exist.
 
 Why it breaks
     Everything works from the build tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
 
 Severity
-    error for an install rule of something that does not exist, and for ament_python data files that match nothing;
-    warning otherwise.
+    error for an install rule of something that does not exist; warning otherwise.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
 
 Use instead
     install(TARGETS tcp_socket_node udp_socket_node ...)
+
+Not reported
+    Tests, examples and benchmarks; static libraries; files that the build makes; packages without CMake.
 """
 
 import posixpath
