@@ -1,9 +1,9 @@
 """missing-interface-wiring: messages are not generated, or not before the code that includes them.
 
 What it does
-    Follows a definition from its file to the code that includes it: the file is listed, the generator is found and
-    called, the packages of its field types are given to it, the manifest has generator, runtime and group, and (catkin)
-    each target that includes a generated header waits for the generator through add_dependencies.
+    Follows a definition from its file to the code that includes it: the packages of its field types are given to the
+    generator, its own types exist, the manifest joins the group of interface packages (ROS 2), message_generation is
+    found and each target that includes a generated header waits for the generator through add_dependencies (catkin).
 
 Why it breaks
     A clean or parallel build compiles a source before its header exists, and fails on some machines on some days. A field
@@ -17,6 +17,9 @@ Example
 
 Use instead
     add_dependencies(bridge ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+
+Not reported
+    Targets that wait through another target of the package, or through `${catkin_EXPORTED_TARGETS}`.
 """
 
 from ...model.view import View
