@@ -17,6 +17,9 @@ Example
 
 Use instead
     ament_export_dependencies(nav2_costmap_2d nav2_util)
+
+Not reported
+    Names that anybody is known to provide, that some distro has released, or that no declared name resembles.
 """
 
 from ...model.spelling import Names
