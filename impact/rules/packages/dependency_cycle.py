@@ -7,14 +7,16 @@ Why it breaks
     catkin and colcon sort packages by all these kinds: neither builds a workspace with a cycle.
 
 Severity
-    error: the build tool stops before it builds anything. A cycle that only test dependencies close is a note, since
-    colcon leaves test dependencies out where they would close one.
+    error: the build tool stops before it builds anything.
 
 Example
     turtlebot_bringup needs turtlebot_capabilities, which needs turtlebot_bringup
 
 Use instead
     One direction only; what both need goes into a third package.
+
+Not reported
+    Cycles that only test or documentation dependencies close: colcon leaves these out where they would close one.
 """
 
 from ...model.view import View
