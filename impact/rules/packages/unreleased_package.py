@@ -17,6 +17,10 @@ Example
 Use instead
     The package's successor there, a `.repos` file that brings the source, or
     <depend condition="$ROS_DISTRO != kilted">moveit_plugins</depend>
+
+Not reported
+    Packages of the workspace, names listed in `[workspace] private`, dependencies under a condition that does not hold
+    on the target, and packages with a known successor (renamed-package and removed-package say it).
 """
 
 from ...model.view import View
