@@ -8,13 +8,17 @@ Why it breaks
     CMake stops: "Could not find a configuration file that is compatible with requested version".
 
 Severity
-    error for an unconditional REQUIRED request; warning otherwise.
+    error for an unconditional REQUIRED request; warning for a REQUIRED one under a condition that is not known; note
+    for an optional one.
 
 Example
     find_package(OpenCV 3 REQUIRED)             # Ubuntu focal and newer have 4
 
 Use instead
     find_package(OpenCV REQUIRED)               # and code for both, by CV_VERSION_MAJOR
+
+Not reported
+    Requests beside another one for the same library that the platform satisfies; libraries whose version is not known.
 """
 
 from ...model.view import View
