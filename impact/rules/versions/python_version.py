@@ -8,7 +8,8 @@ Why it breaks
     The node stops at its first line: SyntaxError or ModuleNotFoundError.
 
 Severity
-    error for files that are nodes, scripts or modules of the package; warning for tests; note for examples.
+    error for files that are nodes, scripts or modules of the package; warning for tests and for imports inside
+    functions; note for examples.
 
 Example
     except urllib2.URLError, e:
