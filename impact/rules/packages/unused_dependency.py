@@ -10,6 +10,12 @@ Why it matters
 Severity
     note: a dependency may be wanted for reasons that no file shows.
 
+Example
+    <depend>laser_geometry</depend>             <!-- and nothing includes, finds, links or starts it -->
+
+Use instead
+    A manifest without it.
+
 Not reported
     Metapackages, build tools, message runtimes, `*_vendor` packages, dependencies of packages with unresolved CMake.
 """
