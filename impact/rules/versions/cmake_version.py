@@ -14,6 +14,9 @@ Example
 
 Use instead
     cmake_minimum_required(VERSION 3.5...3.28)
+
+Not reported
+    A version that is not a plain number, and platforms whose CMake is not known.
 """
 
 from ...model.view import View
