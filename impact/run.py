@@ -381,7 +381,8 @@ def why(name: str, path: Path, targets: tuple[str, ...], format: str) -> int:
     if format == "json":
         import json
 
-        _write(json.dumps([a._asdict() for a in found], indent=1, default=lambda offer: offer._asdict()))
+        rows = [answer._asdict() | {"offers": [offer._asdict() for offer in answer.offers]} for answer in found]
+        _write(json.dumps(rows, indent=1))
     else:
         _write(as_text(name, found))
     answered = {a.target for a in found if any(offer.kind != "absent" for offer in a.offers)}

@@ -42,7 +42,7 @@ def answers(name: str, path: Path, targets: tuple[str, ...]) -> list[Answer]:
 def _answers(view: View, name: str) -> list[Answer]:
     found = []
     for what, providers in (
-        ("header", view.header(name) if "/" in name or "." in name else ()),
+        ("header", view.header(name)),
         ("CMake package", view.cmake(name)),
         ("Python module", view.module(name)),
         ("executable", tuple(view.providers.executable(name))),

@@ -210,7 +210,7 @@ FILES = [
         "YAML alias bomb",
     ),
     named("config/a.yaml", "a: &a\n  b: *a\n", "YAML that holds itself"),
-    named("config/a.yaml", "type: a/b\nc: " + "[" * 50_000, "YAML nested deeply", "a.yaml"),
+    named("launch/a.launch.yaml", "launch: " + "[" * 50_000, "launch.yaml nested deeply", "a.launch.yaml"),
     named("config/a.yaml", "!!python/object/apply:os.system ['touch pwned']\n", "YAML that would run code"),
     named(
         "urdf/a.urdf.xacro",

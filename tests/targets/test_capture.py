@@ -1,0 +1,142 @@
+"""A machine as a target: read from commands and folders, written without names or paths, read back, compared."""
+
+from __future__ import annotations
+
+import getpass
+import json
+import socket
+
+import pytest
+from rosimpact.impact.targets.capture import (
+    Machine,
+    as_target,
+    capture,
+    differences,
+    from_dpkg,
+    load_capture,
+    plain,
+    read,
+    to_json,
+)
+from rosimpact.impact.targets.distro import DistroTarget, TargetError
+
+DPKG = """ii \tros-humble-rclcpp\t16.0.8-1jammy.20240304.103405
+ii \tros-humble-cv-bridge\t3.2.1-1jammy.20240304
+ii \tros-humble-rclcpp-dbgsym\t16.0.8-1jammy
+ii \tros-noetic-roscpp\t1.16.0-1focal
+rc \tros-humble-gone\t1.0.0-1
+ii \tlibopencv-dev:amd64\t4.5.4+dfsg-9ubuntu4
+ii \tg++\t4:11.2.0-1ubuntu1
+ii \tpython3\t3.10.6-1~22.04
+ii \tbash\t5.1-6
+un \tnothing\t
+"""
+MANIFEST = "<package><name>{}</name><version>{}</version></package>"
+
+
+def machine_of(tmp_path, listing=DPKG, **environment):
+    (tmp_path / "etc").mkdir(exist_ok=True)
+    (tmp_path / "etc/os-release").write_text('ID=ubuntu\nVERSION_CODENAME=jammy\nHOME_URL="x"\n')
+    answers = {"dpkg-query": listing, "g++": "11.4.0\n", "cmake": "cmake version 3.22.1\n", "clang": ""}
+    return capture(lambda command: answers.get(command[0], ""), tmp_path, environment)
+
+
+def test_a_machine(tmp_path):
+    machine = machine_of(tmp_path)
+    assert machine.distro == "humble" and machine.platform == "ubuntu jammy"
+    assert machine.packages == {"cv_bridge": "3.2.1", "rclcpp": "16.0.8"}
+    assert machine.libraries["opencv"] == "4.5.4" and machine.libraries["python3"] == "3.10.6"
+    assert machine.libraries["gcc"] == "11.4.0" and machine.tools == {"cmake": "3.22.1", "gcc": "11.4.0"}
+    assert "bash" not in machine.debian and "gone" not in machine.packages
+
+
+def test_overlays_cover_what_is_installed(tmp_path):
+    for prefix, version in (("opt/ros/humble", "16.0.8"), ("ws/install/rclcpp", "99.0.0"), ("under/install", "50.0.0")):
+        folder = tmp_path / prefix / "share/rclcpp"
+        folder.mkdir(parents=True)
+        (folder / "package.xml").write_text(MANIFEST.format("rclcpp", version))
+    overlaid = f"{tmp_path}/ws/install/rclcpp:{tmp_path}/under/install:{tmp_path}/nowhere"
+    assert machine_of(tmp_path).packages["rclcpp"] == "16.0.8"
+    assert machine_of(tmp_path, AMENT_PREFIX_PATH=overlaid).packages["rclcpp"] == "99.0.0"
+
+
+@pytest.mark.parametrize(
+    ("listing", "environment", "distro"),
+    [
+        (DPKG, {}, "humble"),
+        (DPKG, {"ROS_DISTRO": "noetic"}, "noetic"),
+        ("", {"ROS_DISTRO": "jazzy"}, "jazzy"),
+        ("", {}, ""),
+        ("garbage\n\tii\t\n\0\n", {}, ""),
+    ],
+)
+def test_the_distro(tmp_path, listing, environment, distro):
+    assert machine_of(tmp_path, listing, **environment).distro == distro
+
+
+def test_the_file_is_sorted_and_free_of_names_and_paths(tmp_path):
+    text = to_json(machine_of(tmp_path, AMENT_PREFIX_PATH=str(tmp_path)))
+    assert text == to_json(machine_of(tmp_path, AMENT_PREFIX_PATH=str(tmp_path)))
+    data = json.loads(text)
+    assert list(data) == sorted(data) and list(data["packages"]) == sorted(data["packages"])
+    for secret in (str(tmp_path), getpass.getuser() + "@", socket.gethostname()):
+        assert secret not in text
+
+
+def test_written_and_read_back(tmp_path):
+    machine = machine_of(tmp_path)
+    (tmp_path / "laptop.json").write_text(to_json(machine))
+    assert read(tmp_path / "laptop.json") == machine
+    target = load_capture(tmp_path / "laptop.json")
+    assert target.name == "laptop" and target.version("rclcpp") == "16.0.8" and target.library("opencv") == "4.5.4"
+    assert target.version("nav2_core") is not None, "what is not installed can still be installed"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "cannot be read"),
+        ("{", "cannot be read"),
+        ("[]", "no captured machine"),
+        ('{"rosimpact_target": 2}', "no captured machine"),
+        ('{"rosimpact_target": 1, "packages": 3}', "names no ROS distro"),
+        ('{"rosimpact_target": 1, "distro": "gutsy"}', "gutsy"),
+        ('{"rosimpact_target": 1, "distro": "humble", "date": "then"}', "then"),
+    ],
+)
+def test_what_is_no_captured_machine_is_named(tmp_path, text, words):
+    (tmp_path / "x.json").write_text(text)
+    with pytest.raises(TargetError, match=rf"x\.json.*{words}"):
+        load_capture(tmp_path / "x.json")
+
+
+@pytest.mark.parametrize(
+    ("version", "expected"),
+    [("1:4.5.4+dfsg-9", "4.5.4"), ("3.10.6-1~22.04", "3.10.6"), ("16.0.8", "16.0.8"), ("4:11.2.0-1ubuntu1", "11.2.0")],
+)
+def test_plain_versions(version, expected):
+    assert plain(version) == expected
+
+
+def test_the_first_package_that_tells_a_library_counts():
+    rows = [("libvtk7-dev", "7.1.1"), ("libvtk9-dev", "9.1.0"), ("libboost-dev", "1.74.0.3ubuntu7")]
+    _, _, libraries, matter = from_dpkg(rows)
+    assert libraries["vtk"] == "9.1.0" and matter["libvtk9-dev"] == "9.1.0" and "libvtk7-dev" not in matter
+
+
+def test_differences():
+    humble = DistroTarget("humble", "2024-03-01")
+    other = humble.changed(versions={"opencv": "4.9", "rclcpp": "99.0"}, name="other")
+    found = {(d.kind, d.name): (d.first, d.second) for d in differences(humble, other)}
+    assert found[("library", "opencv")][1] == "4.9"
+    assert found[("package", "rclcpp")][1] == "99.0"
+    assert len(found) == 2
+    assert differences(humble, humble) == []
+    assert ("platform", "ubuntu jammy", "ubuntu noble") in {
+        (d.name, d.first, d.second) for d in differences(humble, DistroTarget("jazzy"))
+    }
+
+
+def test_a_machine_without_a_distro_is_no_target():
+    with pytest.raises(TargetError, match="names no ROS distro"):
+        as_target(Machine("", "", "", {}, {}, {}, {}, {}), "x", "x.json")

@@ -1,0 +1,117 @@
+"""The main job as other Python code calls it: what goes in, what comes out, and what is right on which target."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import rosimpact.impact
+from rosimpact.impact.check import CheckError, Options, check, check_workspace, holds, open_workspace
+from rosimpact.impact.config import ConfigError, load
+from rosimpact.impact.findings import SettingsError
+from rosimpact.impact.rules.cure import Declare, Insert, Remove, Replace
+from rosimpact.impact.targets.distro import TargetError
+from rosimpact.impact.tree import TreeError
+
+EXAMPLE = Path(__file__).parents[1] / "examples/ros2_ws"
+
+
+@pytest.fixture(autouse=True)
+def _cache(cache, monkeypatch):
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+
+
+def test_findings_for_other_tools():
+    findings = rosimpact.impact.check_workspace(EXAMPLE, targets=["jazzy", "humble@2025-06-01"])
+    assert all(isinstance(finding, rosimpact.impact.Finding) for finding in findings)
+    opencv = [finding for finding in findings if finding.rule == "library-version"]
+    assert [(finding.path, finding.targets) for finding in opencv] == [
+        ("src/porter_vision/CMakeLists.txt", ("jazzy", "humble@2025-06-01"))
+    ]
+    assert findings == sorted(findings, key=lambda finding: (finding.path, finding.line, finding.column, finding.rule))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"targets": ["gutsy"]}, TargetError, "gutsy"),
+        ({"select": ["nonsense"]}, SettingsError, "nonsense"),
+        ({"config": "nowhere.toml"}, ConfigError, r"nowhere\.toml"),
+        ({"base": ["no-such-revision"]}, TreeError, "no-such-revision"),
+        ({"rev": "no-such-revision"}, TreeError, "no-such-revision"),
+    ],
+)
+def test_what_cannot_be_done_is_an_exception(arguments, error, words):
+    with pytest.raises(error, match=words):
+        check_workspace(EXAMPLE, **arguments)
+
+
+def test_no_package_is_an_exception_and_no_empty_answer(tmp_path):
+    with pytest.raises(CheckError, match="no package was found"):
+        check_workspace(tmp_path)
+    with pytest.raises(TreeError, match="does not exist"):
+        check_workspace(tmp_path / "nowhere")
+    assert check(tmp_path).failure
+
+
+def test_a_second_run_says_the_same():
+    first, second = (check(EXAMPLE, Options(targets=("jazzy",))) for _ in range(2))
+    assert first.findings == second.findings and first.coverage == second.coverage
+
+
+def test_the_order_of_targets_changes_nothing_but_their_order():
+    one = check(EXAMPLE, Options(targets=("jazzy", "humble"))).findings
+    other = check(EXAMPLE, Options(targets=("humble", "jazzy"))).findings
+    assert [(f.fingerprint, f.severity, set(f.targets)) for f in one] == [
+        (f.fingerprint, f.severity, set(f.targets)) for f in other
+    ]
+
+
+def test_a_target_more_takes_nothing_away():
+    alone = {(f.rule, f.path, f.line, f.subject) for f in check(EXAMPLE, Options(targets=("jazzy",))).findings}
+    both = {
+        (f.rule, f.path, f.line, f.subject)
+        for f in check(EXAMPLE, Options(targets=("jazzy", "humble"))).findings
+        if "jazzy" in f.targets
+    }
+    assert alone == both
+
+
+@pytest.mark.parametrize(
+    ("cure", "on_jazzy", "on_humble"),
+    [
+        (Declare("package.xml", "rclcpp"), True, True),
+        (Declare("package.xml", "porter_msgs"), True, True),
+        (Declare("package.xml", "no_such_package"), False, False),
+        (Declare("package.xml", "libopencv-dev"), True, True),
+        (Replace("a.cpp", 1, 11, "x.h", "tf2_geometry_msgs/tf2_geometry_msgs.hpp"), True, True),
+        (Replace("a.cpp", 1, 11, "x.hpp", "tf2_geometry_msgs/tf2_geometry_msgs.h"), False, True),
+        (Replace("a.cpp", 1, 11, "x.h", "<vector>"), True, True),
+        (Replace("a.cpp", 1, 11, "x.h", "porter_vision/marker_detector.hpp"), True, True),
+        (Replace("a.cpp", 1, 11, "x.h", "no/such/header.hpp"), False, False),
+        (Insert("a.cpp", 1, "#include <cstdint>"), True, True),
+        (Insert("a.cpp", 1, "int x;"), False, False),
+        (Remove("package.xml", "rclcpp"), False, False),
+    ],
+)
+def test_a_cure_is_right_elsewhere_only_where_that_is_known(cure, on_jazzy, on_humble):
+    with open_workspace(EXAMPLE, Options(targets=("jazzy", "humble"))) as opened:
+        jazzy, humble = opened.views
+        assert (holds(cure, jazzy), holds(cure, humble)) == (on_jazzy, on_humble)
+
+
+def test_configuration(tmp_path):
+    (tmp_path / "rosimpact.toml").write_text(
+        "\ufeff[targets.robot]\ndistro = 'humble'\n[targets.laptop]\ndistro = 'jazzy'\n"
+        "[check]\nselect = 'packages'\nseverity = { unused-dependency = 'off' }\nfail_on = 'warning'\n"
+        "[workspace]\nprivate = ['ours']\nindex = 'https://example.org/index-v4.yaml'\n"
+        "[paths.'src/**']\nignore = ['all']\n",
+        encoding="utf-8",
+    )
+    config = load(tmp_path)
+    assert config.default_targets == ("robot", "laptop")
+    assert config.select == ("packages",) and config.severity == {"unused-dependency": "off"}
+    assert config.fail_on == "warning" and config.private == ("ours",)
+    assert config.paths[0].pattern == "src/**" and config.paths[0].ignore == ("all",)
+    assert load(tmp_path / "nowhere").path is None

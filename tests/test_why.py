@@ -1,0 +1,95 @@
+"""One dependency asked about: who provides it, in which version, since when, who uses it, and whether that is safe."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from rosimpact.impact.why import Answer, Offer, answers, as_text
+
+EXAMPLE = Path(__file__).parents[1] / "examples/ros2_ws"
+
+
+@pytest.fixture(autouse=True)
+def _cache(cache, monkeypatch):
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "what", "provider"),
+    [
+        ("cv_bridge", "package", "package", "cv_bridge"),
+        ("porter_msgs", "package", "workspace", "porter_msgs"),
+        ("libopencv-dev", "rosdep key", "key", "libopencv-dev"),
+        ("OpenCV", "CMake package", "key", "libopencv-dev"),
+        ("cv_bridge/cv_bridge.hpp", "header", "package", "cv_bridge"),
+        ("opencv2/core.hpp", "header", "key", "libopencv-dev"),
+        ("porter_vision/marker_detector.hpp", "header", "workspace", "porter_vision"),
+        ("vector", "header", "system", ""),
+        ("yaml", "Python module", "key", "python3-yaml"),
+        ("rclpy.node", "Python module", "package", "rclpy"),
+    ],
+)
+def test_who_provides_a_name(name, kind, what, provider):
+    found = answers(name, EXAMPLE, ("jazzy",))
+    offers = [offer for answer in found if answer.as_what == kind for offer in answer.offers]
+    assert (what, provider) in {(offer.kind, offer.name) for offer in offers}
+
+
+def test_one_answer_for_each_target():
+    found = answers("cv_bridge", EXAMPLE, ("humble", "jazzy"))
+    versions = {answer.target: answer.offers[0].version for answer in found if answer.as_what == "package"}
+    assert versions["humble"].startswith("3.") and versions["jazzy"].startswith("4.")
+    assert {answer.offers[0].since[:4] for answer in found if answer.as_what == "package"} == {"2022", "2024"}
+
+
+def test_a_package_that_is_gone_says_where_it_was_last():
+    (offer,) = answers("turtlesim", EXAMPLE, ("jazzy",))[0].offers
+    assert offer.kind == "package"
+    found = answers("actionlib", EXAMPLE, ("jazzy",))
+    assert all(offer.kind == "absent" for answer in found for offer in answer.offers)
+
+
+def test_a_name_that_nobody_knows():
+    (answer,) = answers("nobody_has_this", EXAMPLE, ("jazzy",))
+    assert answer.offers == () and answer.used == ()
+
+
+def test_uses_and_whether_they_are_safe():
+    (answer, *_) = answers("cv_bridge", EXAMPLE, ("jazzy",))
+    assert "src/porter_vision/package.xml:12" in answer.used and answer.undeclared == ()
+    undeclared = answers("teleop_twist_joy", EXAMPLE, ("jazzy",)) + answers("v4l2_camera", EXAMPLE, ("jazzy",))
+    assert any("porter_bringup" in answer.undeclared for answer in undeclared)
+
+
+def answer(what: str, *offers: Offer, used=(), undeclared=(), changes=(), target="jazzy") -> Answer:
+    return Answer(target, what, offers, used, undeclared, changes)
+
+
+PACKAGE = Offer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
+
+
+@pytest.mark.parametrize(
+    ("found", "expected"),
+    [
+        ([], ""),
+        ([answer("name")], "jazzy: `x` as name\n  nobody is known to provide it there\nused at 0 places"),
+        (
+            [answer("package", PACKAGE), answer("header", PACKAGE)],
+            "jazzy: `x` as package, header\n  package cv_bridge  4.1.0  since 2024-04-19\nused at 0 places",
+        ),
+        (
+            [answer("package", PACKAGE, used=("a/b.cpp:1",), undeclared=("a",), changes=("c",))],
+            "jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\n  c\nused at 1 place:\n  a/b.cpp:1\n"
+            "not safe: used and not declared in a",
+        ),
+        (
+            [answer("package", PACKAGE, used=tuple(f"a.cpp:{n}" for n in range(1, 15)))],
+            "jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\nused at 14 places:\n"
+            + "".join(f"  a.cpp:{n}\n" for n in range(1, 13))
+            + "  and 2 more\nsafe: every package that uses it declares it, or something that brings it",
+        ),
+    ],
+)
+def test_answers_as_text(found, expected):
+    assert as_text("x", found) == expected
