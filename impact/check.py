@@ -22,6 +22,7 @@ from .rules.rule import Cure, Finding, Hit, Rule, all_rules
 from .targets.providers import default_providers
 from .targets.resolve import Chosen, choose_targets
 from .targets.snapshot import SnapshotError
+from .targets.version import compare
 from .tree import GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
 
 __version__ = "0.1.0"
@@ -411,8 +412,11 @@ def _has_header(view: View, path: str) -> bool:
         return True
     for provider in view.header(path):
         version = target.version(provider.name) if provider.kind == "ros" else None
-        if version and view.providers.has_header(provider.name, path, target.distro, version):
-            return True
+        for span in view.providers.header_history(provider.name, path) if version else ():
+            # A span without an end goes on in the distro's releases after the newest one whose files are known.
+            here = span.distro == target.distro and compare(span.first, version) <= 0
+            if here and (span.last is None or compare(version, span.last) <= 0):
+                return True
     return target.platform in view.providers.header_platforms(path)
 
 
