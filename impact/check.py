@@ -412,7 +412,9 @@ def _has_header(view: View, path: str) -> bool:
         return True
     for provider in view.header(path):
         version = target.version(provider.name) if provider.kind == "ros" else None
-        for span in view.providers.header_history(provider.name, path) if version else ():
+        if not version:
+            continue
+        for span in view.providers.header_history(provider.name, path):
             # A span without an end goes on in the distro's releases after the newest one whose files are known.
             here = span.distro == target.distro and compare(span.first, version) <= 0
             if here and (span.last is None or compare(version, span.last) <= 0):
