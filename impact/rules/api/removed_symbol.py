@@ -62,7 +62,8 @@ def removed_symbol(view: View):
                     included = _by_file(package)
                 if any(path.endswith(endings) for path in included.get(use.at.path, ())):
                     continue
-            sure = use.role in ("build", "run") and view.certain(use.conditions) and change.kind != "api-changed"
+            guarded = use.role == "aside" or not view.certain(use.conditions)
+            sure = use.role in ("build", "run") and not guarded and change.kind != "api-changed"
             if later is not None:
                 # Enough to see what is coming: the first names of each library loudly, the rest as notes.
                 names = warned.setdefault(later.package, set())
@@ -78,7 +79,7 @@ def removed_symbol(view: View):
             verb = "changed" if change.kind == "api-changed" else "is gone"
             yield Hit(use.at, use.text, f"`{use.text}` {verb} in {change.package} {change.version}".strip(),
                       f"use `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
-                      package.name, severity="note" if use.role == "aside" else "error" if sure else "warning")  # fmt: skip
+                      package.name, severity="error" if sure else "note" if guarded else "warning")  # fmt: skip
 
 
 def _by_file(package) -> dict[str, set[str]]:

@@ -22,6 +22,7 @@ Use instead
 
 from ...model.view import View
 from ...targets.library import BOOST_COMPILED, gone_component
+from ...targets.version import at_least
 from ..rule import Hit, rule
 
 
@@ -46,8 +47,22 @@ def library_component(view: View):
                     sure = found.required and view.certain(found.conditions)
                     yield Hit(at, name, f"{found.name} {gone.version} has no component `{name}`", gone.help, package.name,
                               severity="error" if sure else "warning")  # fmt: skip
+        yield from _old_qt(view, package)
         yield from _linked(view, package, asked)
         yield from _included(view, package, asked)
+
+
+def _old_qt(view: View, package):
+    """Qt 4 beside rviz or rqt, which are built with Qt 5 since version 1.12 and Kinetic."""
+    found = {f.name: f for f in package.build.found if f.how == "find_package" and view.active(f.conditions)}
+    qt4 = found.get("Qt4")
+    if qt4 is None or "Qt5Widgets" in found or "Qt5" in found or not view.declared(package).keys() & {"rviz", "rqt_gui_cpp"}:
+        return
+    rviz = view.target.version("rviz") or ""
+    if rviz and at_least(rviz, "1.12"):
+        sure = qt4.required and view.certain(qt4.conditions)
+        yield Hit(qt4.at, "Qt4", f"`{package.name}` finds Qt 4, and rviz {rviz} is built with Qt 5", "find_package(Qt5 COMPONENTS Core Widgets)",
+                  package.name, severity="error" if sure else "warning")  # fmt: skip
 
 
 def _linked(view: View, package, asked):

@@ -105,6 +105,7 @@ def _ament(view: View, package):
         return
     if any(f.how == "ament_auto" for f in package.build.found) or any("$" in e.item for e in exports if e.how == "ament_export_dependencies"):
         return
+    yield from _linked(view, package, exports)
     exported = set()
     for export in exports:
         if export.how == "ament_export_dependencies":
@@ -130,3 +131,28 @@ def _ament(view: View, package):
 
 def _installed(package) -> set[str]:
     return {item for rule_ in package.build.installs if rule_.kind == "targets" for item in rule_.items}
+
+
+def _linked(view: View, package, exports):
+    """Imported targets that an exported library passes on, and whose package dependants are not told to find."""
+    if not any(e.how == "ament_export_targets" for e in exports):
+        return
+    names = {e.item.lower() for e in exports if e.how == "ament_export_dependencies"}
+    reach = {name.lower() for name in view.spread(e.item for e in exports if e.how == "ament_export_dependencies")}
+    found = {f.name.lower(): f for f in package.build.found}
+    installed = _installed(package)
+    extras = any(e.how == "cfg_extras" for e in exports)
+    told = set()
+    for target in package.build.targets:
+        if target.name not in installed or target.kind not in ("library", "interface") or not view.certain(target.conditions):
+            continue
+        for link in target.links:
+            head, _, rest = link.item.partition("::")
+            known = found.get(head.lower())
+            if link.how != "link" or not rest or "$" in link.item or link.visibility == "PRIVATE" or known is None:
+                continue
+            if head.lower() in names or head.lower() in reach or head in told or extras or head in view.workspace.packages:
+                continue
+            told.add(head)
+            yield Hit(link.at, known.name, f"`{target.name}` passes `{link.item}` on and `{known.name}` is not exported",
+                      f"add `{known.name}` to ament_export_dependencies", package.name)  # fmt: skip

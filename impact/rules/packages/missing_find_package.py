@@ -39,6 +39,7 @@ def missing_find_package(view: View):
             continue
         yield from _find_modules(view, package)
         yield from _no_components(view, package)
+        yield from _directories_not_given(view, package)
         found = found_names(view, package)
         if found is None:
             continue
@@ -96,6 +97,27 @@ def _find_modules(view: View, package):
         yield Hit(found.at, "cmake_modules", f"`Find{found.name}.cmake` comes with `cmake_modules`, which CMake never looks for",
                   "add `cmake_modules` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml", package.name,
                   severity="error" if sure else "warning" if found.required else "note")  # fmt: skip
+
+
+def _directories_not_given(view: View, package):
+    """catkin packages that are found, and whose include directories no target gets."""
+    build = package.build
+    if package.build_type != "catkin" or not any(f.how == "catkin" for f in build.found) or build.unresolved:
+        return
+    given = " ".join([item for item, _ in build.include_dirs] + [link.item for t in build.targets for link in t.links if link.how == "include"])
+    if "catkin_INCLUDE_DIRS" in given or "/opt/ros" in given:
+        return
+    for target in build.targets:
+        if target.kind not in ("executable", "library") or not view.certain(target.conditions):
+            continue
+        include = next(
+            (i for i in package.digest.includes if target.name in i.targets and view.certain(i.conditions)
+             and any(p.kind == "ros" and p.name not in view.workspace.packages for p in view.header(i.path))), None
+        )  # fmt: skip
+        if include is not None:
+            yield Hit(target.at, "catkin_INCLUDE_DIRS", f"`{include.path}` is included by `{target.name}`, which does not get catkin_INCLUDE_DIRS",
+                      "include_directories(${catkin_INCLUDE_DIRS})", package.name)  # fmt: skip
+            return
 
 
 def _no_components(view: View, package):

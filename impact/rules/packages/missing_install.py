@@ -41,7 +41,10 @@ def missing_install(view: View):
             continue
         installs = [i for i in package.build.installs if view.active(i.conditions)]
         yield from _absent(view, package, installs)
+        yield from _doubled(view, package, installs)
+        yield from _not_executable(view, package, installs)
         if not installs and package.build_type == "catkin" and not package.build.targets:
+            yield from _nothing(view, package)
             continue
         yield from _targets(view, package, installs, referred)
         yield from _descriptions(view, package, installs)
@@ -80,6 +83,41 @@ def _absent(view: View, package, installs):
                       package.name, severity="error")  # fmt: skip
 
 
+def _doubled(view: View, package, installs):
+    """Folders called include that are installed into one of that name, so that headers end up in include/include."""
+    for install in installs:
+        if install.kind != "directory" or install.destination.rstrip("/").rpartition("/")[2] != "include":
+            continue
+        for item in install.items:
+            if item.rpartition("/")[2] == "include" and not item.endswith("/"):
+                yield Hit(install.at, "include", "the folder `include` is installed into `include`, so headers end up in include/include",
+                          "write `include/` with a slash at its end", package.name)  # fmt: skip
+
+
+def _not_executable(view: View, package, installs):
+    """Scripts that are installed as data, where programs belong."""
+    for install in installs:
+        if install.kind != "files" or not re.search(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION", install.destination):
+            continue
+        for item in install.items:
+            path = posixpath.normpath(item)
+            if path in package.digest.scripts:
+                name = posixpath.basename(path)
+                yield Hit(install.at, name, f"`{name}` is installed with install(FILES), so it cannot be executed",
+                          "install(PROGRAMS ...)", package.name)  # fmt: skip
+
+
+_DATA = ("launch", "urdf", "meshes", "robots", "worlds")
+
+
+def _nothing(view: View, package):
+    """A package that only holds data, and installs none of it."""
+    folders = [folder for folder in _DATA if package.has_files(folder)]
+    if folders and package.build.catkin_package is not None and not package.manifest.metapackage:
+        yield Hit(package.build.catkin_package, "install", f"nothing of `{package.name}` is installed, and it has {', '.join(folders)}",
+                  f"install(DIRECTORY {' '.join(folders)} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})", package.name)  # fmt: skip
+
+
 def _made(package, path: str) -> bool:
     """True for files that the build itself writes (configured, generated): their name is mentioned by another command."""
     return not any(path.endswith(e) for e in (".launch", ".xml", ".yaml", ".py", ".h", ".hpp", ".md", ".rviz"))
@@ -111,7 +149,7 @@ def _targets(view: View, package, installs, referred):
         elif target.kind == "executable" and any(t.name in installed for t in package.build.targets if t.kind == "executable"):
             why = "other executables are"
         if why:
-            yield Hit(target.at, target.name, f"`{target.name}` is not installed, although {why}",
+            yield Hit(target.at, name, f"`{name}` is not installed, although {why}",
                       f"add it to install(TARGETS ...)", package.name,
                       severity="note" if why == "other executables are" and package.build_type == "catkin" and False else "")  # fmt: skip
 

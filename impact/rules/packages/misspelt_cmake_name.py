@@ -83,15 +83,19 @@ def _variables(view: View, package, found):
                 break
         else:
             continue
-        if stem in found or stem.lower() not in folded:
+        if stem.lower() not in folded or stem in found and variables(stem) is None:
             continue
         meant = folded[stem.lower()]
         sets = variables(meant)
+        if meant == "Eigen3" and "eigen3_cmake_module" in found:
+            continue  # it sets the variables in both spellings
         if sets is None or use.name in sets:
             continue
         right = next((v for v in sets if v.endswith(suffix)), None)
         if right is None:
             right = next((v for v in sets if v.lower() == use.name.lower() or v.lower() == use.name.lower() + "s"), None)
         if right is not None:
+            if any(use.name == f"{f.prefix}{suffix}" for f in package.build.found if f.prefix):
+                continue
             yield Hit(use.at, use.name, f"find_package({meant}) sets `{right}`, so `{use.name}` is empty", f"write `${{{right}}}`",
                       package.name)  # fmt: skip
