@@ -75,7 +75,7 @@ SEEN = [
     ("api-removed", "srdfdom", "srdf::Model::DisabledCollision", "srdf::Model::CollisionPair", "", "melodic galactic"),
     ("api-renamed", "srdfdom", "srdf::Model::DisabledCollision", "srdf::Model::CollisionPair", "humble", "galactic"),
     ("api-removed", "pluginlib", "PLUGINLIB_DECLARE_CLASS", "PLUGINLIB_EXPORT_CLASS", "melodic noetic", "kinetic"),
-    ("header-renamed", "class_loader", "class_loader/class_loader.h", "class_loader/class_loader.hpp", "foxy", "noetic"),
+    ("header-renamed", "class_loader", "class_loader/class_loader.h", "class_loader/class_loader.hpp", "foxy", ""),
     ("api-changed", "controller_manager_msgs", "start_controllers", "activate_controllers", "iron jazzy", "humble"),
     ("python-removed", "lifecycle_msgs", "lifecycle_msgs.msg.Transition.TRANSITION_SHUTDOWN",
      "lifecycle_msgs.msg.Transition.TRANSITION_ACTIVE_SHUTDOWN", "dashing", ""),
