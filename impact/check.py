@@ -433,5 +433,6 @@ def coverage(workspace: Workspace, gathered: Gathered, views: Sequence[View]) ->
     cmake = sum(len(package.build.unresolved) for package in workspace)
     if cmake:
         counts["cmake"] = counts.get("cmake", 0) + cmake
-    files = len(gathered.kinds) + len(gathered.problems)
+    # A file can be read and still have something wrong with it, such as its name.
+    files = len(gathered.kinds.keys() | {problem.path for problem in gathered.problems})
     return Coverage(len(workspace.packages), files, len(gathered.kinds) - len(broken & gathered.kinds.keys()), counts)

@@ -115,3 +115,14 @@ def test_configuration(tmp_path):
     assert config.fail_on == "warning" and config.private == ("ours",)
     assert config.paths[0].pattern == "src/**" and config.paths[0].ignore == ("all",)
     assert load(tmp_path / "nowhere").path is None
+
+
+def test_every_file_is_counted_once(tmp_path):
+    package = tmp_path / "a"
+    package.mkdir()
+    (package / "package.xml").write_text("<package format='3'><name>a</name></package>")
+    (package / "gone.cpp").symlink_to("nowhere.cpp")
+    (package / "colcon.pkg").write_text("[")
+    (package / "mesh.stl").write_text("of no interest")
+    coverage = check(tmp_path, Options(targets=("jazzy",))).coverage
+    assert (coverage.packages, coverage.files, coverage.parsed) == (1, 3, 0)
