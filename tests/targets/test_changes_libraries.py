@@ -1,0 +1,132 @@
+"""Known changes of platform libraries: what is in force on which machine."""
+
+import msgspec
+import pytest
+
+from rosimpact.impact.targets.changes import TransitiveInclude, all_rows, changes_in_force, transitive_includes
+from rosimpact.impact.targets.snapshot import DATA
+from rosimpact.impact.targets.target import Target
+from rosimpact.impact.targets.version import at_least, parts
+
+
+class Machine(Target):
+    """A target that only has libraries."""
+
+    def __init__(self, python_major: int = 3, **libraries: str):
+        self.distro, self.ros, self.python_major = "noetic", 1, python_major
+        self.libraries = {name.replace("_", "-"): version for name, version in libraries.items()}
+
+    def version(self, package):
+        return None
+
+    def library(self, name):
+        return self.libraries.get(name)
+
+
+class Nothing:
+    """A provider table that knows no release."""
+
+    def has_header(self, *_):
+        return None
+
+
+def state_of(machine: Machine, kind: str, name: str) -> str:
+    """The state of a change whose old or new spelling is name, empty where it is in order."""
+    found = {c.state for c in changes_in_force(machine, Nothing()) if c.kind.startswith(kind)
+             and (c.old == name and c.state != "absent" or c.new == name and c.state == "absent")}  # fmt: skip
+    return found.pop() if len(found) == 1 else "/".join(sorted(found))
+
+
+@pytest.mark.parametrize(
+    ("machine", "kind", "name", "expected"),
+    [
+        # OpenCV 2.4 to 3 to 4: constants, headers in both directions, SIFT that came back
+        (Machine(opencv="3.2.0"), "api", "CV_LOAD_IMAGE_COLOR", ""),
+        (Machine(opencv="4.2.0"), "api", "CV_LOAD_IMAGE_COLOR", "removed"),
+        (Machine(opencv="4.2.0"), "api", "CV_BGR2GRAY", "removed"),
+        (Machine(opencv="2.4.8"), "header", "opencv2/imgcodecs.hpp", "absent"),
+        (Machine(opencv="3.2.0"), "header", "opencv2/imgcodecs.hpp", ""),
+        (Machine(opencv="4.2.0"), "header", "opencv/cv.h", "removed"),
+        (Machine(opencv="4.2.0"), "api", "cv::SIFT", "removed"),
+        (Machine(opencv="4.5.4"), "api", "cv::SIFT", ""),
+        (Machine(opencv="4.6.0"), "api", "cv::aruco::drawAxis", ""),
+        (Machine(opencv="4.10.0"), "api", "cv::aruco::drawAxis", "removed"),
+        # Boost
+        (Machine(boost="1.65.1"), "header", "boost/signal.hpp", ""),
+        (Machine(boost="1.71.0"), "header", "boost/signal.hpp", "removed"),
+        (Machine(boost="1.58.0"), "header", "boost/asio/io_context.hpp", "absent"),
+        (Machine(boost="1.83.0"), "api", "boost::asio::io_service", "deprecated"),
+        (Machine(boost="1.90.0"), "api", "boost::asio::io_service", "removed"),
+        # PCL, FFmpeg, gazebo classic, Ceres, FCL, TBB
+        (Machine(pcl="1.10.0"), "api", "pcl_isnan", ""),
+        (Machine(pcl="1.12.1"), "api", "pcl_isnan", "removed"),
+        (Machine(pcl="1.10.0"), "header", "pcl/memory.h", "absent"),
+        (Machine(ffmpeg_libavcodec="2.8.17"), "api", "CODEC_ID_H264", ""),
+        (Machine(ffmpeg_libavcodec="3.4.11"), "api", "CODEC_ID_H264", "removed"),
+        (Machine(ffmpeg_libavcodec="4.4.2"), "api", "avcodec_decode_video2", ""),
+        (Machine(ffmpeg_libavcodec="6.1.1"), "api", "avcodec_decode_video2", "removed"),
+        (Machine(gazebo_classic="7.0.0"), "api", "GetWorldPose", ""),
+        (Machine(gazebo_classic="9.0.0"), "api", "GetWorldPose", "removed"),
+        (Machine(gazebo_classic="9.0.0"), "header", "gazebo/math/gzmath.hh", "removed"),
+        (Machine(ceres="2.0.0"), "header", "ceres/manifold.h", "absent"),
+        (Machine(ceres="2.2.0"), "header", "ceres/local_parameterization.h", "removed"),
+        (Machine(fcl="0.5.0"), "header", "fcl/narrowphase/collision.h", "absent"),
+        (Machine(fcl="0.7.0"), "header", "fcl/collision.h", "removed"),
+        (Machine(tbb="2021.5.0"), "header", "tbb/task_scheduler_init.h", "removed"),
+        # Python and NumPy; Python 2 has what Python 3 dropped
+        (Machine(python="3.12.3"), "python", "collections.Mapping", "removed"),
+        (Machine(python="3.8.2"), "python", "collections.Mapping", "deprecated"),
+        (Machine(python="3.6.7", python_major=2), "python", "string.letters", ""),
+        (Machine(python="3.6.7"), "python", "string.letters", "removed"),
+        (Machine(numpy="1.21.5"), "python", "numpy.float", "deprecated"),
+        (Machine(numpy="1.26.4"), "python", "numpy.float", "removed"),
+        (Machine(numpy="2.3.5"), "python", "numpy.bool", ""),
+        (Machine(numpy="2.3.5"), "python", "numpy.NaN", "removed"),
+        # Standard headers that older compilers lack
+        (Machine(gcc="7.5.0"), "header", "filesystem", "absent"),
+        (Machine(gcc="9.4.0"), "header", "filesystem", ""),
+        (Machine(gcc="5.4.0"), "header", "optional", "absent"),
+    ],
+)  # fmt: skip
+def test_states(machine: Machine, kind: str, name: str, expected: str) -> None:
+    assert state_of(machine, kind, name) == expected
+
+
+def test_constants_of_the_c_api_are_excused_by_its_headers() -> None:
+    rows = {row.old: row for row in all_rows() if row.package == "opencv"}
+    assert "imgproc/types_c.h" in rows["CV_BGR2GRAY"].unless
+    assert any(ending.endswith("highgui_c.h") for ending in rows["CV_WINDOW_AUTOSIZE"].unless)
+
+
+def standard(name: str) -> TransitiveInclude:
+    (row,) = [row for row in transitive_includes() if row.name == name and row.library == "gcc"][-1:]
+    return row
+
+
+@pytest.mark.parametrize(
+    ("name", "since", "brings", "no_longer"),
+    [
+        ("uint32_t", "13", "chrono", "string"),
+        ("std::numeric_limits", "11", "random", "vector"),
+        ("std::function", "7", "functional", "memory"),
+        ("std::this_thread::sleep_for", "11", "thread", "mutex"),
+    ],
+)
+def test_standard_headers_that_stopped_coming_along(name: str, since: str, brings: str, no_longer: str) -> None:
+    row = standard(name)
+    assert row.since == since
+    assert brings in row.headers
+    assert no_longer not in row.headers
+
+
+def test_every_row_of_the_file_states_its_source_and_orders_its_versions() -> None:
+    file = msgspec.json.decode((DATA / "changes_libraries.json").read_bytes())
+    assert len(file["changes"]) > 100
+    for group in file["changes"]:
+        assert group["library"] and group["source"] and group["names"], group
+        assert any(group.get(key) for key in ("removed_in", "deprecated_in", "new_since")), group["source"]
+        for earlier, later in (("deprecated_in", "removed_in"), ("removed_in", "back_in")):
+            if group.get(earlier) and group.get(later):
+                assert parts(group[earlier]) != parts(group[later])
+                assert at_least(group[later], group[earlier]), (group["source"], earlier, later)
+        assert all(old != new for old, new in group["names"].items()), group["source"]
