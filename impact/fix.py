@@ -22,6 +22,9 @@ _MARKUP = re.compile(
     rb"""|<(?P<close>/?)(?P<tag>[A-Za-z_][\w:.-]*)(?P<attributes>(?:[^<>"']|"[^"]*"|'[^']*')*?)(?P<empty>/?)>""",
     re.DOTALL,
 )
+# Bracket arguments and comments, quoted arguments, escapes and comments, in which a parenthesis is none.
+_CMAKE = re.compile(rb"""\#?\[(?P<equals>=*)\[.*?\](?P=equals)\]|"(?:[^"\\]|\\.)*"|\\.|\#[^\n]*|[()]""", re.DOTALL)
+_CMAKE_REST = re.compile(rb"[ \t\r]*(?:#.*)?\Z")
 _DECLARATION = re.compile(r"\s*<(?:\w+_)?depend>")
 _COMMENTS_ONLY = re.compile(rb"(?:[ \t]*<!--(?:(?!-->|\n).)*-->)*[ \t]*\Z")
 # The order in which REP 149 lists them and most manifests have them.
@@ -224,18 +227,27 @@ def offset_of(data: bytes, line: int, column: int = 1) -> int:
 
 
 def replace_text(path: str, data: bytes, line: int, column: int, old: str, new: str) -> Edit | None:
-    """The edit that replaces `old` by `new` where it starts at a line and column, None when it does not stand there."""
+    """The edit that replaces `old` by `new` where it starts at a line and column (column 0: the only place in the line),
+    None when it does not stand there."""
+    wanted = old.encode()
     try:
         start = offset_of(data, line, max(column, 1))
     except ValueError:
         return None
-    wanted = old.encode()
+    if column < 1:
+        end = data.find(b"\n", start)
+        if data.count(wanted, start, len(data) if end < 0 else end) != 1:
+            return None
+        start = data.find(wanted, start)
     return Edit(path, start, start + len(wanted), new) if data.startswith(wanted, start) else None
 
 
 def insert_lines(path: str, data: bytes, line: int, text: str) -> Edit | None:
     """The edit that puts lines behind a line (0: at the start), indented and ended as that line is; None when there is
-    no such line."""
+    no such line. In CMake, where a command may span lines, they go behind the last line of the command, or nowhere when
+    something else follows it there."""
+    if line and (path.endswith(".cmake") or path.rpartition("/")[2] == "CMakeLists.txt"):
+        return _behind_command(path, data, line, text)
     ending = _ending(data, 0)
     if line == 0:
         start = len(_BOM) if data.startswith(_BOM) else 0
@@ -255,6 +267,35 @@ def insert_lines(path: str, data: bytes, line: int, text: str) -> Edit | None:
     if end < 0:
         return Edit(path, len(data), len(data), ending + lines)
     return Edit(path, end + 1, end + 1, lines + ending)
+
+
+def _behind_command(path: str, data: bytes, line: int, text: str) -> Edit | None:
+    """As insert_lines, behind the CMake command that the first word of a line belongs to."""
+    try:
+        start = offset_of(data, line)
+    except ValueError:
+        return None
+    depth, opened = 0, 0
+    for match in _CMAKE.finditer(data):
+        if match[0] == b"(":
+            opened = opened if depth else data.rfind(b"\n", 0, match.start()) + 1
+            depth += 1
+        elif match[0] == b")":
+            depth -= 1
+            end = data.find(b"\n", match.end())
+            end = len(data) if end < 0 else end
+            if depth or match.end() <= start:
+                continue
+            if opened > end or not _CMAKE_REST.match(data[match.end() : end]):
+                return None
+            own = data[opened:end]
+            indent = own[: len(own) - len(own.lstrip(b" \t"))].decode("ascii")
+            ending = _ending(data, opened)
+            lines = ending.join(indent + each if each else each for each in text.split("\n"))
+            if end == len(data):
+                return Edit(path, end, end, ending + lines)
+            return Edit(path, end + 1, end + 1, lines + ending)
+    return None
 
 
 class _Element(NamedTuple):

@@ -22,7 +22,7 @@ class Remove(NamedTuple):
 
 
 class Replace(NamedTuple):
-    """Replace `old`, which stands at a line and column (characters, from 1), by `new`."""
+    """Replace `old`, which stands at a line and column (characters, from 1), by `new`. column 0: the only `old` in it."""
 
     path: str
     line: int
@@ -32,7 +32,8 @@ class Replace(NamedTuple):
 
 
 class Insert(NamedTuple):
-    """Put lines behind a line (0: at the start of the file), with that line's indentation. text: without a line end."""
+    """Put lines behind a line (0: at the start of the file), with that line's indentation; in CMake, behind the command
+    that the line belongs to. text: without a line end."""
 
     path: str
     line: int
