@@ -25,6 +25,7 @@ Not reported
 """
 
 from ...model.view import Need, View, interface_of
+from ..cure import Declare
 from ..evidence import name_to_declare, present, weight
 from ..rule import Hit, rule
 
@@ -90,6 +91,7 @@ def undeclared_package(view: View):
                 f"{package.digest.manifest_path}",
                 package=package.name,
                 severity=severity,
+                fix=_cure(package, first, name) if severity != "note" else (),
             )
 
 
@@ -118,7 +120,7 @@ def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dic
             first.at, name, f"{_how(first)}, and `{name}` only comes along with `{through}`",
             f"add `<{_tag(first, package.manifest.format)}>{name}</{_tag(first, package.manifest.format)}>` to "
             f"{package.digest.manifest_path}",
-            package.name, severity="warning",
+            package.name, severity="warning", fix=_cure(package, first, name),
         )  # fmt: skip
 
 
@@ -153,6 +155,10 @@ def _how(need: Need) -> str:
         "plugin": f"a plugin of `{need.subject}` is loaded",
         "shell": f"`{need.subject}` is run by a script",
     }[need.how]
+
+
+def _cure(package, need: Need, name: str) -> tuple[Declare, ...]:
+    return (Declare(package.digest.manifest_path, name, _tag(need, 2)),)
 
 
 def _tag(need: Need, manifest_format: int) -> str:
