@@ -25,6 +25,7 @@ Not reported
 from ...model.spelling import Names
 from ...model.view import View
 from ...targets.library import variables
+from ..cure import Replace
 from ..rule import Hit, rule
 
 _SUFFIXES = ("_INCLUDE_DIRS", "_INCLUDE_DIR", "_LIBRARIES", "_LIBRARY", "_LIBS", "_EXPORTED_TARGETS", "_DEFINITIONS", "_VERSION")
@@ -42,12 +43,14 @@ def misspelt_cmake_name(view: View):
             halves = _run_together(name, near.names)
             if halves:
                 yield Hit(at, name, f"`{name}` is `{halves[0]}` and `{halves[1]}` run together", f"write `{halves[0]} {halves[1]}`",
-                          package.name, severity="error" if required else "warning")  # fmt: skip
+                          package.name, severity="error" if required else "warning",
+                          fix=(Replace(at.path, at.line, at.column, name, " ".join(halves)),))  # fmt: skip
                 continue
             meant = near.nearest(name) if exact else None
             if meant is not None and meant != name and view.target.ever_released(name) is False:
                 yield Hit(at, name, f"nobody provides `{name}`; `{meant}` is declared", f"write `{meant}`", package.name,
-                          severity="error" if required and view.certain(conditions) else "warning")  # fmt: skip
+                          severity="error" if required and view.certain(conditions) else "warning",
+                          fix=(Replace(at.path, at.line, at.column, name, meant),))  # fmt: skip
         yield from _variables(view, package, found)
 
 
