@@ -227,8 +227,8 @@ def offset_of(data: bytes, line: int, column: int = 1) -> int:
 
 
 def replace_text(path: str, data: bytes, line: int, column: int, old: str, new: str) -> Edit | None:
-    """The edit that replaces `old` by `new` where it starts at a line and column (column 0: the only place in the line),
-    None when it does not stand there."""
+    """The edit that replaces `old` by `new` where it starts at a line and column (0: its only place in the line), None
+    when it does not stand there."""
     wanted = old.encode()
     try:
         start = offset_of(data, line, max(column, 1))
