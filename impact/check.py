@@ -350,10 +350,24 @@ def judge(
 def _hits(
     opened: Opened, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None
 ) -> Iterator[tuple[str, str, Hit]]:
-    for rule in rules:
+    from . import memo
+
+    every = list(rules)
+    names = [rule.name for rule in every if rule.per_target and rule.family != "interfaces"]
+    kept = {view.target.name: memo.recall(opened.store, view, names) for view in opened.views}
+    for view in opened.views:
+        if kept[view.target.name] is None:
+            memo.prepare(opened.store, view.target)
+    said: dict[str, list[tuple[str, Hit]]] = {}
+    for rule in every:
         for target, run_rule in _runs(rule, opened, before):
+            known = kept.get(target)
+            if known is not None:
+                yield from ((name, target, hit) for name, hit in known if name == rule.name)
+                continue
             try:
                 for hit in run_rule():
+                    said.setdefault(target, []).append((rule.name, hit))
                     yield rule.name, target, hit
             except SnapshotError:
                 raise  # no rule can do without the data
@@ -362,6 +376,9 @@ def _hits(
                 targets = crashed.setdefault((rule.name, crash(error)), [])
                 if target and target not in targets:
                     targets.append(target)
+    for view in opened.views:
+        if kept[view.target.name] is None and not crashed:
+            memo.remember(opened.store, view, names, said.get(view.target.name, ()))
 
 
 def on(targets: Sequence[str]) -> str:

@@ -78,9 +78,14 @@ class Package:
 class Workspace:
     """All packages of a tree, linked. `packages` is by name; `watched` is what digests were asked to look out for."""
 
-    def __init__(self, packages: Iterable[Digest], discovered: Discovered, ros: int, gathered: Gathered, read: Callable[[str], bytes]):
+    def __init__(
+        self, packages: Iterable[Digest], discovered: Discovered, ros: int, gathered: Gathered, read: Callable[[str], bytes],
+        identity: bytes = b"",
+    ):  # fmt: skip
         self.packages: dict[str, Package] = {d.name: Package(d) for d in packages}
         self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
+        # Differs whenever anything that the digests were joined from does.
+        self.identity = identity
         self._interface_stems: dict[str, tuple[frozenset[str], frozenset[str]]] = {}
         self._provided: dict[str, list[str]] = {}
 
@@ -286,7 +291,8 @@ def link(tree, gathered: Gathered, store, ros: int | None, watched: Watched) -> 
     discovered = discover(tree, gathered)
     ros = ros or generation(discovered, gathered)
     linker = _Linker(tree, gathered, discovered, ros, watched)
-    return Workspace(linker.digests(store), discovered, ros, gathered, tree.read)
+    digests = linker.digests(store)
+    return Workspace(digests, discovered, ros, gathered, tree.read, linker.identity.digest())
 
 
 def _manifest(gathered: Gathered, path: str) -> Manifest | None:
@@ -326,6 +332,7 @@ class _Linker:
                 self.paths_of[owner.path].append(entry.path)
         self.all_paths = frozenset(e.path for e in tree.entries())
         self.by_name = {p.name: p for p in discovered.packages}
+        self.identity = hashlib.sha1()
 
     def digests(self, store) -> list[Digest]:
         found: dict[str, Digest] = {}
@@ -341,15 +348,33 @@ class _Linker:
                 size = int.from_bytes(blob[:4], "big")
                 read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
                 if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items()):
+                    self.identity.update(keys[place.path] + blob[: 4 + size])
                     found[place.path] = decoder.decode(memoryview(blob)[4 + size :])
                     continue
-            digest, read = self.join(place)
+            try:
+                digest, read = self.join(place)
+            except Exception as error:
+                # One package that nobody foresaw must not take the others with it.
+                found[place.path] = self.failed(place, error)
+                continue
             found[place.path] = digest
             head = encoder.encode(read)
-            fresh.append((keys[place.path], len(head).to_bytes(4, "big") + head + encoder.encode(digest)))
+            self.identity.update(keys[place.path] + len(head).to_bytes(4, "big") + head)
+            try:
+                fresh.append((keys[place.path], len(head).to_bytes(4, "big") + head + encoder.encode(digest)))
+            except UnicodeEncodeError:
+                continue  # names that are no UTF-8 cannot be stored, and are read anew each time
         if store is not None and fresh:
             store.remember("digest", fresh)
         return [found[p.path] for p in places]
+
+    def failed(self, place, error: Exception) -> Digest:
+        """What stands for a package whose join failed: its manifest, and a problem that says so."""
+        manifest = _manifest(self.gathered, place.manifest_path)
+        assert manifest is not None
+        why = f"the package could not be analysed ({type(error).__name__}: {error}); this is a fault of rosimpact, please report it"
+        return Digest(place.name, place.path, place.manifest_path, manifest, build_type_of(manifest, self.ros), Build(),
+                      problems=((place.manifest_path, 0, why),), files=tuple(self.paths_of[place.path]))  # fmt: skip
 
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
@@ -390,7 +415,7 @@ class _Linker:
             extras=self.extras,
         ) if (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths else Build()  # fmt: skip
         digest = digest_of(
-            manifest.name, place.path, place.manifest_path, manifest, build, build_type_of(manifest, self.ros),
+            place.name or manifest.name, place.path, place.manifest_path, manifest, build, build_type_of(manifest, self.ros),
             gathered.kinds, files, gathered.facts, self.tree.read, self.watched,
         )  # fmt: skip
         return digest, read

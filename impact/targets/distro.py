@@ -169,6 +169,9 @@ class DistroTarget(Target):
         distro, date, platform, versions, name = self._asked
         return DistroTarget, (distro, date, platform, versions, name)
 
+    def identity(self) -> str:
+        return repr((self._asked, self.name, self.distro, self.date, self.platform, self._overrides, _data_stamp()))
+
     def changed(
         self,
         date: str | None = None,
@@ -577,6 +580,14 @@ class DistroTarget(Target):
 
     # Known upstream changes
 
+    def has_changes(self) -> bool:
+        """True when changes() answers without working them out."""
+        return self._changes is not None
+
+    def set_changes(self, changes: tuple[Change, ...]) -> None:
+        """What changes() is to answer, worked out by an earlier run on the same data."""
+        self._changes = changes
+
     def changes(self) -> tuple[Change, ...]:
         if self._changes is None:
             from .changes import changes_in_force
@@ -630,6 +641,14 @@ def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
         return bool(evaluate_condition(condition, variables))
     except Exception:
         return False
+
+
+@functools.cache
+def _data_stamp() -> tuple[tuple[str, int, int], ...]:
+    """Sizes and times of the shipped data files."""
+    return tuple(
+        (path.name, path.stat().st_size, path.stat().st_mtime_ns) for path in sorted(snapshots.DATA.iterdir()) if path.is_file()
+    )
 
 
 @functools.cache

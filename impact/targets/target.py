@@ -74,6 +74,10 @@ class Target:
     approximate: bool
     knows_manifests: bool
 
+    def identity(self) -> str:
+        """Differs whenever the target, or the data that answers for it, does."""
+        raise NotImplementedError
+
     def version(self, package: str) -> str | None:
         """Version of a released ROS package on this target (`2.0.1`), None when it is not there."""
         raise NotImplementedError

@@ -7,7 +7,8 @@ Why it matters
     What stands in such a file was not checked; silence about it means nothing.
 
 Severity
-    note: what else is wrong with the file is for its own reader to say; the coverage line counts it too.
+    note: what else is wrong with the file is for its own reader to say; the coverage line counts it too. warning for CMake
+    whose blocks do not match, where CMake itself stops.
 """
 
 from ...model.build import At
@@ -23,7 +24,12 @@ def unreadable_file(workspace: Workspace):
     for package in workspace:
         told = set()
         for path, line, message in package.digest.problems:
-            if path in told or path == package.digest.manifest_path:
+            if path in told or path == package.digest.manifest_path and line:
                 continue
             told.add(path)
             yield Hit(At(path, max(1, line)), path.rsplit("/", 1)[-1], message, "", package.name)
+        for at, reason in package.build.unresolved:
+            if at.path not in told and reason.endswith(("is never closed", "without if()", "without foreach()", "without while()",
+                                                        "without function()", "without macro()", "without block()")):  # fmt: skip
+                told.add(at.path)
+                yield Hit(at, at.path.rsplit("/", 1)[-1], f"{reason}, and CMake stops here", "close the block", package.name, severity="warning")

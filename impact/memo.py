@@ -1,0 +1,118 @@
+"""What rules said of a workspace on a target, remembered by what it rests on: content, data, settings and our own code.
+
+A second run on unchanged files then judges nothing anew. Time plays no part: the key is made of content ids.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterable, Sequence
+from functools import cache
+from pathlib import Path
+
+import msgspec
+
+from .facts.store import Store
+from .model.build import At
+from .model.view import View
+from .rules.cure import Declare, Insert, Remove, Replace
+from .rules.rule import Cure, Edit, Hit
+from .targets.distro import DistroTarget
+from .targets.target import Change
+
+_CURES: dict[str, type] = {kind.__name__: kind for kind in (Declare, Remove, Replace, Insert, Edit)}
+
+
+class _Hit(msgspec.Struct, frozen=True, array_like=True):
+    """A Hit as stored: its rule, its place taken apart, its cures as (kind, fields)."""
+
+    rule: str
+    path: str
+    line: int
+    column: int
+    subject: str
+    message: str
+    help: str
+    package: str
+    severity: str
+    fix: tuple[tuple[str, tuple[str | int, ...]], ...]
+
+
+class _Judgement(msgspec.Struct, frozen=True, array_like=True):
+    hits: tuple[_Hit, ...]
+    unresolved: dict[str, tuple[str, ...]]
+
+
+@cache
+def _code() -> str:
+    """Changes whenever a file of the tool does: sizes and times of its modules."""
+    root = Path(__file__).parent
+    stamp = hashlib.sha1()
+    for folder, folders, files in os.walk(root):
+        folders[:] = sorted(name for name in folders if name not in ("__pycache__", "data"))
+        for name in sorted(files):
+            if name.endswith(".py"):
+                status = os.stat(os.path.join(folder, name))
+                stamp.update(f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape"))
+    return stamp.hexdigest()
+
+
+def key(view: View, rules: Iterable[str]) -> bytes:
+    """The key of a view's judgement by these rules."""
+    stamp = hashlib.sha1(view.workspace.identity)
+    config = view.config
+    stamp.update(
+        repr((_code(), view.target.identity(), sorted(rules), config.private, config.underlays, config.repos)).encode()
+    )
+    return stamp.digest()
+
+
+def recall(store: Store, view: View, rules: Sequence[str]) -> list[tuple[str, Hit]] | None:
+    """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved names."""
+    data = store.memo("judgement", key(view, rules))
+    if data is None:
+        return None
+    try:
+        judgement = msgspec.msgpack.decode(data, type=_Judgement)
+        hits = [(h.rule, _hit(h)) for h in judgement.hits]
+    except (msgspec.MsgspecError, KeyError, TypeError):
+        return None
+    for kind, names in judgement.unresolved.items():
+        view.unresolved.setdefault(kind, set()).update(names)
+    return hits
+
+
+def remember(store: Store, view: View, rules: Sequence[str], hits: Iterable[tuple[str, Hit]]) -> None:
+    """Keeps what the rules said for later runs."""
+    stored = tuple(
+        _Hit(
+            rule, getattr(hit.at, "path", ""), getattr(hit.at, "line", 0), getattr(hit.at, "column", 0), hit.subject, hit.message,
+            hit.help, hit.package, hit.severity, tuple((type(cure).__name__, tuple(cure)) for cure in hit.fix),
+        )
+        for rule, hit in hits
+    )  # fmt: skip
+    unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
+    store.remember("judgement", [(key(view, rules), msgspec.msgpack.encode(_Judgement(stored, unresolved)))])
+
+
+def prepare(store: Store, target: DistroTarget) -> None:
+    """Gives a target, and the newest distro that it is compared with, the changes an earlier run worked out."""
+    newest = target.newest()
+    for one in (target, newest) if newest is not None else (target,):
+        if one.has_changes():
+            continue
+        name = hashlib.sha1(one.identity().encode()).digest()
+        data = store.memo("changes", name)
+        if data is not None:
+            try:
+                one.set_changes(tuple(Change(*row) for row in msgspec.msgpack.decode(data)))
+                continue
+            except (msgspec.MsgspecError, TypeError):
+                pass
+        store.remember("changes", [(name, msgspec.msgpack.encode([tuple(change) for change in one.changes()]))])
+
+
+def _hit(h: _Hit) -> Hit:
+    cures: tuple[Cure, ...] = tuple(_CURES[kind](*fields) for kind, fields in h.fix)
+    return Hit(At(h.path, h.line, h.column), h.subject, h.message, h.help, h.package, h.severity, cures)
