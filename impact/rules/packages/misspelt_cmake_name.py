@@ -101,4 +101,4 @@ def _variables(view: View, package, found):
             if any(use.name == f"{f.prefix}{suffix}" for f in package.build.found if f.prefix):
                 continue
             yield Hit(use.at, use.name, f"find_package({meant}) sets `{right}`, so `{use.name}` is empty", f"write `${{{right}}}`",
-                      package.name)  # fmt: skip
+                      package.name, fix=(Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", f"${{{right}}}"),))  # fmt: skip
