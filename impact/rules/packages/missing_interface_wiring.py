@@ -23,6 +23,7 @@ Not reported
 """
 
 from ...model.view import View
+from ..cure import Declare, Insert
 from ..rule import Hit, rule
 
 _ROS1_PRIMITIVE = frozenset("bool int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64 string time duration char byte "
@@ -98,8 +99,15 @@ def _rosidl_manifest(view: View, package):
         if "rosidl_interface_packages" not in groups:
             yield Hit(generated.at, "rosidl_interface_packages", f"`{package.name}` generates interfaces and is not in their group",
                       "add `<member_of_group>rosidl_interface_packages</member_of_group>` to package.xml", package.name,
-                      severity="warning")  # fmt: skip
+                      severity="warning", fix=_joined(package))  # fmt: skip
         return
+
+
+def _joined(package) -> tuple[Declare, ...]:
+    """Groups came with format 3."""
+    if package.manifest.format < 3:
+        return ()
+    return (Declare(package.digest.manifest_path, "rosidl_interface_packages", "member_of_group"),)
 
 
 def _catkin_generation(view: View, package):
@@ -168,7 +176,26 @@ def _catkin_order(view: View, package):
         names = sorted({t.name for _, t in uses})
         yield Hit(target.at, f"${{PROJECT_NAME}}_{kind}" if own else f"{head}_{kind}",
                   f"{_several(names)} `{include.path}` and may be built before it is generated",
-                  f"add_dependencies({names[0]} {cure})", package.name)  # fmt: skip
+                  f"add_dependencies({names[0]} {cure})", package.name,
+                  fix=_waiting(package, [t for _, t in uses], cure) if own or _component(package, head) else ())  # fmt: skip
+
+
+def _component(package, name: str) -> bool:
+    """True when catkin looks for a package, so that catkin_EXPORTED_TARGETS holds what it generates."""
+    return any(f.how == "catkin" and f.name == name for f in package.build.found)
+
+
+def _waiting(package, targets, variable: str) -> tuple[Insert, ...]:
+    """An add_dependencies behind each target's own command; nothing where one command, in a loop, makes several."""
+    made = {}
+    for target in package.build.targets:
+        made.setdefault((target.at.path, target.at.line), set()).add(target.name)
+    places = {t.name: t.at for t in targets}
+    if any(made[at.path, at.line] != {name} for name, at in places.items()):
+        return ()
+    return tuple(
+        Insert(at.path, at.line, f"add_dependencies({name} {variable})") for name, at in sorted(places.items())
+    )
 
 
 def _several(names: list[str]) -> str:
