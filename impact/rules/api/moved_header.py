@@ -19,7 +19,11 @@ Not reported
     Headers that the workspace itself provides, and includes under a condition that does not hold on the target.
 """
 
+from ...model.package import IncludeUse
 from ...model.view import View
+from ...model.workspace import Package
+from ...targets.target import Change
+from ..cure import Replace
 from ..rule import Hit, rule
 
 
@@ -33,4 +37,17 @@ def moved_header(view: View):
                 continue
             yield Hit(include.at, include.path, f"`{include.path}` is deprecated in {change.package} {change.version}".strip(),
                       f"include `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
-                      package.name)  # fmt: skip
+                      package.name, fix=respelt(view, package, include, change))  # fmt: skip
+
+
+def respelt(view: View, package: Package, include: IncludeUse, change: Change) -> tuple[Replace, ...]:
+    """The cure that includes a header by its new name: where the header moved as it is, the target has it there, and
+    the package has who provides it."""
+    at = include.at
+    if change.kind == "header-removed" or not change.new or not view.certain(include.conditions):
+        return ()
+    if view.environment.headers(change.new) is not True:
+        return ()
+    if not view.answered(view.header(change.new), view.closure(package)):
+        return ()
+    return (Replace(at.path, at.line, at.column, include.path, change.new),)
