@@ -354,7 +354,13 @@ class _Join:
             reach = None
             for name in facts.qualified:
                 text = name.text.removeprefix("::")
-                if text in watched.qualified or text in watched.words or text.rsplit("::", 1)[-1] in watched.words:
+                wanted = text
+                while wanted not in watched.qualified and "::" in wanted:
+                    wanted = wanted.rpartition("::")[0]
+                if wanted in watched.qualified:
+                    names.append(NameUse(wanted, At(path, name.line, name.column), role, public, "cpp",
+                                         conditions + name.conditions, targets))  # fmt: skip
+                elif text in watched.words or text.rsplit("::", 1)[-1] in watched.words:
                     names.append(NameUse(text, At(path, name.line, name.column), role, public, "cpp",
                                          conditions + name.conditions, targets))  # fmt: skip
                 headers = watched.headers_of.get(text)

@@ -27,6 +27,7 @@ Not reported
 from ...model.package import is_header
 from ...model.view import View
 from ...targets.changes import excuses
+from ...targets.target import Change
 from ..rule import Hit, rule
 
 _KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
@@ -38,17 +39,20 @@ _ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
 
 @rule(severity="error")
 def removed_symbol(view: View):
-    cpp, python = {}, {}
+    cpp: dict[str, list[Change]] = {}
+    python: dict[str, list[Change]] = {}
     for change in view.changes(*_KINDS):
-        if change.state == "removed" and change.old:
-            (python if change.kind.startswith("python") else cpp).setdefault(change.old, change)
+        # What the workspace itself brings is as it brings it, whatever a release did.
+        if change.state == "removed" and change.old and change.package not in view.workspace.packages:
+            (python if change.kind.startswith("python") else cpp).setdefault(change.old, []).append(change)
     for package in view:
         included = None
         warned: dict[str, set[str]] = {}
         for use in package.digest.names:
-            change = (python if use.language == "python" else cpp).get(use.text)
-            if change is None and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
-                change = cpp.get(use.text.rsplit("::", 1)[-1])
+            named = (python if use.language == "python" else cpp).get(use.text, ())
+            if not named and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
+                named = cpp.get(use.text.rsplit("::", 1)[-1], ())
+            change = next((c for c in named if view.concerned(package, c, use.at.path)), None)
             later = None
             if change is None:
                 change = later = view.later.get(use.text)
