@@ -25,6 +25,7 @@ Not reported
 
 from ...model.view import View
 from ..rule import Hit, rule
+from .moved_header import respelt
 
 
 @rule(severity="error")
@@ -47,7 +48,7 @@ def removed_header(view: View):
                 where = f"{change.package} {change.version}".strip()
                 yield Hit(include.at, path, f"`{path}` is gone in {where}",
                           f"include `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
-                          package.name, severity=severity)  # fmt: skip
+                          package.name, severity=severity, fix=respelt(view, package, include, change))  # fmt: skip
                 continue
             change = early.get(path)
             if change is not None and view.has_released_header(change.package, path) is False:
@@ -59,7 +60,8 @@ def removed_header(view: View):
             if change is not None and change.kind.startswith("header"):
                 yield Hit(include.at, path, f"`{path}` is there, and gone in {change.package} {change.version} of {view.horizon}",
                           f"include `{change.new}`" if change.new else "", package.name,
-                          severity="warning" if severity == "error" and change.package not in coming else "note")  # fmt: skip
+                          severity="warning" if severity == "error" and change.package not in coming else "note",
+                          fix=respelt(view, package, include, change))  # fmt: skip
                 coming.add(change.package)
                 continue
             lost = view.lost_header(path)
