@@ -22,8 +22,11 @@ Not reported
     hold on the target, and names listed in `[workspace] private`.
 """
 
+import re
+
 from ...model.view import View
-from ...model.spelling import nearest
+from ...model.spelling import nearest, one_edit
+from ..cure import Remove, Replace
 from ..rule import Hit, rule
 
 
@@ -52,12 +55,36 @@ def unresolvable_key(view: View):
                     severity="error",
                 )  # fmt: skip
             elif guess:
-                yield Hit(at, name, f"`{name}` is neither a package nor a rosdep key", _cure(guess, name), package.name)
+                yield Hit(at, name, f"`{name}` is neither a package nor a rosdep key", _cure(guess, name), package.name,
+                          fix=_fix(view, package, name, guess))  # fmt: skip
             else:
                 yield Hit(
                     at, name, f"`{name}` is no package or rosdep key known in public",
                     "name it in `[workspace] private` of rosimpact.toml if it is your own", package.name, severity="note",
                 )  # fmt: skip
+
+
+def _fix(view: View, package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
+    """Writes the name that was surely meant, or takes the wrong one out where that is declared beside it."""
+    if not view.available(guess) or not _slip(name, guess):
+        return ()
+    path = package.digest.manifest_path
+    declared = view.declared(package)
+    if guess in declared:
+        return (Remove(path, name),) if declared[name] <= declared[guess] else ()
+    places = dict.fromkeys((d.line, d.column) for d in package.manifest.dependencies if d.name == name)
+    return tuple(Replace(path, line, column, name, guess) for line, column in places)
+
+
+def _slip(name: str, guess: str) -> bool:
+    """True when only case and separators, or one letter of a longer name, part the two. A digit tells versions apart."""
+    if _plain(name) == _plain(guess):
+        return True
+    return len(name) > 5 and one_edit(name, guess) and re.findall(r"\d", name) == re.findall(r"\d", guess)
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[-_.\s]", "", name.lower())
 
 
 def _cure(guess: str | None, name: str) -> str:
