@@ -21,7 +21,14 @@ import re
 
 from ...model.build import At
 from ...model.workspace import Workspace
+from ..cure import Replace
 from ..rule import Hit, rule
+
+_TAGS = {
+    1: ("build_depend", "buildtool_depend", "run_depend", "test_depend"),
+    2: ("build_depend", "build_export_depend", "buildtool_depend", "buildtool_export_depend", "depend", "doc_depend", "exec_depend",
+        "test_depend"),
+}  # fmt: skip
 
 
 @rule(severity="error", per_target=False)
@@ -33,10 +40,16 @@ def invalid_manifest(workspace: Workspace):
             misspelt[line] = tag
             words = tag.replace("-", "_").replace("depends", "depend")
             yield Hit(At(path, line), tag, f"`<{tag}>{text}</{tag}>` is no tag of format {manifest.format}, so `{text}` is not declared",
-                      f"write `<{words}>`" if words != tag else "use a tag of this format", package.name)  # fmt: skip
+                      f"write `<{words}>`" if words != tag else "use a tag of this format", package.name,
+                      fix=_respelt(path, line, tag, words) if words in _TAGS[min(manifest.format, 2)] else ())  # fmt: skip
         for problem in manifest.problems:
             if problem.line not in misspelt:
                 yield Hit(At(path, problem.line), package.name or path, problem.message, "correct the manifest", package.name)
+
+
+def _respelt(path: str, line: int, tag: str, words: str) -> tuple[Replace, ...]:
+    """Both tags of an element that stands in one line."""
+    return (Replace(path, line, 0, f"<{tag}>", f"<{words}>"), Replace(path, line, 0, f"</{tag}>", f"</{words}>"))
         for condition, line in {d.condition: d.line for d in manifest.dependencies if d.condition}.items():
             if not _PLAIN.match(condition) and not _readable(condition):
                 yield Hit(At(path, line), condition, f"the condition `{condition}` cannot be read",
