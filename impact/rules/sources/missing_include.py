@@ -27,6 +27,7 @@ from ...model.package import is_header
 from ...model.view import View
 from ...targets.standard import reaches
 from ...targets.version import at_least, parts
+from ..cure import Insert
 from ..rule import Hit, rule
 
 
@@ -60,7 +61,20 @@ def missing_include(view: View):
             )  # fmt: skip
             where = "" if now else f" of {view.horizon}"
             yield Hit(need.at, header, f"`{need.name}` is used without `<{header}>`, which {row.library} {version}{where} no longer brings along",
-                      f"#include <{header}>", package.name, severity="error" if sure else "warning" if now and not (row.through and is_header(need.at.path)) else "note")  # fmt: skip
+                      f"#include <{header}>", package.name, severity="error" if sure else "warning" if now and not (row.through and is_header(need.at.path)) else "note",
+                      fix=_included(view, package, need, header) if not row.through else ())  # fmt: skip
+
+
+def _included(view: View, package, need, header: str) -> tuple[Insert, ...]:
+    """The cure that includes a header behind the standard C++ headers of the file that sort before it; nothing where it
+    includes none outside of conditions."""
+    standard = [
+        i for i in package.digest.includes
+        if i.at.path == need.at.path and i.at.line < need.at.line and not i.conditions and "." not in i.path
+        and view.is_standard(i.path)
+    ]  # fmt: skip
+    before = [i for i in standard if i.path < header] or standard
+    return (Insert(need.at.path, max(i.at.line for i in before), f"#include <{header}>"),) if before else ()
 
 
 def _dropped(view: View, target):
