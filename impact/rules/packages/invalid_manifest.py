@@ -45,11 +45,6 @@ def invalid_manifest(workspace: Workspace):
         for problem in manifest.problems:
             if problem.line not in misspelt:
                 yield Hit(At(path, problem.line), package.name or path, problem.message, "correct the manifest", package.name)
-
-
-def _respelt(path: str, line: int, tag: str, words: str) -> tuple[Replace, ...]:
-    """Both tags of an element that stands in one line."""
-    return (Replace(path, line, 0, f"<{tag}>", f"<{words}>"), Replace(path, line, 0, f"</{tag}>", f"</{words}>"))
         for condition, line in {d.condition: d.line for d in manifest.dependencies if d.condition}.items():
             if not _PLAIN.match(condition) and not _readable(condition):
                 yield Hit(At(path, line), condition, f"the condition `{condition}` cannot be read",
@@ -69,3 +64,8 @@ def _readable(condition: str) -> bool:
     except Exception:
         return False
     return True
+
+
+def _respelt(path: str, line: int, tag: str, words: str) -> tuple[Replace, ...]:
+    """Both tags of an element that stands in one line."""
+    return (Replace(path, line, 0, f"<{tag}>", f"<{words}>"), Replace(path, line, 0, f"</{tag}>", f"</{words}>"))
