@@ -3,7 +3,7 @@
 import msgspec
 import pytest
 
-from rosimpact.impact.targets.changes import TransitiveInclude, all_rows, changes_in_force, transitive_includes
+from rosimpact.impact.targets.changes import all_rows, changes_in_force, transitive_includes
 from rosimpact.impact.targets.snapshot import DATA
 from rosimpact.impact.targets.target import Target
 from rosimpact.impact.targets.version import at_least, parts
@@ -98,25 +98,11 @@ def test_constants_of_the_c_api_are_excused_by_its_headers() -> None:
     assert any(ending.endswith("highgui_c.h") for ending in rows["CV_WINDOW_AUTOSIZE"].unless)
 
 
-def standard(name: str) -> TransitiveInclude:
-    (row,) = [row for row in transitive_includes() if row.name == name and row.library == "gcc"][-1:]
-    return row
-
-
-@pytest.mark.parametrize(
-    ("name", "since", "brings", "no_longer"),
-    [
-        ("uint32_t", "13", "chrono", "string"),
-        ("std::numeric_limits", "11", "random", "vector"),
-        ("std::function", "7", "functional", "memory"),
-        ("std::this_thread::sleep_for", "11", "thread", "mutex"),
-    ],
-)
-def test_standard_headers_that_stopped_coming_along(name: str, since: str, brings: str, no_longer: str) -> None:
-    row = standard(name)
-    assert row.since == since
-    assert brings in row.headers
-    assert no_longer not in row.headers
+def test_standard_names_are_told_by_the_header_that_defines_them_first() -> None:
+    rows = {row.name: row for row in transitive_includes() if row.library == "gcc"}
+    assert rows["uint32_t"].since == "13" and rows["uint32_t"].headers[0] == "cstdint"
+    assert rows["std::mutex"].headers[0] == "mutex"
+    assert rows["std::accumulate"].headers == ("numeric",)
 
 
 def test_every_row_of_the_file_states_its_source_and_orders_its_versions() -> None:
