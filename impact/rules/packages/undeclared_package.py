@@ -24,6 +24,7 @@ Not reported
     compiled nowhere; names that nobody is known to provide (they are counted as unresolved).
 """
 
+from ...model.spelling import folded, one_edit
 from ...model.view import Need, View, interface_of
 from ..cure import Declare
 from ..evidence import name_to_declare, present, weight
@@ -91,7 +92,7 @@ def undeclared_package(view: View):
                 f"{package.digest.manifest_path}",
                 package=package.name,
                 severity=severity,
-                fix=_cure(package, first, name) if severity != "note" else (),
+                fix=_cure(view, package, first, name) if severity != "note" else (),
             )
 
 
@@ -120,7 +121,7 @@ def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dic
             first.at, name, f"{_how(first)}, and `{name}` only comes along with `{through}`",
             f"add `<{_tag(first, package.manifest.format)}>{name}</{_tag(first, package.manifest.format)}>` to "
             f"{package.digest.manifest_path}",
-            package.name, severity="warning", fix=_cure(package, first, name),
+            package.name, severity="warning", fix=_cure(view, package, first, name),
         )  # fmt: skip
 
 
@@ -157,7 +158,10 @@ def _how(need: Need) -> str:
     }[need.how]
 
 
-def _cure(package, need: Need, name: str) -> tuple[Declare, ...]:
+def _cure(view: View, package, need: Need, name: str) -> tuple[Declare, ...]:
+    """Nothing where the manifest has the name with a slip in it, which is another rule's to cure."""
+    if any((folded(d) == folded(name) or one_edit(d, name)) and not present(view, d) for d in view.declared(package)):
+        return ()
     return (Declare(package.digest.manifest_path, name, _tag(need, 2)),)
 
 
