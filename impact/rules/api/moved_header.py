@@ -50,4 +50,5 @@ def respelt(view: View, package: Package, include: IncludeUse, change: Change) -
         return ()
     if not view.answered(view.header(change.new), view.closure(package)):
         return ()
-    return (Replace(at.path, at.line, at.column, include.path, change.new),)
+    # The column is that of `<` or the quotation mark.
+    return (Replace(at.path, at.line, at.column + 1, include.path, change.new),)
