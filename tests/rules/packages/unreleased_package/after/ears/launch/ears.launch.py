@@ -3,4 +3,4 @@ from launch_ros.actions import Node
 
 
 def generate_launch_description():
-    return LaunchDescription([Node(package="gazebo_ros", executable="spawn_entity.py")])
+    return LaunchDescription([Node(package="audio_capture", executable="audio_capture_node")])
