@@ -441,10 +441,12 @@ class View:
 
     def _header(self, path: str) -> list[Provider]:
         own = self.workspace.provides_header(path)
+        head = path.split("/", 1)[0]
+        if own and head not in own and path not in self.workspace.rooted_headers and self.target.version(head) is not None:
+            own = []  # a file of the workspace ends like this by chance
         if own:
             return [Provider("ros", name) for name in own]
         found = list(self.providers.header(path))
-        head = path.split("/", 1)[0]
         if any(not p.name for p in found):
             return found
         if "/" in path and not any(p.name == head for p in found) and self._is_package(head) and head not in _UMBRELLAS:
@@ -518,7 +520,7 @@ class View:
         for found in package.build.found:
             if found.how not in ("find_package", "catkin") or not self.active(found.conditions):
                 continue
-            if found.name in ("catkin", package.name):
+            if found.name in ("catkin", package.name) or package.name in self.workspace.find_modules.get(found.name, ()):
                 continue
             providers = self.cmake(found.name)
             if not providers:

@@ -109,6 +109,23 @@ class Workspace:
         return found
 
     @cached_property
+    def rooted_headers(self) -> dict[str, list[str]]:
+        """Include paths as they follow an `include` folder, and again after a folder named as the package (the layout of
+        ROS 2), to the packages that have them."""
+        found: dict[str, list[str]] = {}
+        for package in self:
+            for path in package.digest.headers:
+                _, root, rest = f"/{path.removesuffix('.in')}".rpartition("/include/")
+                if not root:
+                    continue
+                head, _, tail = rest.partition("/")
+                for spelling in (rest, tail) if head == package.name and tail else (rest,):
+                    owners = found.setdefault(spelling, [])
+                    if package.name not in owners:
+                        owners.append(package.name)
+        return found
+
+    @cached_property
     def generated_headers(self) -> dict[str, str]:
         """Basename of headers made while building (parameters, protobuf, Qt forms, configure_file) to the package."""
         found = {}
@@ -146,8 +163,19 @@ class Workspace:
         return found
 
     @cached_property
+    def find_modules(self) -> dict[str, set[str]]:
+        """Names of find modules that packages of the tree carry for themselves, to those packages."""
+        found: dict[str, set[str]] = {}
+        for package in self:
+            for path in package.digest.files:
+                match = re.match(r"Find(.+)\.cmake$", posixpath.basename(path))
+                if match:
+                    found.setdefault(match.group(1), set()).add(package.name)
+        return found
+
+    @cached_property
     def provides_cmake(self) -> dict[str, str]:
-        """Names that find_package may use for something the tree itself makes (projects, FetchContent, exports)."""
+        """Names that find_package may use for something the tree itself makes (projects, exported configurations)."""
         found = {}
         for package in self:
             found[package.name] = package.name
@@ -155,9 +183,9 @@ class Workspace:
                 found.setdefault(package.build.project, package.name)
             for path in package.digest.files:
                 name = posixpath.basename(path)
-                match = re.match(r"(?:Find(.+)\.cmake|(.+?)-?[Cc]onfig\.cmake(?:\.in)?)$", name)
+                match = re.match(r"(.+?)-?[Cc]onfig\.cmake(?:\.in)?$", name)
                 if match:
-                    found.setdefault(match.group(1) or match.group(2), package.name)
+                    found.setdefault(match.group(1), package.name)
         return found
 
     def provides_header(self, include: str) -> list[str]:
@@ -168,7 +196,7 @@ class Workspace:
         return known
 
     def _provides_header(self, include: str) -> list[str]:
-        owners = self.headers.get(include)
+        owners = self.rooted_headers.get(include) or self.headers.get(include)
         if owners:
             return owners
         maker = self.generated_headers.get(include.rsplit("/", 1)[-1])

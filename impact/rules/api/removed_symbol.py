@@ -45,6 +45,11 @@ def removed_symbol(view: View):
         # What the workspace itself brings is as it brings it, whatever a release did.
         if change.state == "removed" and change.old and change.package not in view.workspace.packages:
             (python if change.kind.startswith("python") else cpp).setdefault(change.old, []).append(change)
+    # A method that a header of the workspace has may be meant wherever its name stands.
+    own = {
+        use.text for package in view.workspace for use in package.digest.names
+        if use.language == "cpp" and is_header(use.at.path) and "::" not in use.text and not use.text.isupper()
+    }  # fmt: skip
     for package in view:
         included = None
         warned: dict[str, set[str]] = {}
@@ -66,7 +71,7 @@ def removed_symbol(view: View):
                     included = _by_file(package)
                 if any(path.endswith(endings) for path in included.get(use.at.path, ())):
                     continue
-            guarded = use.role == "aside" or not view.certain(use.conditions)
+            guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
             sure = use.role in ("build", "run") and not guarded and change.kind != "api-changed"
             if later is not None:
                 # Enough to see what is coming: the first names of each library loudly, the rest as notes.
