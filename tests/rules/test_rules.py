@@ -1,10 +1,10 @@
 """Every rule on its own small workspaces: it speaks on `before`, and is silent on `after`, on every target.
 
-A case is a folder `<family>/<rule>/`, with underscores for dashes, that holds the workspaces `before` and `after`, and a
-file `targets` with one target a line (without it, each workspace names its own in rosimpact.toml). A further case of the
-same rule is `<rule>__<what it shows>`. Rules of the interfaces family compare a workspace with `after`, the base. One
-snapshot shows every finding of every rule over all `before` workspaces, so that a stray hit of another rule is seen in
-review.
+A case is a folder `<family>/<rule>/`, with underscores for dashes, that holds the workspaces `before` and `after`, and
+a file `targets` with one target a line (without it, each workspace names its own in rosimpact.toml). A further case of
+the same rule is `<rule>__<what it shows>`. Rules of the interfaces family compare a workspace with `after`, the base.
+One snapshot shows every finding of every rule over all `before` workspaces, so that a stray hit of another rule is seen
+in review.
 """
 
 from __future__ import annotations
@@ -97,7 +97,9 @@ def test_documentation_has_its_sections(rule):
     assert text.startswith(f"{rule.name}: ")
     sections = [line for line in text.splitlines() if line and not line.startswith((" ", f"{rule.name}: "))]
     order = ["What it does", "Why it breaks", "Why it matters", "Severity", "Example", "Use instead", "Not reported"]
-    assert sections == [section for section in order if section in sections], "sections missing, unknown or out of order"
+    assert sections == [section for section in order if section in sections], (
+        "sections missing, unknown or out of order"
+    )
     assert {"What it does", "Severity"} < set(sections)
     assert len({"Why it breaks", "Why it matters"} & set(sections)) == 1
     assert ("Example" in sections) == ("Use instead" in sections)

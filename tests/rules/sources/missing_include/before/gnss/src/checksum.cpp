@@ -1,7 +1,9 @@
+#include <cassert>
 #include <string>
 
 uint32_t checksum(const std::string & line)
 {
+  assert(!line.empty());
   uint32_t sum = 0;
   for (char c : line) {
     sum ^= static_cast<uint32_t>(c);

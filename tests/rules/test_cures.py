@@ -1,0 +1,238 @@
+"""Cures applied to the rules' own cases through the command line: what is proposed, and what is left alone."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from rosimpact.impact.cli import app
+from typer.testing import CliRunner
+
+HERE = Path(__file__).parent
+# Cases whose cure is known on every target that they ask for: `before` becomes `after`, to the byte.
+CURED = (
+    "api/moved_header",
+    "api/removed_header",
+    "packages/invalid_manifest",
+    "packages/misspelt_cmake_name",
+    "packages/misspelt_cmake_name__variable",
+    "packages/missing_interface_wiring",
+    "packages/missing_interface_wiring__group",
+    "packages/undeclared_package",
+    "packages/unresolvable_key",
+    "packages/unresolvable_key__spelling",
+    "packages/wrong_dependency_kind",
+    "sources/missing_include",
+)
+Fix = Callable[..., str]
+
+
+@pytest.fixture(scope="module")
+def fix(tmp_path_factory) -> Fix:
+    """Runs `check --fix` and returns what it reports afterwards."""
+    cache = tmp_path_factory.mktemp("cache")
+
+    def fixed(workspace: Path, *targets: str) -> str:
+        asked = [word for target in targets for word in ("--target", target)]
+        options = ["--fix", "--preview", "--notes", "--quiet", "--fail-on", "never"]
+        outcome = CliRunner().invoke(
+            app, ["check", str(workspace), *asked, *options], env={"ROSIMPACT_CACHE": str(cache)}
+        )
+        assert outcome.exit_code == 0, outcome.output
+        return outcome.output
+
+    return fixed
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def written(folder: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(text.encode())
+    return folder
+
+
+@pytest.mark.parametrize("case", CURED)
+def test_a_cure_makes_before_what_is_after(case: str, fix: Fix, tmp_path: Path):
+    workspace = shutil.copytree(HERE / case / "before", tmp_path / "ws")
+    output = fix(workspace, *(HERE / case / "targets").read_text().split())
+    assert files_of(workspace) == files_of(HERE / case / "after")
+    rule = Path(case).name.partition("__")[0].replace("_", "-")
+    assert f"[{rule}]" not in output
+
+
+MANIFEST = """<?xml version="1.0"?>
+<package format="{version}">
+  <name>ice</name>
+  <version>1.0.0</version>
+  <description>ice</description>
+  <maintainer email="robots@example.org">Robots</maintainer>
+  <license>Apache-2.0</license>
+  <buildtool_depend>{tool}</buildtool_depend>
+{body}</package>
+"""
+CMAKE_2 = """cmake_minimum_required(VERSION 3.8)
+project(ice)
+find_package(ament_cmake REQUIRED)
+find_package(rclcpp REQUIRED)
+find_package({package} REQUIRED)
+add_executable(ice ice.cpp)
+target_link_libraries(ice rclcpp::rclcpp {package}::{package})
+install(TARGETS ice DESTINATION lib/${{PROJECT_NAME}})
+ament_package()
+"""
+
+
+def ament(*, body: str, package: str, source: str) -> dict[str, str]:
+    return {
+        "package.xml": MANIFEST.format(version=3, tool="ament_cmake", body=body),
+        "CMakeLists.txt": CMAKE_2.format(package=package),
+        "ice.cpp": source,
+    }
+
+
+NODE = "#include <{header}>\n#include <rclcpp/rclcpp.hpp>\nint main() {{ return 0; }}\n"
+RCLCPP = "  <depend>rclcpp</depend>\n"
+# What a rule says, and does not cure: rule (empty: nothing is said), targets, files.
+UNTOUCHED = {
+    # cv_bridge.hpp came with Iron, so one spelling is not right on both.
+    "the new header is not on every target": (
+        "removed-header",
+        ("humble", "jazzy"),
+        ament(
+            body=RCLCPP + "  <depend>cv_bridge</depend>\n",
+            package="cv_bridge",
+            source=NODE.format(header="cv_bridge/cv_bridge.h"),
+        ),
+    ),
+    "the code chooses for itself": (
+        "",
+        ("humble", "jazzy"),
+        ament(
+            body=RCLCPP + "  <depend>cv_bridge</depend>\n",
+            package="cv_bridge",
+            source="#if __has_include(<cv_bridge/cv_bridge.hpp>)\n#include <cv_bridge/cv_bridge.hpp>\n#else\n"
+            + NODE.format(header="cv_bridge/cv_bridge.h").replace("h>\n", "h>\n#endif\n", 1),
+        ),
+    ),
+    # ros1_bridge left with Humble; to declare it would be wrong there.
+    "the package is not on every target": (
+        "undeclared-package",
+        ("foxy", "humble"),
+        ament(body=RCLCPP, package="ros1_bridge", source=NODE.format(header="ros1_bridge/bridge.hpp")),
+    ),
+    "the dependency is declared under a condition": (
+        "undeclared-package",
+        ("jazzy",),
+        ament(
+            body=RCLCPP + '  <depend condition="$ROS_DISTRO == humble">angles</depend>\n',
+            package="angles",
+            source=NODE.format(header="angles/angles.h"),
+        ),
+    ),
+    # As eigen2 and eigen3: one letter, and another thing.
+    "a digit tells versions apart": (
+        "unresolvable-key",
+        ("jazzy",),
+        ament(
+            body=RCLCPP + "  <depend>python4-serial</depend>\n",
+            package="angles",
+            source=NODE.format(header="rclcpp/rclcpp.hpp"),
+        )
+        | {"CMakeLists.txt": CMAKE_2.format(package="rclcpp").replace(" rclcpp::rclcpp rclcpp", " rclcpp")},
+    ),
+    "a misspelt tag whose end stands in another line": (
+        "invalid-manifest",
+        ("jazzy",),
+        {
+            "package.xml": MANIFEST.format(
+                version=3, tool="ament_cmake", body="  <build-depend>\n    rclcpp</build-depend>\n"
+            ),
+            "CMakeLists.txt": "cmake_minimum_required(VERSION 3.8)\nproject(ice)\n",
+        },
+    ),
+}
+
+
+@pytest.mark.parametrize(("rule", "targets", "files"), UNTOUCHED.values(), ids=UNTOUCHED)
+def test_what_is_not_surely_right_is_left_to_a_person(rule, targets, files, fix: Fix, tmp_path: Path):
+    workspace = written(tmp_path / "ws", files)
+    before = files_of(workspace)
+    output = fix(workspace, *targets)
+    assert files_of(workspace) == before
+    assert f"[{rule}]" in output if rule else "] " not in output.partition("ice\n")[0]
+
+
+CATKIN = """cmake_minimum_required(VERSION 3.0.2)\r
+project(ice)\r
+find_package(catkin REQUIRED COMPONENTS message_generation roscpp)\r
+add_message_files(FILES Floe.msg)\r
+generate_messages()\r
+catkin_package(CATKIN_DEPENDS message_runtime)\r
+include_directories(${catkin_INCLUDE_DIRS})\r
+  add_executable(\r
+    melt  # the sun\r
+    melt.cpp\r
+  )\r
+target_link_libraries(melt ${catkin_LIBRARIES})\r
+"""
+CATKIN_BODY = (
+    "  <build_depend>message_generation</build_depend>\n  <build_depend>roscpp</build_depend>\n"
+    "  <run_depend>message_runtime</run_depend>\n  <run_depend>roscpp</run_depend>\n"
+)
+BARE = "cmake_minimum_required(VERSION 3.0.2)\nproject(ice)\nfind_package(catkin REQUIRED)\ncatkin_package()\n"
+EIGEN = "  <depend>eigen</depend>\n  <depend>Eigen</depend>\n"
+FLOE = "#include <ice/Floe.h>\n#include <ros/ros.h>\nint main() { return 0; }\n"
+EDITED = {
+    "behind a command of several lines, with the file's own line ends": (
+        ("noetic",),
+        {"CMakeLists.txt": CATKIN, "msg/Floe.msg": "float64 size\n", "melt.cpp": FLOE,
+         "package.xml": MANIFEST.format(version=1, tool="catkin", body=CATKIN_BODY)},
+        "CMakeLists.txt",
+        ("  )\r\n", "  )\r\n  add_dependencies(melt ${ice_EXPORTED_TARGETS})\r\n"),
+    ),
+    "a run dependency in the words of format 1": (
+        ("noetic",),
+        {"CMakeLists.txt": BARE + "catkin_install_python(PROGRAMS scripts/melt DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n",
+         "scripts/melt": "#!/usr/bin/env python3\nimport rospy\nimport serial\n\nprint(rospy, serial)\n",
+         "package.xml": MANIFEST.format(version=1, tool="catkin", body="  <run_depend>rospy</run_depend>\n")},
+        "package.xml",
+        ("rospy</run_depend>\n", "rospy</run_depend>\n  <run_depend>python3-serial</run_depend>\n"),
+    ),
+    "a dependency once, whatever needs it": (
+        ("humble", "jazzy", "rolling"),
+        ament(body="  <depend>rclcpp</depend>\n", package="angles", source=NODE.format(header="angles/angles.h")),
+        "package.xml",
+        ("  <depend>rclcpp</depend>\n", "  <depend>rclcpp</depend>\n  <depend>angles</depend>\n"),
+    ),
+    "a name misspelt everywhere": (
+        ("noetic",),
+        {"CMakeLists.txt": BARE,
+         "package.xml": MANIFEST.format(version=1, tool="catkin", body="  <build_depend>Eigen</build_depend>\n")},
+        "package.xml",
+        ("<build_depend>Eigen<", "<build_depend>eigen<"),
+    ),
+    "a misspelt name beside the right one": (
+        ("noetic",),
+        {"CMakeLists.txt": BARE,
+         "package.xml": MANIFEST.format(version=2, tool="catkin", body=EIGEN)},
+        "package.xml",
+        ("  <depend>Eigen</depend>\n", ""),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("targets", "files", "path", "edit"), EDITED.values(), ids=EDITED)
+def test_a_cure_changes_what_it_says_and_nothing_else(targets, files, path, edit, fix: Fix, tmp_path: Path):
+    workspace = written(tmp_path / "ws", files)
+    fix(workspace, *targets)
+    assert files[path].count(edit[0]) == 1
+    expected = {name: text.encode() for name, text in files.items()}
+    expected[path] = files[path].replace(*edit).encode()
+    assert files_of(workspace) == expected
