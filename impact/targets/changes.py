@@ -96,10 +96,11 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @cache
 def _file() -> _File:
-    """All data/changes*.json together. A name that two files treat counts as in the first, in alphabetical order."""
+    """All data/changes*.json together. A name that two files treat counts as in the more special one."""
     changes: list[_Group] = []
     transitive: list[_TransitiveGroup] = []
-    for path in sorted(DATA.glob("changes*.json")):
+    # The general table comes last: the others were compared with headers and tags.
+    for path in sorted(DATA.glob("changes*.json"), key=lambda path: (path.name == "changes.json", path.name)):
         try:
             file = msgspec.json.decode(path.read_bytes(), type=_File)
         except (OSError, msgspec.MsgspecError) as error:

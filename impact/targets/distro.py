@@ -643,7 +643,6 @@ def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
         return False
 
 
-@functools.cache
 def _data_stamp() -> tuple[tuple[str, int, int], ...]:
     """Sizes and times of the shipped data files."""
     return tuple(

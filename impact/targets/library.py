@@ -203,6 +203,8 @@ _ROOTS = {
     "gazebo": ("gazebo/",), "gazebo-classic": ("gazebo/",), "qt5": ("Q",), "qt6": ("Q",), "qt4": ("Q",), "assimp": ("assimp/",), "fcl": ("fcl/",),
     "fmt": ("fmt/",), "tinyxml": ("tinyxml",), "tinyxml2": ("tinyxml2",), "ogre": ("Ogre", "OGRE/"), "octomap": ("octomap/",),
     "protobuf": ("google/protobuf/",), "vtk": ("vtk",), "python3": ("Python.h",), "numpy": ("numpy/",), "bullet": ("bullet/", "btBullet", "LinearMath/"),
+    "console-bridge": ("console_bridge/",), "urdfdom-headers": ("urdf_model", "urdf_"), "ompl": ("ompl/",), "tbb": ("tbb/",),
+    "jsoncpp": ("json/", "jsoncpp/"), "orocos-kdl": ("kdl/",), "geographiclib": ("GeographicLib/",), "glog": ("glog/",),
     "ceres": ("ceres/",), "spdlog": ("spdlog/",),
 }  # fmt: skip
 
