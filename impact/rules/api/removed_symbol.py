@@ -74,11 +74,11 @@ def removed_symbol(view: View):
             guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
             sure = use.role in ("build", "run") and not guarded and change.kind != "api-changed"
             if later is not None:
-                # Enough to see what is coming: the first names of each library loudly, the rest as notes.
+                # Enough to see what is coming: the first place for each library loudly, the rest as notes.
                 names = warned.setdefault(later.package, set())
                 loud = (
                     use.language == "cpp" and use.role == "build" and view.certain(use.conditions)
-                    and later.kind != "api-changed" and later.package != "python" and (not names or use.text in names)
+                    and later.kind != "api-changed" and later.package != "python" and not names
                 )  # fmt: skip
                 if loud:
                     names.add(use.text)

@@ -77,8 +77,9 @@ def _run_together(name: str, names) -> tuple[str, str] | None:
 def _variables(view: View, package, found):
     """Variables that only differ in case from what a find_package of the package sets."""
     folded = {name.lower(): name for name in found}
+    told = set()
     for use in package.build.uses:
-        if use.kind != "variable" or not view.active(use.conditions):
+        if use.name in told or use.kind != "variable" or not view.active(use.conditions):
             continue
         for suffix in _SUFFIXES:
             if use.name.endswith(suffix):
@@ -98,6 +99,7 @@ def _variables(view: View, package, found):
         if right is None:
             right = next((v for v in sets if v.lower() == use.name.lower() or v.lower() == use.name.lower() + "s"), None)
         if right is not None:
+            told.add(use.name)
             if any(use.name == f"{f.prefix}{suffix}" for f in package.build.found if f.prefix):
                 continue
             yield Hit(use.at, use.name, f"find_package({meant}) sets `{right}`, so `{use.name}` is empty", f"write `${{{right}}}`",
