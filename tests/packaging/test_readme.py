@@ -51,7 +51,13 @@ def without_seconds(text: str) -> str:
     return re.sub(r"· [\d.]+ s$", "", text.rstrip())
 
 
-@pytest.mark.parametrize("document", ["README.md", "CONTRIBUTING.md", "docs/ci.md", "examples/README.md"])
+@pytest.mark.parametrize(
+    "document",
+    [
+        *("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "DATA.md", "examples/README.md"),
+        *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md"))),
+    ],
+)
 def test_links_lead_somewhere(document):
     path = ROOT / document
     targets = re.findall(r"\]\(([^)#\s]+)[^)]*\)", path.read_text(encoding="utf-8"))
