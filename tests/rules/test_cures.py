@@ -199,7 +199,7 @@ EDITED = {
     ),
     "a run dependency in the words of format 1": (
         ("noetic",),
-        {"CMakeLists.txt": BARE + "catkin_install_python(PROGRAMS scripts/melt DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n",
+        {"CMakeLists.txt": BARE + "catkin_install_python(PROGRAMS scripts/melt DESTINATION lib)\n",
          "scripts/melt": "#!/usr/bin/env python3\nimport rospy\nimport serial\n\nprint(rospy, serial)\n",
          "package.xml": MANIFEST.format(version=1, tool="catkin", body="  <run_depend>rospy</run_depend>\n")},
         "package.xml",

@@ -1,0 +1,518 @@
+"""What rules promise to leave alone, each beside the small change that makes them speak; and nothing new where nothing
+changed.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from rosimpact.impact.base import compare
+from rosimpact.impact.check import Options, check
+from rosimpact.impact.cli import app
+from rosimpact.impact.rules.rule import all_rules
+from typer.testing import CliRunner
+
+HERE = Path(__file__).parent
+CASES = sorted(path.parent for path in HERE.glob("*/*/before"))
+Files = dict[str, str]
+
+
+class Silent(NamedTuple):
+    """A workspace on which a rule says nothing above a note, and an edit (path, old, new) behind which it does."""
+
+    rule: str
+    targets: tuple[str, ...]
+    files: Files
+    spoilt: tuple[str, str, str]
+
+
+def manifest(*lines: str, tool: str = "ament_cmake", version: int = 3, name: str = "sled") -> str:
+    """A manifest of these dependencies: `name` for a depend, `tag:name`, or a whole element."""
+    elements = [
+        line
+        if line.startswith("<")
+        else "<{0}>{1}</{0}>".format(*(line if ":" in line else f"depend:{line}").split(":"))
+        for line in (f"buildtool_depend:{tool}", *lines)
+    ]
+    return (
+        f'<?xml version="1.0"?>\n<package format="{version}">\n<name>{name}</name>\n<version>1.0.0</version>\n'
+        '<description>sled</description>\n<maintainer email="robots@example.org">Robots</maintainer>\n'
+        "<license>Apache-2.0</license>\n" + "\n".join(elements) + "\n</package>\n"
+    )
+
+
+HEAD = "cmake_minimum_required(VERSION 3.5)\nproject(sled)\n"
+
+
+def ament(cmake: str, *dependencies: str, **sources: str) -> Files:
+    """A package for colcon. sources: text by file name, with `_` for the dot."""
+    text = f"{HEAD}find_package(ament_cmake REQUIRED)\n{cmake}\nament_package()\n"
+    return {"package.xml": manifest(*dependencies), "CMakeLists.txt": text, **named(sources)}
+
+
+def catkin(components: str, cmake: str, *dependencies: str, **sources: str) -> Files:
+    """A package for catkin. sources: text by file name, with `_` for the dot."""
+    text = f"{HEAD}find_package(catkin REQUIRED COMPONENTS {components})\n{cmake}\n"
+    return {"package.xml": manifest(*dependencies, tool="catkin", version=2), "CMakeLists.txt": text, **named(sources)}
+
+
+def named(sources: dict[str, str]) -> Files:
+    return {name.replace("__", "/").replace("_", "."): text for name, text in sources.items()}
+
+
+NODE = "find_package(rclcpp REQUIRED)\nadd_executable(run run.cpp)\ntarget_link_libraries(run rclcpp::rclcpp {})\n"
+INSTALLED = "install(TARGETS run DESTINATION lib/${PROJECT_NAME})"
+TF2 = NODE.format("tf2_geometry_msgs::tf2_geometry_msgs") + "find_package(tf2_geometry_msgs REQUIRED)\n" + INSTALLED
+CATKIN_NODE = "catkin_package()\ninclude_directories(${catkin_INCLUDE_DIRS})\nadd_executable(run run.cpp)\n"
+OPENCV = (
+    "find_package(OpenCV REQUIRED)\n" + CATKIN_NODE + "target_link_libraries(run ${catkin_LIBRARIES} ${OpenCV_LIBS})"
+)
+H, HPP = "#include <tf2_geometry_msgs/tf2_geometry_msgs.h>\n", "#include <tf2_geometry_msgs/tf2_geometry_msgs.hpp>\n"
+RCLCPP = "#include <rclcpp/rclcpp.hpp>\n"
+MAIN = "int main() { return 0; }\n"
+READ = '#include <opencv2/imgcodecs.hpp>\n#include <ros/ros.h>\nint main() { return cv::imread("a", %s).rows; }\n'
+FLOE = {"msg/Floe.msg": "float64 size\n"}
+FLOE_CMAKE = "add_message_files(FILES Floe.msg)\ngenerate_messages()\ncatkin_package(CATKIN_DEPENDS message_runtime)\n"
+FLOE_DEPENDS = (
+    "build_depend:message_generation",
+    "build_export_depend:message_runtime",
+    "exec_depend:message_runtime",
+    "roscpp",
+)
+
+SILENT = {
+    "a header chosen by __has_include": Silent(
+        "removed-header",
+        ("humble", "jazzy"),
+        ament(
+            TF2,
+            "rclcpp",
+            "tf2_geometry_msgs",
+            run_cpp="#if __has_include(<tf2_geometry_msgs/tf2_geometry_msgs.hpp>)\n"
+            + HPP
+            + "#else\n"
+            + H
+            + "#endif\n"
+            + MAIN,
+        ),
+        ("run.cpp", "#else\n" + H, "#endif\n" + H + "#if 1\n"),
+    ),
+    "a header chosen by a version": Silent(
+        "removed-header",
+        ("humble", "jazzy"),
+        ament(
+            TF2,
+            "rclcpp",
+            "tf2_geometry_msgs",
+            run_cpp="#include <rclcpp/version.h>\n#if RCLCPP_VERSION_GTE(28, 0, 0)\n"
+            + HPP
+            + "#else\n"
+            + H
+            + "#endif\n"
+            + MAIN,
+        ),
+        ("run.cpp", "#if RCLCPP_VERSION_GTE(28, 0, 0)", "#if 0"),
+    ),
+    "a header in code that is switched off": Silent(
+        "removed-header",
+        ("jazzy",),
+        ament(TF2, "rclcpp", "tf2_geometry_msgs", run_cpp="#if 0\n" + H + "#endif\n" + HPP + MAIN),
+        ("run.cpp", "#if 0", "#if 1"),
+    ),
+    "a header that the workspace brings": Silent(
+        "removed-header",
+        ("jazzy",),
+        ament(TF2, "rclcpp", "tf2_geometry_msgs", run_cpp=H + MAIN, include__tf2_geometry_msgs__tf2_geometry_msgs_h="")
+        | {"include/tf2_geometry_msgs/tf2_geometry_msgs.h": "#pragma once\n"},
+        ("run.cpp", "tf2_geometry_msgs.h>", "tf2_geometry_msgs.h>\n#include <tf2_eigen/tf2_eigen.h>"),
+    ),
+    "ROS 1 names of messages in a bridge": Silent(
+        "removed-header",
+        ("humble",),
+        ament(
+            NODE.format("") + "find_package(std_msgs REQUIRED)\n" + INSTALLED,
+            "rclcpp",
+            "std_msgs",
+            run_cpp="#include <ros/ros.h>\n#include <rclcpp/rclcpp.hpp>\n#include <std_msgs/String.h>\n" + MAIN,
+        ),
+        ("run.cpp", "#include <ros/ros.h>\n", ""),
+    ),
+    "a macro that the package defines": Silent(
+        "removed-symbol",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            OPENCV,
+            "roscpp",
+            "libopencv-dev",
+            run_cpp="#ifndef CV_LOAD_IMAGE_ANYDEPTH\n#define CV_LOAD_IMAGE_ANYDEPTH 2\n#endif\n"
+            + READ % "CV_LOAD_IMAGE_ANYDEPTH",
+        ),
+        ("run.cpp", "#define CV_LOAD_IMAGE_ANYDEPTH 2\n", ""),
+    ),
+    "a name chosen by a version": Silent(
+        "removed-symbol",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            OPENCV,
+            "roscpp",
+            "libopencv-dev",
+            run_cpp="#include <opencv2/core/version.hpp>\n#if CV_VERSION_MAJOR < 4\n"
+            "int how() { return CV_LOAD_IMAGE_ANYDEPTH; }\n#endif\n"
+            + READ % "2",
+        ),
+        ("run.cpp", "#if CV_VERSION_MAJOR < 4", "#if CV_VERSION_MAJOR < 5"),
+    ),
+    "a name in a comment and in a text": Silent(
+        "removed-symbol",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            OPENCV,
+            "roscpp",
+            "libopencv-dev",
+            run_cpp='// CV_LOAD_IMAGE_ANYDEPTH\nconst char* text = "CV_LOAD_IMAGE_ANYDEPTH";\n' + READ % "2",
+        ),
+        ("run.cpp", '"CV_LOAD_IMAGE_ANYDEPTH"', "(const char*)CV_LOAD_IMAGE_ANYDEPTH"),
+    ),
+    "a name deprecated there, under a version test": Silent(
+        "deprecated-name",
+        ("kilted",),
+        ament(
+            NODE.format("") + INSTALLED,
+            "rclcpp",
+            run_cpp=RCLCPP + "#if RCLCPP_VERSION_GTE(29, 0, 0)\nrclcpp::executors::SingleThreadedExecutor e;\n#else\n"
+            "rclcpp::executors::StaticSingleThreadedExecutor e;\n#endif\n" + MAIN,
+        ),
+        ("run.cpp", "RCLCPP_VERSION_GTE(29, 0, 0)", "0"),
+    ),
+    "a renamed package under a condition": Silent(
+        "renamed-package",
+        ("galactic", "humble"),
+        ament("", '<exec_depend condition="$ROS_DISTRO == galactic">nav2_recoveries</exec_depend>'),
+        ("package.xml", ' condition="$ROS_DISTRO == galactic"', ""),
+    ),
+    "a removed package that the workspace brings": Silent(
+        "removed-package",
+        ("humble",),
+        {
+            "a/package.xml": manifest("exec_depend:ros1_bridge"),
+            "a/CMakeLists.txt": "project(sled)\n",
+            "b/package.xml": manifest(name="ros1_bridge"),
+            "b/CMakeLists.txt": "project(ros1_bridge)\n",
+        },
+        ("b/package.xml", "<name>ros1_bridge", "<name>my_bridge"),
+    ),
+    "an include in code that is switched off": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament(
+            NODE.format("") + INSTALLED,
+            "rclcpp",
+            run_cpp=RCLCPP + "#if 0\n#include <pcl_conversions/pcl_conversions.h>\n#endif\n" + MAIN,
+        ),
+        ("run.cpp", "#if 0", "#if 1"),
+    ),
+    "an include of a file that nothing compiles": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament(
+            NODE.format("") + INSTALLED,
+            "rclcpp",
+            run_cpp=RCLCPP + MAIN,
+            old_cpp="#include <pcl_conversions/pcl_conversions.h>\n",
+        ),
+        ("CMakeLists.txt", "add_executable(run run.cpp)", "add_executable(run run.cpp old.cpp)"),
+    ),
+    "messages that another declared package brings": Silent(
+        "undeclared-package",
+        ("humble", "jazzy"),
+        ament(
+            NODE.format("${sensor_msgs_TARGETS}") + "find_package(sensor_msgs REQUIRED)\n" + INSTALLED,
+            "rclcpp",
+            "sensor_msgs",
+            run_cpp=RCLCPP + "#include <std_msgs/msg/header.hpp>\n" + MAIN,
+        ),
+        ("run.cpp", "std_msgs/msg/header", "shape_msgs/msg/plane"),
+    ),
+    "a package looked for and not required": Silent(
+        "undeclared-package",
+        ("jazzy",),
+        ament(NODE.format("") + "find_package(pcl_conversions QUIET)\n" + INSTALLED, "rclcpp", run_cpp=RCLCPP + MAIN),
+        ("CMakeLists.txt", "pcl_conversions QUIET", "pcl_conversions REQUIRED"),
+    ),
+    "a dependency whose condition holds": Silent(
+        "undeclared-package",
+        ("noetic",),
+        {
+            **catkin(
+                "roscpp tf2_eigen",
+                CATKIN_NODE + "target_link_libraries(run ${catkin_LIBRARIES})",
+                run_cpp="#include <ros/ros.h>\n#include <tf2_eigen/tf2_eigen.h>\n" + MAIN,
+            ),
+            "package.xml": manifest(
+                "roscpp", '<depend condition="$ROS_VERSION == 1">tf2_eigen</depend>', tool="catkin"
+            ),
+        },
+        ("package.xml", "$ROS_VERSION == 1", "$ROS_VERSION == 2"),
+    ),
+    "an import with an except branch": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament(
+            "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
+            "exec_depend:rclpy",
+            run_py="#!/usr/bin/env python3\nimport rclpy\n"
+            "try:\n    import serial\nexcept ImportError:\n    serial = None\n",
+        ),
+        ("run.py", "try:\n    import serial\nexcept ImportError:\n    serial = None\n", "import serial\n"),
+    ),
+    "a dependency for tests, of what another brings": Silent(
+        "wrong-dependency-kind",
+        ("humble",),
+        ament(
+            NODE.format("${sensor_msgs_TARGETS}")
+            + "find_package(sensor_msgs REQUIRED)\nfind_package(std_msgs REQUIRED)\n"
+            + INSTALLED,
+            "rclcpp",
+            "sensor_msgs",
+            "test_depend:std_msgs",
+            run_cpp=RCLCPP + "#include <std_msgs/msg/header.hpp>\n" + MAIN,
+        ),
+        ("package.xml", "<depend>sensor_msgs</depend>", "<test_depend>sensor_msgs</test_depend>"),
+    ),
+    "executables that only tests run": Silent(
+        "missing-install",
+        ("jazzy",),
+        ament(
+            NODE.format("") + "add_executable(test_run test/probe.cpp)\n" + INSTALLED,
+            "rclcpp",
+            run_cpp=MAIN,
+            test__probe_cpp=MAIN,
+        ),
+        ("CMakeLists.txt", "add_executable(test_run test/probe.cpp)", "add_executable(walk run.cpp)"),
+    ),
+    "targets installed by a list": Silent(
+        "missing-install",
+        ("humble",),
+        ament(
+            "add_executable(run run.cpp)\nadd_executable(walk run.cpp)\nset(TOOLS run walk)\n"
+            "install(TARGETS ${TOOLS} DESTINATION lib/${PROJECT_NAME})",
+            run_cpp=MAIN,
+        ),
+        ("CMakeLists.txt", "set(TOOLS run walk)", "set(TOOLS run)"),
+    ),
+    "a target that waits through a library": Silent(
+        "missing-interface-wiring",
+        ("noetic",),
+        catkin(
+            "message_generation roscpp",
+            FLOE_CMAKE + "include_directories(${catkin_INCLUDE_DIRS})\nadd_library(floe floe.cpp)\n"
+            "add_dependencies(floe ${PROJECT_NAME}_generate_messages_cpp)\nadd_executable(run run.cpp)\n"
+            "target_link_libraries(run floe)",
+            *FLOE_DEPENDS,
+            run_cpp="#include <sled/Floe.h>\n" + MAIN,
+            floe_cpp="#include <sled/Floe.h>\n",
+        )
+        | FLOE,
+        ("CMakeLists.txt", "target_link_libraries(run floe)", ""),
+    ),
+    "messages of another package, waited for by catkin's variable": Silent(
+        "missing-interface-wiring",
+        ("noetic",),
+        {
+            **{
+                f"a/{path}": text
+                for path, text in {**catkin("message_generation", FLOE_CMAKE, *FLOE_DEPENDS[:3]), **FLOE}.items()
+            },
+            **{
+                f"b/{path}": text.replace("sled)", "dogs)").replace("<name>sled", "<name>dogs")
+                for path, text in catkin(
+                    "sled",
+                    CATKIN_NODE + "add_dependencies(run ${catkin_EXPORTED_TARGETS})",
+                    "sled",
+                    run_cpp="#include <sled/Floe.h>\n" + MAIN,
+                ).items()
+            },
+        },
+        ("b/CMakeLists.txt", "add_dependencies(run ${catkin_EXPORTED_TARGETS})", ""),
+    ),
+    "a package that comes with one that is found": Silent(
+        "missing-find-package",
+        ("humble",),
+        ament(
+            "find_package(sensor_msgs REQUIRED)\nadd_executable(run run.cpp)\nament_target_dependencies(run std_msgs)\n"
+            + INSTALLED,
+            "sensor_msgs",
+            "std_msgs",
+            run_cpp="#include <std_msgs/msg/header.hpp>\n" + MAIN,
+        ),
+        ("CMakeLists.txt", "find_package(sensor_msgs REQUIRED)", ""),
+    ),
+    "a package of one's own": Silent(
+        "unresolvable-key",
+        ("jazzy",),
+        {**ament("", "exec_depend:python3-seriall"), "rosimpact.toml": '[workspace]\nprivate = ["python3-seriall"]\n'},
+        ("rosimpact.toml", "python3-seriall", "python3-other"),
+    ),
+    "a key under a condition that does not hold": Silent(
+        "unresolvable-key",
+        ("jazzy",),
+        ament("", '<exec_depend condition="$ROS_VERSION == 1">python-serial</exec_depend>'),
+        ("package.xml", "$ROS_VERSION == 1", "$ROS_VERSION == 2"),
+    ),
+    "an unreleased package that the workspace brings": Silent(
+        "unreleased-package",
+        ("jazzy",),
+        {
+            "a/package.xml": manifest("exec_depend:audio_capture"),
+            "a/CMakeLists.txt": "project(sled)\n",
+            "b/package.xml": manifest(name="audio_capture"),
+            "b/CMakeLists.txt": "project(audio_capture)\n",
+        },
+        ("b/package.xml", "<name>audio_capture", "<name>my_audio"),
+    ),
+    "a cycle that only tests close": Silent(
+        "dependency-cycle",
+        ("humble",),
+        {
+            "a/package.xml": manifest("dogs"),
+            "a/CMakeLists.txt": "project(sled)\n",
+            "b/package.xml": manifest("test_depend:sled", name="dogs"),
+            "b/CMakeLists.txt": "project(dogs)\n",
+        },
+        ("b/package.xml", "test_depend>", "exec_depend>"),
+    ),
+    "a name that nothing resembles": Silent(
+        "misspelt-cmake-name",
+        ("jazzy",),
+        ament(NODE.format("") + "ament_export_dependencies(fjord)\n" + INSTALLED, "rclcpp", run_cpp=MAIN),
+        ("CMakeLists.txt", "(fjord)", "(rclcppp)"),
+    ),
+    "a standard that CMake raises": Silent(
+        "language-standard",
+        ("humble", "jazzy"),
+        ament("set(CMAKE_CXX_STANDARD 14)\n" + NODE.format("") + INSTALLED, "rclcpp", run_cpp=RCLCPP + MAIN),
+        ("CMakeLists.txt", "set(CMAKE_CXX_STANDARD 14)", "add_compile_options(-std=c++14)"),
+    ),
+    "two versions asked for in turn": Silent(
+        "library-version",
+        ("melodic", "noetic"),
+        catkin(
+            "roscpp",
+            "find_package(OpenCV 4 QUIET)\nif(NOT OpenCV_FOUND)\n  find_package(OpenCV 3 REQUIRED)\nendif()\n"
+            + CATKIN_NODE,
+            "roscpp",
+            "libopencv-dev",
+            run_cpp=MAIN,
+        ),
+        ("CMakeLists.txt", "find_package(OpenCV 4 QUIET)\n", ""),
+    ),
+    "a range that reaches far enough": Silent(
+        "cmake-version",
+        ("humble", "lyrical"),
+        {"package.xml": manifest(), "CMakeLists.txt": "cmake_minimum_required(VERSION 3.0...3.22)\nproject(sled)\n"},
+        ("CMakeLists.txt", "3.0...3.22", "3.0"),
+    ),
+    "a bound under a condition that does not hold": Silent(
+        "unsatisfied-version",
+        ("humble",),
+        ament("", '<depend version_gte="2.9.0" condition="$ROS_DISTRO == jazzy">moveit_core</depend>'),
+        ("package.xml", "== jazzy", "== humble"),
+    ),
+    "a module that Python lost, with an except branch": Silent(
+        "python-version",
+        ("jazzy",),
+        ament(
+            "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
+            "exec_depend:rclpy",
+            run_py="#!/usr/bin/env python3\nimport rclpy\n"
+            "try:\n    import imp\nexcept ImportError:\n    import importlib as imp\n",
+        ),
+        ("run.py", "try:\n    import imp\nexcept ImportError:\n    import importlib as imp\n", "import imp\n"),
+    ),
+    "a module that Python lost, under a version test": Silent(
+        "python-version",
+        ("jazzy",),
+        ament(
+            "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
+            "exec_depend:rclpy",
+            run_py="#!/usr/bin/env python3\nimport sys\nimport rclpy\nif sys.version_info < (3, 12):\n    import imp\n",
+        ),
+        ("run.py", "sys.version_info < (3, 12)", "sys.version_info < (3, 13)"),
+    ),
+    "a header that comes through the package's own": Silent(
+        "missing-include",
+        ("jazzy",),
+        ament(
+            "add_library(sled sled.cpp)\ninstall(TARGETS sled DESTINATION lib)",
+            sled_hpp="#pragma once\n#include <cstdint>\n",
+            sled_cpp='#include "sled.hpp"\n#include <string>\n"
+            "uint32_t length(const std::string & s) { return s.size(); }\n',
+        ),
+        ("sled.cpp", '#include "sled.hpp"\n', ""),
+    ),
+    "a comment that silences a finding": Silent(
+        "removed-header",
+        ("jazzy",),
+        ament(
+            TF2, "rclcpp", "tf2_geometry_msgs", run_cpp=H.rstrip() + "  // rosimpact: allow(removed-header)\n" + MAIN
+        ),
+        ("run.cpp", "  // rosimpact: allow(removed-header)", ""),
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory) -> Path:
+    return tmp_path_factory.mktemp("cache")
+
+
+@pytest.fixture
+def said(tmp_path: Path, store: Path) -> Callable[[Files, tuple[str, ...], str], bool]:
+    """Writes files, and tells whether a rule says something about the workspace, for most rules above a note."""
+
+    def said_by(files: Files, targets: tuple[str, ...], rule: str) -> bool:
+        for name, text in files.items():
+            path = tmp_path / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        report = check(tmp_path, Options(targets=targets, preview=True, cache=store, jobs=1))
+        quiet = () if all_rules()[rule].severity == "note" else ("note",)
+        return any(f.rule == rule and f.severity not in quiet for f in report.findings)
+
+    return said_by
+
+
+@pytest.mark.parametrize("row", SILENT.values(), ids=SILENT)
+def test_what_is_left_alone(row: Silent, said):
+    assert not said(row.files, row.targets, row.rule)
+    path, old, new = row.spoilt
+    assert row.files[path].count(old) >= 1
+    assert said({path: row.files[path].replace(old, new)}, row.targets, row.rule)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.parent.name}/{case.name}")
+def test_where_nothing_changed_nothing_is_new(case: Path, store: Path):
+    targets = case / "targets"
+    asked = tuple(targets.read_text().split()) if targets.exists() else ()
+    report = compare(case / "before", case / "before", Options(targets=asked, preview=True, cache=store, jobs=1))
+    interfaces = {name for name, rule in all_rules().items() if rule.family == "interfaces"}
+    assert [f for f in report.findings if f.new or f.rule in interfaces] == []
+
+
+def test_a_commit_without_changes_does_not_fail(tmp_path: Path, store: Path):
+    for name, text in SILENT["a header chosen by a version"].files.items():
+        (tmp_path / name).write_text(text.replace("#if RCLCPP_VERSION_GTE(28, 0, 0)", "#if 0"))
+    git = ["git", "-C", str(tmp_path), "-c", "user.name=r", "-c", "user.email=r@example.org"]
+    for command in (["init", "-q"], ["add", "."], ["commit", "-q", "-m", "first"]):
+        subprocess.run([*git, *command], check=True)
+    command = ["check", str(tmp_path), "--target", "jazzy", "--quiet"]
+    environment = {"ROSIMPACT_CACHE": str(store)}
+    assert CliRunner().invoke(app, command, env=environment).exit_code == 1
+    assert CliRunner().invoke(app, [*command, "--base", "HEAD"], env=environment).exit_code == 0
