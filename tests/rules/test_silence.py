@@ -163,8 +163,7 @@ SILENT = {
             "roscpp",
             "libopencv-dev",
             run_cpp="#include <opencv2/core/version.hpp>\n#if CV_VERSION_MAJOR < 4\n"
-            "int how() { return CV_LOAD_IMAGE_ANYDEPTH; }\n#endif\n"
-            + READ % "2",
+            "int how() { return CV_LOAD_IMAGE_ANYDEPTH; }\n#endif\n" + READ % "2",
         ),
         ("run.cpp", "#if CV_VERSION_MAJOR < 4", "#if CV_VERSION_MAJOR < 5"),
     ),
@@ -452,8 +451,8 @@ SILENT = {
         ament(
             "add_library(sled sled.cpp)\ninstall(TARGETS sled DESTINATION lib)",
             sled_hpp="#pragma once\n#include <cstdint>\n",
-            sled_cpp='#include "sled.hpp"\n#include <string>\n"
-            "uint32_t length(const std::string & s) { return s.size(); }\n',
+            sled_cpp='#include "sled.hpp"\n#include <string>\n'
+            "uint32_t length(const std::string & s) { return s.size(); }\n",
         ),
         ("sled.cpp", '#include "sled.hpp"\n', ""),
     ),
