@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..model.view import Need, View
+from ..model.workspace import Package
 
 _HOW = {"find_package": 0, "component": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5}
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
@@ -16,6 +17,16 @@ def weight(need: Need) -> tuple:
 def present(view: View, name: str) -> bool:
     """True when a dependency of this name can be had on the target: in the workspace, released, or a rosdep key."""
     return name in view.workspace.packages or view.target.version(name) is not None or view.target.resolve(name) is not None
+
+
+def circular(view: View, package: Package, name: str) -> bool:
+    """True when a package of the workspace needs, or declares in turn, the one that would depend on it."""
+    other = view.workspace.packages.get(name)
+    if other is None:
+        return False
+    return package.name in view.closure(other) or any(
+        provider.name == package.name for need in view.needs(other) for provider in need.providers[:1]
+    )
 
 
 def name_to_declare(view: View, need: Need) -> str | None:
