@@ -27,7 +27,7 @@ Not reported
 from ...model.spelling import folded, one_edit
 from ...model.view import Need, View, interface_of
 from ..cure import Declare
-from ..evidence import name_to_declare, present, weight
+from ..evidence import circular, name_to_declare, present, weight
 from ..rule import Hit, rule
 
 
@@ -161,6 +161,8 @@ def _how(need: Need) -> str:
 def _cure(view: View, package, need: Need, name: str) -> tuple[Declare, ...]:
     """Nothing where the manifest has the name with a slip in it, which is another rule's to cure."""
     if any((folded(d) == folded(name) or one_edit(d, name)) and not present(view, d) for d in view.declared(package)):
+        return ()
+    if circular(view, package, name):
         return ()
     return (Declare(package.digest.manifest_path, name, _tag(need, 2)),)
 
