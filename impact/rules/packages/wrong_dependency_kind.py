@@ -25,7 +25,7 @@ Not reported
 
 from ...model.view import View
 from ..cure import Declare, Remove
-from ..evidence import weight
+from ..evidence import circular, weight
 from ..rule import Hit, rule
 
 _FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})
@@ -58,7 +58,7 @@ def wrong_dependency_kind(view: View):
                     kind = "for tests" if kinds == {"test"} else "for running"
                     yield Hit(need.at, name, f"`{name}` is needed to build and declared only {kind}",
                               f"declare it as `<{'build_depend' if package.manifest.format == 1 else 'depend'}>`",
-                              package.name, severity=severity, fix=_cure(package, name, "depend", kinds))  # fmt: skip
+                              package.name, severity=severity, fix=_cure(view, package, name, "depend", kinds))  # fmt: skip
                 elif need.public and need.how == "include" and not kinds & {"build_export", "exec"}:
                     exported = exported if exported is not None else view.spread(
                         n for n, k in declared.items() if k & {"build_export", "exec", "buildtool_export"}
@@ -68,7 +68,7 @@ def wrong_dependency_kind(view: View):
                     told.add(name)
                     yield Hit(need.at, name, f"an installed header includes `{need.subject}` and dependants do not get `{name}`",
                               f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
-                              package.name, fix=_cure(package, name, "depend", kinds))  # fmt: skip
+                              package.name, fix=_cure(view, package, name, "depend", kinds))  # fmt: skip
             elif need.role == "run" and need.how in ("import", "launch") and not kinds & _FOR_RUN:
                 run = run if run is not None else view.spread(n for n, k in declared.items() if k & _FOR_RUN)
                 if view.answered(need.providers, run):
@@ -77,12 +77,14 @@ def wrong_dependency_kind(view: View):
                 yield Hit(need.at, name, f"`{name}` is needed to run and declared only {'for tests' if kinds == {'test'} else 'for building'}",
                           f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'exec_depend'}>`",
                           package.name, severity="warning" if kinds != {"test"} else "note",
-                          fix=_cure(package, name, "exec_depend", kinds))  # fmt: skip
+                          fix=_cure(view, package, name, "exec_depend", kinds))  # fmt: skip
 
 
-def _cure(package, name: str, tag: str, kinds: set[str]) -> tuple[Declare | Remove, ...]:
+def _cure(view: View, package, name: str, tag: str, kinds: set[str]) -> tuple[Declare | Remove, ...]:
     """What is declared for tests alone is declared anew, since `depend` beside `test_depend` says one thing twice."""
     path = package.digest.manifest_path
+    if circular(view, package, name):
+        return ()
     if kinds == {"test"} and tag == "depend":
         return (Remove(path, name, "test_depend"), Declare(path, name, tag))
     return (Declare(path, name, tag),)
