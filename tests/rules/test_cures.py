@@ -147,6 +147,19 @@ UNTOUCHED = {
         )
         | {"CMakeLists.txt": CMAKE_2.format(package="rclcpp").replace(" rclcpp::rclcpp rclcpp", " rclcpp")},
     ),
+    "a dependency that would close a circle": (
+        "undeclared-package",
+        ("jazzy",),
+        {
+            "a/package.xml": MANIFEST.format(version=3, tool="ament_cmake", body=""),
+            "a/CMakeLists.txt": CMAKE_2.format(package="snow").replace("find_package(rclcpp REQUIRED)\n", ""),
+            "a/ice.cpp": "int main() { return 0; }\n",
+            "b/package.xml": MANIFEST.format(version=3, tool="ament_cmake", body="  <depend>ice</depend>\n").replace(
+                "<name>ice", "<name>snow"
+            ),
+            "b/CMakeLists.txt": "cmake_minimum_required(VERSION 3.8)\nproject(snow)\nfind_package(ice REQUIRED)\n",
+        },
+    ),
     "a misspelt tag whose end stands in another line": (
         "invalid-manifest",
         ("jazzy",),
