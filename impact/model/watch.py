@@ -27,8 +27,11 @@ def watched() -> Watched:
         elif _WORD.match(row.old):
             if "::" in row.old:
                 qualified.add(row.old)
-            elif not getattr(row, "ambiguous", False) and len(row.old) > 3:
+            elif not row.ambiguous and len(row.old) > 3:
                 words.add(row.old)
+            # A new name of which an old one is told may be used where it is not there yet.
+            if row.new_since and len(row.new) > 7 and _WORD.match(row.new) and not row.ambiguous:
+                (qualified if "::" in row.new else words).add(row.new)
     for include in transitive_includes():
         headers[include.name] = tuple(include.headers)
     version = hashlib.sha1(repr((sorted(words), sorted(qualified), sorted(python), sorted(headers.items()))).encode()).hexdigest()

@@ -45,6 +45,10 @@ def removed_symbol(view: View):
         # What the workspace itself brings is as it brings it, whatever a release did.
         if change.state == "removed" and change.old and change.package not in view.workspace.packages:
             (python if change.kind.startswith("python") else cpp).setdefault(change.old, []).append(change)
+    early: dict[str, list[Change]] = {}
+    for change in view.changes(*_KINDS):
+        if change.state == "absent" and change.new and change.package not in view.workspace.packages:
+            early.setdefault(change.new, []).append(change)
     # A method that a header of the workspace has may be meant wherever its name stands.
     own = {
         use.text for package in view.workspace for use in package.digest.names
@@ -59,6 +63,12 @@ def removed_symbol(view: View):
                 named = cpp.get(use.text.rsplit("::", 1)[-1], ())
             change = next((c for c in named if view.concerned(package, c, use.at.path)), None)
             later = None
+            if change is None and use.text in early and use.text not in own and view.certain(use.conditions):
+                change = next((c for c in early[use.text] if view.concerned(package, c, use.at.path)), None)
+                if change is not None and use.role in ("build", "run"):
+                    yield Hit(use.at, use.text, f"`{use.text}` is not there yet in {change.package} {change.version}".strip(),
+                              f"use `{change.old}`" if change.old else "", package.name, severity="warning")  # fmt: skip
+                continue
             if change is None:
                 change = later = view.later.get(use.text)
                 if later is not None and later.kind.startswith("header"):

@@ -40,6 +40,7 @@ def missing_find_package(view: View):
         yield from _find_modules(view, package)
         yield from _no_components(view, package)
         yield from _directories_not_given(view, package)
+        yield from _not_given(view, package)
         found = found_names(view, package)
         if found is None:
             continue
@@ -97,6 +98,69 @@ def _find_modules(view: View, package):
         yield Hit(found.at, "cmake_modules", f"`Find{found.name}.cmake` comes with `cmake_modules`, which CMake never looks for",
                   "add `cmake_modules` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml", package.name,
                   severity="error" if sure else "warning" if found.required else "note")  # fmt: skip
+
+
+_OF_PACKAGE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|INCLUDE_DIRS|INCLUDE_DIR|LIBRARY|LIBS)\}")
+# Distros in which headers of all packages lay in one folder, so that any found package served every target.
+_ONE_FOLDER = ("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic")
+
+
+def _not_given(view: View, package):
+    """Packages that are found, whose headers a target includes, and that the target is not given."""
+    if package.build_type != "ament_cmake" or view.target.distro in _ONE_FOLDER or package.build.unresolved:
+        return
+    targets = {t.name: t for t in package.build.targets}
+    everywhere = {n for item, _ in package.build.include_dirs for n in _OF_PACKAGE.findall(item)}
+    everywhere |= {_package_of(link.item) for link in package.build.links}
+    found = {f.name for f in package.build.found}
+    if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
+        return
+    told = set()
+    for include in package.digest.includes:
+        providers = view.header(include.path)
+        if not include.targets or not view.certain(include.conditions) or len(providers) != 1 or providers[0].kind != "ros":
+            continue
+        name = providers[0].name
+        if name not in found or name == package.name or name in told:
+            continue
+        for target in include.targets:
+            given = _given(view, targets, target)
+            if given is None or name in given or name in everywhere:
+                continue
+            if name in view.spread(n for n in (*given, *everywhere) if n):
+                continue
+            told.add(name)
+            yield Hit(targets[target].at, name, f"`{target}` includes `{include.path}` and is not given `{name}`",
+                      f"give `{name}` to the target", package.name,
+                      severity="error" if include.role == "build" and view.certain(targets[target].conditions) else "warning")  # fmt: skip
+            break
+
+
+def _package_of(item: str) -> str:
+    """The package that a link item stands for: `pkg::target`, `${pkg_LIBRARIES}`, or the item itself."""
+    match = _OF_PACKAGE.match(item)
+    return match.group(1) if match else item.partition("::")[0]
+
+
+def _given(view: View, targets, name: str) -> set[str] | None:
+    """Packages that a target is given, itself or through targets of its package; None when that cannot be told."""
+    names: set[str] = set()
+    stack, seen = [name], set()
+    while stack:
+        target = targets.get(stack.pop())
+        if target is None or target.name in seen:
+            continue
+        seen.add(target.name)
+        if target.kind in ("unknown", "external", "fetched"):
+            return None
+        if target.alias_of:
+            stack.append(target.alias_of)
+        for link in target.links:
+            if "$" in link.item and not _OF_PACKAGE.match(link.item):
+                return None
+            names.add(_package_of(link.item))
+            stack.append(link.item)
+    return names
 
 
 def _directories_not_given(view: View, package):
