@@ -16,14 +16,14 @@ def weight(need: Need) -> tuple:
 
 def present(view: View, name: str) -> bool:
     """True when a dependency of this name can be had on the target: in the workspace, released, or a rosdep key."""
-    return name in view.workspace.packages or view.target.version(name) is not None or view.target.resolve(name) is not None
+    return view.available(name)
 
 
 def circular(view: View, package: Package, name: str) -> bool:
-    """True when a package of the workspace needs, or declares in turn, the one that would depend on it."""
+    """True when what would be declared comes with the package itself, or is of the workspace and needs it."""
     other = view.workspace.packages.get(name)
     if other is None:
-        return False
+        return package.name in view.spread([name])
     return package.name in view.closure(other) or any(
         provider.name == package.name for need in view.needs(other) for provider in need.providers[:1]
     )
