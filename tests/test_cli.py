@@ -314,7 +314,7 @@ def test_help_loads_nothing_heavy():
         "import sys; from rosimpact.impact.cli import main; sys.argv = ['rosimpact', '--help']\n"
         "try: main()\nexcept SystemExit: pass\n"
         "print(*sorted(m for m in sys.modules if m.split('.')[0] in "
-        "{'yaml', 'rich', 'networkx', 'pygit2', 'catkin_pkg', 'joblib', 'sqlite3', 'msgspec', 'requests'}))"
+        "{'yaml', 'rich', 'pygit2', 'catkin_pkg', 'joblib', 'sqlite3', 'msgspec', 'requests'}))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "Usage: rosimpact" in run.stdout
