@@ -9,9 +9,10 @@ Why it breaks
     declares (a build farm, a new colleague, the robot) the configuration, the compiler, or the node stops.
 
 Severity
-    error: an unconditional find_package(REQUIRED), catkin component or include of compiled code that is sure to miss its
-    package on the target. warning: tests, imports, launch files, conditional code, or where the manifests that would
-    settle it are not known for the target. note: examples, documentation, and installed headers that the package itself does not compile.
+    error: an unconditional find_package(REQUIRED), catkin component or include of compiled code that is sure to miss
+    its package on the target. warning: tests, imports, launch files, what only comes along with another dependency, or
+    where the manifests that would settle it are not known for the target. note: conditional code, examples,
+    documentation, files that nothing compiles, and all but the first few imports and launch references of a package.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -21,7 +22,7 @@ Use instead
 
 Not reported
     Messages, client libraries and common system libraries that come through another declared package; code that is
-    compiled nowhere; names that nobody is known to provide (they are counted as unresolved).
+    switched off on the target; names that nobody is known to provide (they are counted as unresolved).
 """
 
 from ...model.spelling import folded, one_edit
