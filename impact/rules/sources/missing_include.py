@@ -5,13 +5,13 @@ What it does
     include the header that offers them, neither themselves nor through files of the package.
 
 Why it breaks
-    Some other header brings it today. The next compiler or library version stops including it, and the build fails on the
-    machine that has that version.
+    Some other header brings it today. The next compiler or library version stops including it, and the build fails on
+    the machine that has that version.
 
 Severity
-    error when only standard headers reach a source file and none of them brings the name in the target's compiler; warning
-    for headers, which something may precede, and
-    when a library that used to bring it no longer does, or another may; note when that lies ahead, in the newest distro.
+    error when only standard headers reach a source file and none of them brings the name in the target's compiler;
+    warning for headers, which something may precede, and for what an included library no longer brings; note when that
+    lies ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
@@ -20,7 +20,8 @@ Use instead
     #include <cstdint>
 
 Not reported
-    Names for which no target has the version that dropped the header.
+    Names that a standard header which reaches the file still brings; files that include headers of other packages,
+    unless a library that once brought the name is among them.
 """
 
 from ...model.package import is_header
