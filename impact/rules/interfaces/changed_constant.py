@@ -5,7 +5,8 @@ What it does
 
 Why it breaks
     A machine built before and one built after connect without complaint in ROS 2, whose type hash leaves constants out,
-    and mean different things by the same number. In ROS 1 the md5 sum changes. A constant that is gone stops the compiler.
+    and mean different things by the same number. In ROS 1 the md5 sum changes. A constant that is gone stops the
+    compiler.
 
 Severity
     error for a constant that is gone and whose definition the workspace uses; warning otherwise.
