@@ -4,8 +4,8 @@ What it does
     Compares the types, array lengths and bounds of fields that both revisions have.
 
 Why it breaks
-    Conversions that happened to work may stop to compile or lose values. The md5 sum or type hash changes, so nodes built
-    before do not connect and recorded bags no longer match.
+    Conversions that happened to work may stop to compile or lose values. The md5 sum or type hash changes, so nodes
+    built before do not connect and recorded bags no longer match.
 
 Severity
     error when a package of the workspace uses the definition; warning otherwise.
