@@ -4,8 +4,8 @@ What it does
     Compares every definition with the base revision and reports fields that are no longer there.
 
 Why it breaks
-    Source that reads or writes the field does not compile (C++) or stops when it gets there (Python). The md5 sum or type
-    hash changes, so nodes built before do not connect and recorded bags no longer match.
+    Source that reads or writes the field does not compile (C++) or stops when it gets there (Python). The md5 sum or
+    type hash changes, so nodes built before do not connect and recorded bags no longer match.
 
 Severity
     error when a package of the workspace uses the definition; warning otherwise.
