@@ -2,8 +2,8 @@
 
 What it does
     Compares what a package exports with what is there: include directories and libraries that do not exist, system
-    libraries exported under a name whose variables nobody sets, and packages that installed headers include and that are
-    not exported.
+    libraries exported under a name whose variables nobody sets, and packages that installed headers include and that
+    are not exported.
 
 Why it breaks
     The package builds, and every package that depends on it fails: the header's own includes are not found, or the
