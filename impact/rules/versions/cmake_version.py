@@ -4,7 +4,8 @@ What it does
     Compares the version with the CMake of the target's platform: newer than it has, or older than CMake 4 accepts.
 
 Why it breaks
-    CMake refuses a project that asks for a newer CMake, and since 4.0 one that asks for compatibility with less than 3.5.
+    CMake refuses a project that asks for a newer CMake, and since 4.0 one that asks for compatibility with less than
+    3.5.
 
 Severity
     error: the configuration stops at its first line.
