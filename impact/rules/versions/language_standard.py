@@ -1,8 +1,8 @@
 """language-standard: the C++ standard is too low for a dependency's headers.
 
 What it does
-    Compares the standard the package compiles with (-std= flags, CMAKE_CXX_STANDARD, else the target compiler's default)
-    with what the headers it includes need in the target's version.
+    Compares the standard the package compiles with (-std= flags, CMAKE_CXX_STANDARD, else the target compiler's
+    default) with what the headers it includes need in the target's version.
 
 Why it breaks
     The compiler stops inside somebody else's header with errors about missing features.
