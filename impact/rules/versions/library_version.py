@@ -1,8 +1,8 @@
 """library-version: a version asked of a library is not what the platform has.
 
 What it does
-    Compares the version in find_package(X n) and pkg_check_modules(... x>=n) with the platform's version of the library,
-    by the rule the library's own configuration uses (same major for OpenCV, at least for Boost ...).
+    Compares the version in find_package(X n) and pkg_check_modules(... x>=n) with the platform's version of the
+    library, by the rule the library's own configuration uses (same major for OpenCV, at least for Boost ...).
 
 Why it breaks
     CMake stops: "Could not find a configuration file that is compatible with requested version".
