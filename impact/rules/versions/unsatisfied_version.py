@@ -1,8 +1,8 @@
 """unsatisfied-version: a version bound of the manifest does not hold on a target.
 
 What it does
-    Compares `version_gte`, `version_gt`, `version_lt`, `version_lte` and `version_eq` of every dependency with the version
-    that the workspace or the target has.
+    Compares `version_gte`, `version_gt`, `version_lt`, `version_lte` and `version_eq` of every dependency with the
+    version that the workspace or the target has.
 
 Why it breaks
     catkin and bloom write the bound into the Debian package, so installing fails; rosdep ignores the bound, so a source
