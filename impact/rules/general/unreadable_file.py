@@ -7,8 +7,8 @@ Why it matters
     What stands in such a file was not checked; silence about it means nothing.
 
 Severity
-    note: what else is wrong with the file is for its own reader to say; the coverage line counts it too. warning for CMake
-    whose blocks do not match, where CMake itself stops.
+    note: what else is wrong with the file is for its own reader to say; the coverage line counts it too. warning for
+    CMake whose blocks do not match, where CMake itself stops.
 """
 
 from ...model.build import At
