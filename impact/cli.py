@@ -214,6 +214,11 @@ def _names(values: list[str] | None) -> tuple[str, ...]:
 
 def main() -> None:
     """Entry point."""
+    for argument in sys.argv[1:]:
+        if "\0" in argument:
+            # No shell can pass one; who calls from Python can, and the system's calls would end in a ValueError.
+            typer.echo(f"rosimpact: {argument!r}: holds a null byte, which no path or name can; leave it out", err=True)
+            raise SystemExit(2)
     try:
         app()
     except BrokenPipeError:

@@ -436,6 +436,8 @@ def test_a_rule_that_fails_is_named_and_the_others_are_heard(say, ws, monkeypatc
         raise RuntimeError("out of cheese")
         yield
 
+    # What was remembered of this content knows nothing of the failure: content of its own.
+    write(ws, {"src/bad/CMakeLists.txt": CMAKE + "# judged by a rule that fails\n"})
     rules = registry.all_rules()
     monkeypatch.setitem(registry._RULES, "removed-header", rules["removed-header"]._replace(run=fails))
     said = say("check", ws, "--target", "jazzy", "--target", "humble", "--format", "json")
@@ -618,7 +620,7 @@ def test_what_is_asked_for(say, ws, name):
         ("nowhere", ("nowhere", "does not exist", "give the folder")),
         ("src/bad/CMakeLists.txt", ("CMakeLists.txt", "is a file", "give the folder")),
         ("src/bad/CMakeLists.txt/x", ("does not exist",)),
-        ("a\x00b", ()),
+        ("a\x00b", ("a\\x00b", "null byte")),
         ("n" * 5000, ("n" * 100,)),
     ],
 )
@@ -710,6 +712,8 @@ def data(tmp_path, monkeypatch) -> Path:
 
     folder = tmp_path / "data"
     shutil.copytree(snapshot.DATA, folder)
+    # What an earlier test's check came to is remembered there, and would be said again without a look at the data.
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(snapshot, "_default", snapshot.Snapshot(folder, tmp_path / "unpacked", folder))
     monkeypatch.setattr(providers, "_default", providers.Providers(folder, tmp_path / "unpacked"))
     return folder
