@@ -2,8 +2,8 @@
 
 What it does
     Reports packages whose headers compiled code includes, or whose CMake variables and targets are used, when no
-    find_package (or catkin component, pkg_check_modules, ament_auto) of the package asks for them and none that is asked
-    for brings them.
+    find_package (or catkin component, pkg_check_modules, ament_auto) of the package asks for them and none that is
+    asked for brings them.
 
 Why it breaks
     The compiler misses the include path, or the linker the library, unless another package happens to add them.
@@ -76,7 +76,7 @@ def missing_find_package(view: View):
             direct = name in view.declared(package)
             yield Hit(need.at, name, f"`{need.subject}` is included and CMake never looks for `{name}`",
                       f"add find_package({name} REQUIRED) and give it to the target", package.name,
-                      severity="warning" if direct and ros and not header_only and (need.targets or need.public) else "note")  # fmt: skip
+                      severity=_weight_of(view, need, direct and ros and not header_only))  # fmt: skip
 
 
 # Find modules that cmake_modules puts on CMake's path, once it is found itself. Catkin did so until Hydro.
@@ -98,6 +98,14 @@ def _find_modules(view: View, package):
         yield Hit(found.at, "cmake_modules", f"`Find{found.name}.cmake` comes with `cmake_modules`, which CMake never looks for",
                   "add `cmake_modules` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml", package.name,
                   severity="error" if sure else "warning" if found.required else "note")  # fmt: skip
+
+
+def _weight_of(view: View, need, counts: bool) -> str:
+    """How surely a missing find_package stops the compiler: since Humble every package has its own include folder."""
+    if not counts or not (need.targets or need.public):
+        return "note"
+    apart = view.target.ros == 2 and view.target.distro not in _ONE_FOLDER
+    return "error" if apart and need.targets and len(need.providers) == 1 else "warning"
 
 
 _OF_PACKAGE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|INCLUDE_DIRS|INCLUDE_DIR|LIBRARY|LIBS)\}")

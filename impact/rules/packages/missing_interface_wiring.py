@@ -6,8 +6,8 @@ What it does
     found and each target that includes a generated header waits for the generator through add_dependencies (catkin).
 
 Why it breaks
-    A clean or parallel build compiles a source before its header exists, and fails on some machines on some days. A field
-    type of a package that the generator was not told of stops the build everywhere.
+    A clean or parallel build compiles a source before its header exists, and fails on some machines on some days. A
+    field type of a package that the generator was not told of stops the build everywhere.
 
 Severity
     error where generation is sure to fail (a field's package is not given to the generator); warning for order.
@@ -78,7 +78,7 @@ def _field_packages(view: View, package):
                 told.add(owner)
                 yield Hit(_at(interface, field), owner, f"`{field.type}` is a field type and the generator is not given `{owner}`",
                           f"add `{owner}` to DEPENDENCIES of {generated[0].how == 'rosidl' and 'rosidl_generate_interfaces' or 'generate_messages'}",
-                          package.name, severity="error" if generated[0].how == "rosidl" else "warning")  # fmt: skip
+                          package.name, severity="error" if generated[0].how == "rosidl" or field.type != "Header" else "warning")  # fmt: skip
 
 
 def _at(interface, field):
