@@ -200,6 +200,8 @@ def curable(ws, monkeypatch):
                     fix,
                 )
 
+    # Content of its own: what the shipped rules said of the same files is remembered, and must not be mixed with this.
+    (ws / "a/CMakeLists.txt").write_text(CMAKE.format(ERROR + "# curable\n"))
     rule = all_rules()["undeclared-package"]
     monkeypatch.setitem(registry._RULES, "undeclared-package", rule._replace(run=lacks))
     return ws
