@@ -706,10 +706,11 @@ def test_branches_without_a_common_ancestor(say, ws):
 
 
 @pytest.fixture
-def data(tmp_path, monkeypatch) -> Path:
-    """A copy of the shipped data that can be broken, and an empty cache."""
+def data(ws, tmp_path, monkeypatch) -> Path:
+    """A copy of the shipped data that can be broken, a workspace that asks it for a header, and an empty cache."""
     import shutil
 
+    write(ws, {"src/bad/src/node.cpp": "#include <rclcpp/rclcpp.hpp>\n"})
     folder = tmp_path / "data"
     shutil.copytree(snapshot.DATA, folder)
     # What an earlier test's check came to is remembered there, and would be said again without a look at the data.
@@ -744,13 +745,16 @@ def test_unpacked_data_that_broke_is_unpacked_again(say, ws, data, tmp_path, spo
     assert check(say, ws).status == 1
     unpacked = list((tmp_path / "unpacked").glob("*.sqlite"))
     assert len(unpacked) == 2
+    whole = {file: file.stat().st_size for file in unpacked}
     for file in unpacked:
         file.chmod(0o644)
         spoil(file)
+    write(ws, {"src/bad/src/node.cpp": "#include <tf2/time.h>\n"})  # or the first answer is remembered
     monkeypatch.setattr(snapshot, "_default", snapshot.Snapshot(data, tmp_path / "unpacked", data))
     monkeypatch.setattr(providers, "_default", providers.Providers(data, tmp_path / "unpacked"))
     said = check(say, ws)
     assert said.status == 1 and FOUND in said.out
+    assert {file: file.stat().st_size for file in unpacked} == whole
 
 
 # -- the cache ---------------------------------------------------------------------------------------------------------
