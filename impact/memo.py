@@ -18,8 +18,7 @@ from .model.build import At
 from .model.view import View
 from .rules.cure import Declare, Insert, Remove, Replace
 from .rules.rule import Cure, Edit, Hit
-from .targets.distro import DistroTarget
-from .targets.target import Change
+from .targets.target import Change, Target
 
 _CURES: dict[str, type] = {kind.__name__: kind for kind in (Declare, Remove, Replace, Insert, Edit)}
 
@@ -96,7 +95,7 @@ def remember(store: Store, view: View, rules: Sequence[str], hits: Iterable[tupl
     store.remember("judgement", [(key(view, rules), msgspec.msgpack.encode(_Judgement(stored, unresolved)))])
 
 
-def prepare(store: Store, target: DistroTarget) -> None:
+def prepare(store: Store, target: Target) -> None:
     """Gives a target, and the newest distro that it is compared with, the changes an earlier run worked out."""
     newest = target.newest()
     for one in (target, newest) if newest is not None else (target,):

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 import msgspec
 
 from ..facts.condition import Condition
-from ..facts.cpp import CppFile
+from ..facts.cpp import CppFile, Include
 from ..facts.interface import Interface
 from ..facts.manifest import Manifest
 from ..facts.launch import PluginClass
@@ -197,7 +197,7 @@ class _Join:
         self.prefix = path + "/" if path else ""
         self.cpp: dict[str, CppFile] = {}
         self.by_name: dict[str, list[str]] = {}
-        self.resolved: dict[str, list[tuple[str, object]]] = {}
+        self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
 
     def inside(self, path: str) -> str:

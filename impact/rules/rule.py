@@ -91,7 +91,7 @@ def rule(*, severity: str, preview: bool = False, per_target: bool = True):
 
 def all_rules() -> dict[str, Rule]:
     """Every rule by name, importing the families on first use."""
-    package = importlib.import_module(__package__)
+    package = importlib.import_module(__name__.rpartition(".")[0])
     for family in pkgutil.iter_modules(package.__path__, package.__name__ + "."):
         if family.ispkg:
             folder = importlib.import_module(family.name)

@@ -58,8 +58,9 @@ class Target:
     """One machine, real or described. Interface only; see distro.py, capture.py for how one is made.
 
     Attributes: name, distro (`humble`), ros (1 or 2), date (ISO day), platform (`ubuntu jammy`), python (minor version),
-    python_major (2 or 3), data_date (newest day of the data), notes (what was adjusted, such as a date moved to the first release), approximate (True before the first sync tag),
-    knows_manifests (released manifests of this distro at this date are known).
+    python_major (2 or 3), data_date (newest day of the data), notes (what was adjusted, such as a date moved to the
+    first release), approximate (True before the first sync tag), knows_manifests (released manifests of this distro at
+    this date are known).
     """
 
     name: str
@@ -120,6 +121,18 @@ class Target:
 
     def newest(self) -> Target | None:
         """The newest long-term distro of this generation as of the data's day, None when this is it or a newer one."""
+        raise NotImplementedError
+
+    def library_names(self) -> frozenset[str]:
+        """Platform libraries whose version is known here."""
+        raise NotImplementedError
+
+    def has_changes(self) -> bool:
+        """True when changes() answers without working them out."""
+        raise NotImplementedError
+
+    def set_changes(self, changes: tuple[Change, ...]) -> None:
+        """What changes() is to answer, worked out by an earlier run on the same data."""
         raise NotImplementedError
 
     def changes(self) -> tuple[Change, ...]:

@@ -41,7 +41,7 @@ def library_component(view: View):
                 newest = view.target.newest()
                 later = gone_component(newest, found.name, name) if newest is not None and not gone else None
                 if later:
-                    yield Hit(at, name, f"`{name}` is there, and gone in {found.name} {later.version} of {newest.distro}", later.help,
+                    yield Hit(at, name, f"`{name}` is there, and gone in {found.name} {later.version} of {view.horizon}", later.help,
                               package.name, severity="warning" if found.required and name != "system" and view.certain(found.conditions) else "note")  # fmt: skip
                 if gone:
                     sure = found.required and view.certain(found.conditions)
