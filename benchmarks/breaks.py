@@ -68,12 +68,15 @@ def one_break(record):
 def one_negative(record):
     row = _STATE["score"].score_negative(_STATE["args"], record)
     if row["result"] == "run":
-        folders = sorted(((p["path"].strip("./"), p["name"]) for p in record["package_paths"]), key=lambda p: -len(p[0]))
+        folders = sorted(
+            ((p["path"].strip("./"), p["name"]) for p in record["package_paths"]), key=lambda p: -len(p[0])
+        )
         own = lambda path: next((n for at, n in folders if not at or path.startswith(at + "/")), None)  # noqa: E731
         row["said"] = [
             (f["severity"], f["rule"], own(f["path"]), f["path"], f["line"], f["subject"], f["message"])
-            for f in _STATE["last"] if (f["severity"] != "note" or f["rule"] in args_notes()) and (own(f["path"]) or "/" not in f["path"])
-        ]  # fmt: skip
+            for f in _STATE["last"]
+            if (f["severity"] != "note" or f["rule"] in args_notes()) and (own(f["path"]) or "/" not in f["path"])
+        ]
     return row
 
 
@@ -90,13 +93,22 @@ def main() -> None:
     load = _STATE["score"].load
     keep = lambda rows: [r for r in rows if not args.only or args.only in json.dumps(r)]  # noqa: E731
     out = open(args.out, "w") if args.out else None
-    with ProcessPoolExecutor(args.jobs, initializer=start, initargs=(args.score, args.repos, args.breaks or args.known)) as pool:
+    with ProcessPoolExecutor(
+        args.jobs, initializer=start, initargs=(args.score, args.repos, args.breaks or args.known)
+    ) as pool:
         if args.breaks:
-            rows = [r for r in pool.map(one_break, keep(load(args.breaks, args.sample))) if r["result"] != "no repository"]
-            for label, part in (("all", rows), ("tier A, hard", [r for r in rows if r["tier"] == "A" and r["hardness"] == "hard"])):
+            rows = [
+                r for r in pool.map(one_break, keep(load(args.breaks, args.sample))) if r["result"] != "no repository"
+            ]
+            for label, part in (
+                ("all", rows),
+                ("tier A, hard", [r for r in rows if r["tier"] == "A" and r["hardness"] == "hard"]),
+            ):
                 won = [r for r in part if r["result"] == "found"]
-                print(f"recall, {label}: {len(won)}/{len(part)} = {len(won) / max(1, len(part)):.3f}, "
-                      f"as errors {sum(r['error'] for r in won) / max(1, len(part)):.3f}")  # fmt: skip
+                print(
+                    f"recall, {label}: {len(won)}/{len(part)} = {len(won) / max(1, len(part)):.3f}, "
+                    f"as errors {sum(r['error'] for r in won) / max(1, len(part)):.3f}"
+                )
             families = collections.defaultdict(collections.Counter)
             for r in rows:
                 families[r["family"]][r["result"]] += 1
@@ -105,11 +117,17 @@ def main() -> None:
             if out:
                 out.writelines(json.dumps(r) + "\n" for r in rows)
         if args.negatives:
-            rows = [r for r in pool.map(one_negative, keep(load(args.negatives, args.sample))) if r["result"] != "no repository"]
+            rows = [
+                r
+                for r in pool.map(one_negative, keep(load(args.negatives, args.sample)))
+                if r["result"] != "no repository"
+            ]
             packages = sum(r["packages"] for r in rows)
             alarmed = sum(r["alarmed"] for r in rows)
-            print(f"false alarms: {sum(len(r['alarms']) for r in rows)} errors in {alarmed} of {packages} released packages = "
-                  f"{alarmed / max(1, packages):.4f}; failed {sum(r['result'] == 'failed' for r in rows)}")  # fmt: skip
+            print(
+                f"false alarms: {sum(len(r['alarms']) for r in rows)} errors in {alarmed} of {packages} released packages = "
+                f"{alarmed / max(1, packages):.4f}; failed {sum(r['result'] == 'failed' for r in rows)}"
+            )
             print(f"noise: {sum(r['warnings'] for r in rows) / max(1, packages):.3f} warnings per released package")
             for severity in ("error", "warning"):
                 rules = collections.Counter(s[1] for r in rows for s in r.get("said", ()) if s[0] == severity)

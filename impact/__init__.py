@@ -11,7 +11,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Finding", "Options", "Report", "check", "check_workspace"]
 
-_WHERE = {"check": "check", "check_workspace": "check", "Options": "check", "Report": "report.report", "Finding": "rules.rule"}
+_WHERE = {
+    "check": "check",
+    "check_workspace": "check",
+    "Options": "check",
+    "Report": "report.report",
+    "Finding": "rules.rule",
+}
 
 
 def __getattr__(name: str):

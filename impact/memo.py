@@ -53,7 +53,9 @@ def _code() -> str:
         for name in sorted(files):
             if name.endswith(".py"):
                 status = os.stat(os.path.join(folder, name))
-                stamp.update(f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape"))
+                stamp.update(
+                    f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape")
+                )
     return stamp.hexdigest()
 
 
@@ -86,11 +88,19 @@ def remember(store: Store, view: View, rules: Sequence[str], hits: Iterable[tupl
     """Keeps what the rules said for later runs."""
     stored = tuple(
         _Hit(
-            rule, getattr(hit.at, "path", ""), getattr(hit.at, "line", 0), getattr(hit.at, "column", 0), hit.subject, hit.message,
-            hit.help, hit.package, hit.severity, tuple((type(cure).__name__, tuple(cure)) for cure in hit.fix),
+            rule,
+            getattr(hit.at, "path", ""),
+            getattr(hit.at, "line", 0),
+            getattr(hit.at, "column", 0),
+            hit.subject,
+            hit.message,
+            hit.help,
+            hit.package,
+            hit.severity,
+            tuple((type(cure).__name__, tuple(cure)) for cure in hit.fix),
         )
         for rule, hit in hits
-    )  # fmt: skip
+    )
     unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
     store.remember("judgement", [(key(view, rules), msgspec.msgpack.encode(_Judgement(stored, unresolved)))])
 

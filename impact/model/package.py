@@ -14,8 +14,8 @@ import msgspec
 from ..facts.condition import Condition
 from ..facts.cpp import CppFile, Include
 from ..facts.interface import Interface
-from ..facts.manifest import Manifest
 from ..facts.launch import PluginClass
+from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.setup import SetupFile
@@ -186,7 +186,9 @@ def digest_of(
 ) -> Digest:
     """Joins the facts of the package's files. files: all its paths; kinds: extractor kind by path; facts: path to
     FileFacts; read: path to bytes, used only to find the place of a watched bare word."""
-    return _Join(name, path, manifest_path, manifest, build, build_type, kinds, tuple(files), facts, read, watched).digest()
+    return _Join(
+        name, path, manifest_path, manifest, build, build_type, kinds, tuple(files), facts, read, watched
+    ).digest()
 
 
 class _Join:
@@ -205,7 +207,9 @@ class _Join:
 
     def digest(self) -> Digest:
         allows, problems = [], []
-        aside = _ASIDE_NAME.search(self.name) or self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
+        aside = (
+            _ASIDE_NAME.search(self.name) or self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
+        )
         python: dict[str, PythonFile] = {}
         references, plugins, registered, setup, interfaces = [], [], [], [], []
         for path in self.files:
@@ -240,21 +244,37 @@ class _Join:
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
         return Digest(
-            self.name, self.path, self.manifest_path, self.manifest, self.build_type, self.build,
-            includes=tuple(includes), imports=tuple(imports),
+            self.name,
+            self.path,
+            self.manifest_path,
+            self.manifest,
+            self.build_type,
+            self.build,
+            includes=tuple(includes),
+            imports=tuple(imports),
             references=tuple(
-                ReferenceUse(r, At(p, r.line, r.column), role_of_folder(self.inside(p)) or ("aside" if aside else "run"))
+                ReferenceUse(
+                    r, At(p, r.line, r.column), role_of_folder(self.inside(p)) or ("aside" if aside else "run")
+                )
                 for p, r in references
             ),
-            names=tuple(names + python_names), needed_headers=tuple(needed), interfaces=tuple(interfaces),
-            syntax=tuple(syntax), headers=tuple(p for p in self.cpp if is_header(p)),
+            names=tuple(names + python_names),
+            needed_headers=tuple(needed),
+            interfaces=tuple(interfaces),
+            syntax=tuple(syntax),
+            headers=tuple(p for p in self.cpp if is_header(p)),
             public_headers=tuple(p for p, r in roles.items() if r[1] and is_header(p)),
-            modules=tuple(sorted(modules)), plugins=tuple(plugins), registered=tuple(registered), setup=tuple(setup),
-            allows=tuple(allows), problems=tuple(problems), files=self.files,
+            modules=tuple(sorted(modules)),
+            plugins=tuple(plugins),
+            registered=tuple(registered),
+            setup=tuple(setup),
+            allows=tuple(allows),
+            problems=tuple(problems),
+            files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
-        )  # fmt: skip
+        )
 
     # -- which file is compiled by what ------------------------------------------------------------------------------
 
@@ -310,7 +330,9 @@ class _Join:
             inside = role_of_folder(self.inside(source))
             for target in targets:
                 role = "test" if target.kind == "test" or inside == "test" else "build"
-                if role == "build" and any("BUILD_TESTING" in c.text or "ENABLE_TESTING" in c.text for c in target.conditions):
+                if role == "build" and any(
+                    "BUILD_TESTING" in c.text or "ENABLE_TESTING" in c.text for c in target.conditions
+                ):
                     role = "test"
                 walk(source, role, False, (target.name,), target.conditions)
         for header in self.installed_headers():
@@ -326,9 +348,7 @@ class _Join:
                 single.update(rule.items)
         found = []
         for path in self.cpp:
-            if is_header(path) and (
-                path in single or any(path.startswith(f + "/") if f else True for f in folders)
-            ):
+            if is_header(path) and (path in single or any(path.startswith(f + "/") if f else True for f in folders)):
                 found.append(path)
         return found
 
@@ -425,15 +445,29 @@ class _Join:
                 head = item.module.split(".")[0]
                 if item.level or not head or head == self.name or head in modules:
                     continue
-                imports.append(ImportUse(item.module, item.names, At(path, item.line, item.column), role, item.conditions, item.lazy))
+                imports.append(
+                    ImportUse(
+                        item.module, item.names, At(path, item.line, item.column), role, item.conditions, item.lazy
+                    )
+                )
             for attribute in facts.attributes:
                 if attribute.text in self.watched.python:
-                    names.append(NameUse(attribute.text, At(path, attribute.line, attribute.column), role, False, "python",
-                                         attribute.conditions))  # fmt: skip
+                    names.append(
+                        NameUse(
+                            attribute.text,
+                            At(path, attribute.line, attribute.column),
+                            role,
+                            False,
+                            "python",
+                            attribute.conditions,
+                        )
+                    )
             for item in facts.imports:
                 for text in (item.module, *(f"{item.module}.{n}" for n in item.names)):
                     if text in self.watched.python:
-                        names.append(NameUse(text, At(path, item.line, item.column), role, False, "python", item.conditions))
+                        names.append(
+                            NameUse(text, At(path, item.line, item.column), role, False, "python", item.conditions)
+                        )
             syntax.extend(SyntaxUse(2, p.message, At(path, p.line), role) for p in facts.python2_only)
             if facts.needs is not None:
                 syntax.append(SyntaxUse(facts.needs[0], facts.needs[2], At(path, facts.needs[1]), role))

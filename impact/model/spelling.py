@@ -52,7 +52,10 @@ class Names:
         if len(name) < 5:
             return None
         near = [
-            n for size in (-1, 0, 1) for n in self._by_length.get((len(name) + size, name[:1].lower()), ()) if one_edit(name, n)
+            n
+            for size in (-1, 0, 1)
+            for n in self._by_length.get((len(name) + size, name[:1].lower()), ())
+            if one_edit(name, n)
         ]
         return near[0] if len(near) == 1 else None
 

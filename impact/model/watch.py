@@ -34,7 +34,9 @@ def watched() -> Watched:
                 (qualified if "::" in row.new else words).add(row.new)
     for include in transitive_includes():
         headers[include.name] = tuple(include.headers)
-    version = hashlib.sha1(repr((sorted(words), sorted(qualified), sorted(python), sorted(headers.items()))).encode()).hexdigest()
+    version = hashlib.sha1(
+        repr((sorted(words), sorted(qualified), sorted(python), sorted(headers.items()))).encode()
+    ).hexdigest()
     return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, version)
 
 

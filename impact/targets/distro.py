@@ -178,7 +178,7 @@ class DistroTarget(Target):
         platform: str | None = None,
         versions: Mapping[str, str] | None = None,
         name: str | None = None,
-    ) -> "DistroTarget":
+    ) -> DistroTarget:
         """This target with another date, platform or name, and further versions on top of its own."""
         distro, old_date, old_platform, old_versions, old_name = self._asked
         return DistroTarget(
@@ -632,7 +632,10 @@ def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
     """
     if "(" not in condition:
         # `and` binds closer than `or`.
-        terms = [[_compared(term, variables) for term in re.split(r"\band\b", part)] for part in re.split(r"\bor\b", condition)]
+        terms = [
+            [_compared(term, variables) for term in re.split(r"\band\b", part)]
+            for part in re.split(r"\bor\b", condition)
+        ]
         if not any(term is None for part in terms for term in part):
             return any(all(part) for part in terms)
     from catkin_pkg.condition import evaluate_condition
@@ -646,7 +649,9 @@ def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
 def _data_stamp() -> tuple[tuple[str, int, int], ...]:
     """Sizes and times of the shipped data files."""
     return tuple(
-        (path.name, path.stat().st_size, path.stat().st_mtime_ns) for path in sorted(snapshots.DATA.iterdir()) if path.is_file()
+        (path.name, path.stat().st_size, path.stat().st_mtime_ns)
+        for path in sorted(snapshots.DATA.iterdir())
+        if path.is_file()
     )
 
 

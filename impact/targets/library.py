@@ -8,11 +8,12 @@ from .target import Target
 from .version import at_least, parts
 
 # Boost libraries that are linked against. Source: Boost's "Getting Started", section "Header-Only Libraries".
-BOOST_COMPILED = frozenset(
-    "atomic chrono container context contract coroutine date_time exception fiber filesystem graph iostreams json locale log "
-    "math mpi nowide program_options python random regex serialization signals stacktrace system test thread timer "
-    "type_erasure unit_test_framework url wave".split()
-)
+BOOST_COMPILED = frozenset({
+    "atomic", "chrono", "container", "context", "contract", "coroutine", "date_time", "exception", "fiber",
+    "filesystem", "graph", "iostreams", "json", "locale", "log", "math", "mpi", "nowide", "program_options",
+    "python", "random", "regex", "serialization", "signals", "stacktrace", "system", "test", "thread", "timer",
+    "type_erasure", "unit_test_framework", "url", "wave",
+})  # fmt: skip
 
 
 class Gone(NamedTuple):
@@ -84,9 +85,24 @@ class Answer(NamedTuple):
 
 
 # CMake package name to the library's name in platform_versions.yaml. Others are looked up in lower case.
-_LIBRARY_OF = {"OpenCV": "opencv", "Boost": "boost", "Eigen3": "eigen3", "PCL": "pcl", "Qt5": "qt5", "Qt6": "qt6", "Ceres": "ceres",
-               "yaml-cpp": "yaml-cpp", "VTK": "vtk", "Protobuf": "protobuf", "fmt": "fmt", "Bullet": "bullet", "assimp": "assimp",
-               "spdlog": "spdlog", "nlohmann_json": "nlohmann-json", "CMake": "cmake"}  # fmt: skip
+_LIBRARY_OF = {
+    "OpenCV": "opencv",
+    "Boost": "boost",
+    "Eigen3": "eigen3",
+    "PCL": "pcl",
+    "Qt5": "qt5",
+    "Qt6": "qt6",
+    "Ceres": "ceres",
+    "yaml-cpp": "yaml-cpp",
+    "VTK": "vtk",
+    "Protobuf": "protobuf",
+    "fmt": "fmt",
+    "Bullet": "bullet",
+    "assimp": "assimp",
+    "spdlog": "spdlog",
+    "nlohmann_json": "nlohmann-json",
+    "CMake": "cmake",
+}
 # Packages whose version file accepts only the same major version (SameMajorVersion). Others accept anything newer.
 # Sources: OpenCVConfig-version.cmake.in, Eigen3ConfigVersion.cmake, PCLConfigVersion.cmake (newer or equal), BoostConfig.
 _SAME_MAJOR = frozenset({"OpenCV", "Eigen3", "Qt5", "Qt6", "VTK", "Protobuf"})
@@ -108,7 +124,11 @@ def satisfies(target: Target, package: str, request: str, exact: bool) -> Answer
     holds = at_least(version, low)
     if holds and high:
         bound = high.lstrip("<")
-        holds = not at_least(version, bound) if high.startswith("<") else not at_least(version, bound) or parts(version)[: len(parts(bound))] == parts(bound)
+        holds = (
+            not at_least(version, bound)
+            if high.startswith("<")
+            else not at_least(version, bound) or parts(version)[: len(parts(bound))] == parts(bound)
+        )
     elif holds and package in _SAME_MAJOR:
         holds = parts(version)[:1] == parts(low)[:1]
     return Answer(holds, version)
@@ -176,7 +196,8 @@ def _set_by(stem: str, *endings: str) -> frozenset[str]:
 # Variables that find_package(X) sets, where their spelling is not X's own. Sources: the packages' configuration files and
 # CMake's find modules.
 _VARIABLES = {
-    "Eigen3": _set_by("EIGEN3", "INCLUDE_DIR", "INCLUDE_DIRS", "DEFINITIONS") | {"Eigen3_FOUND", "Eigen3_VERSION", "Eigen3_DIR"},
+    "Eigen3": _set_by("EIGEN3", "INCLUDE_DIR", "INCLUDE_DIRS", "DEFINITIONS")
+    | {"Eigen3_FOUND", "Eigen3_VERSION", "Eigen3_DIR"},
     "Eigen": _set_by("Eigen", "INCLUDE_DIRS") | _set_by("EIGEN", "INCLUDE_DIRS") | {"Eigen_FOUND"},
     "Boost": _set_by("Boost", "INCLUDE_DIRS", "INCLUDE_DIR", "LIBRARIES", "LIBRARY_DIRS", "LIBRARY_DIR", "LIB_VERSION"),
     "OpenCV": _set_by("OpenCV", "INCLUDE_DIRS", "LIBS", "LIBRARIES", "LIB_COMPONENTS", "INCLUDE_DIR"),
@@ -184,11 +205,12 @@ _VARIABLES = {
     "octomap": _set_by("OCTOMAP", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS") | {"octomap_FOUND", "octomap_VERSION"},
     "yaml-cpp": _set_by("YAML_CPP", "INCLUDE_DIR", "INCLUDE_DIRS", "LIBRARIES"),
     "Bullet": _set_by("BULLET", "INCLUDE_DIRS", "INCLUDE_DIR", "LIBRARIES", "LIBRARY_DIRS"),
-    "assimp": _set_by("ASSIMP", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS") | _set_by("assimp", "INCLUDE_DIRS", "LIBRARIES"),
+    "assimp": _set_by("ASSIMP", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS")
+    | _set_by("assimp", "INCLUDE_DIRS", "LIBRARIES"),
     "fcl": _set_by("FCL", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS"),
     "Ceres": _set_by("CERES", "INCLUDE_DIRS", "LIBRARIES") | _set_by("Ceres", "INCLUDE_DIRS", "LIBRARIES"),
     "gazebo": _set_by("GAZEBO", "INCLUDE_DIRS", "LIBRARIES", "LIBRARY_DIRS", "CXX_FLAGS"),
-}  # fmt: skip
+}
 
 
 def variables(package: str) -> frozenset[str] | None:
@@ -198,15 +220,41 @@ def variables(package: str) -> frozenset[str] | None:
 
 # First part of the include paths of a platform library, by its name in platform_versions.yaml.
 _ROOTS = {
-    "opencv": ("opencv2/", "opencv/", "cv.h", "highgui.h", "cv_bridge/"), "boost": ("boost/",), "pcl": ("pcl/", "pcl_"),
-    "ffmpeg-libavcodec": ("libav", "libsws"), "ffmpeg": ("libav", "libsws"), "yaml-cpp": ("yaml-cpp/",), "eigen3": ("Eigen/", "eigen3/", "unsupported/Eigen"),
-    "gazebo": ("gazebo/",), "gazebo-classic": ("gazebo/",), "qt5": ("Q",), "qt6": ("Q",), "qt4": ("Q",), "assimp": ("assimp/",), "fcl": ("fcl/",),
-    "fmt": ("fmt/",), "tinyxml": ("tinyxml",), "tinyxml2": ("tinyxml2",), "ogre": ("Ogre", "OGRE/"), "octomap": ("octomap/",),
-    "protobuf": ("google/protobuf/",), "vtk": ("vtk",), "python3": ("Python.h",), "numpy": ("numpy/",), "bullet": ("bullet/", "btBullet", "LinearMath/"),
-    "console-bridge": ("console_bridge/",), "urdfdom-headers": ("urdf_model", "urdf_"), "ompl": ("ompl/",), "tbb": ("tbb/",),
-    "jsoncpp": ("json/", "jsoncpp/"), "orocos-kdl": ("kdl/",), "geographiclib": ("GeographicLib/",), "glog": ("glog/",),
-    "ceres": ("ceres/",), "spdlog": ("spdlog/",),
-}  # fmt: skip
+    "opencv": ("opencv2/", "opencv/", "cv.h", "highgui.h", "cv_bridge/"),
+    "boost": ("boost/",),
+    "pcl": ("pcl/", "pcl_"),
+    "ffmpeg-libavcodec": ("libav", "libsws"),
+    "ffmpeg": ("libav", "libsws"),
+    "yaml-cpp": ("yaml-cpp/",),
+    "eigen3": ("Eigen/", "eigen3/", "unsupported/Eigen"),
+    "gazebo": ("gazebo/",),
+    "gazebo-classic": ("gazebo/",),
+    "qt5": ("Q",),
+    "qt6": ("Q",),
+    "qt4": ("Q",),
+    "assimp": ("assimp/",),
+    "fcl": ("fcl/",),
+    "fmt": ("fmt/",),
+    "tinyxml": ("tinyxml",),
+    "tinyxml2": ("tinyxml2",),
+    "ogre": ("Ogre", "OGRE/"),
+    "octomap": ("octomap/",),
+    "protobuf": ("google/protobuf/",),
+    "vtk": ("vtk",),
+    "python3": ("Python.h",),
+    "numpy": ("numpy/",),
+    "bullet": ("bullet/", "btBullet", "LinearMath/"),
+    "console-bridge": ("console_bridge/",),
+    "urdfdom-headers": ("urdf_model", "urdf_"),
+    "ompl": ("ompl/",),
+    "tbb": ("tbb/",),
+    "jsoncpp": ("json/", "jsoncpp/"),
+    "orocos-kdl": ("kdl/",),
+    "geographiclib": ("GeographicLib/",),
+    "glog": ("glog/",),
+    "ceres": ("ceres/",),
+    "spdlog": ("spdlog/",),
+}
 
 
 def include_roots(name: str) -> tuple[str, ...]:

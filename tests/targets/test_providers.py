@@ -249,7 +249,8 @@ def test_tag_of_a_version(version, name, tag):
 
 
 @pytest.mark.parametrize(
-    "url", ["https://github.com/Ros/geometry2.git", "git@github.com:ros/geometry2.git", "https://github.com/ros/geometry2/"]
+    "url",
+    ["https://github.com/Ros/geometry2.git", "git@github.com:ros/geometry2.git", "https://github.com/ros/geometry2/"],
 )
 def test_plain_url(url):
     assert plain_url(url) == "ros/geometry2"
