@@ -65,6 +65,9 @@ def _answers(view: View, name: str) -> list[Answer]:
         for c in view.target.changes()
         if name in (c.old, c.new, c.package) or name == c.old.rsplit("::", 1)[-1]
     )
+    lost = view.lost_header(name)
+    if lost is not None:
+        changes = (f"gone: {lost.message}" + (f"; {lost.help}" if lost.help else ""), *changes)
     if not found:
         found = [("name", ())]
     return [Answer(view.target.name, what, offers, used, undeclared, changes[:8]) for what, offers in found]
@@ -141,9 +144,17 @@ def as_text(name: str, found: list[Answer]) -> str:
     undeclared = sorted({package for answer in found for package in answer.undeclared})
     if undeclared:
         lines.append("not safe: used and not declared in " + ", ".join(undeclared))
-    elif used:
+    gone = sorted({a.target for a in found if any(_is_gone(change, name) for change in a.changes)})
+    if gone and used:
+        lines.append(f"not safe: `{name}` is gone on " + ", ".join(gone))
+    elif used and not undeclared:
         lines.append("safe: every package that uses it declares it, or something that brings it")
     return "\n".join(lines)
+
+
+def _is_gone(change: str, name: str) -> bool:
+    """True for a change that takes the very name away from a target."""
+    return change.startswith("gone: ") or f"`{name}`" in change.partition(" → ")[0] and "(removed" in change
 
 
 def _offer_line(offer: Offer) -> str:

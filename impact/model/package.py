@@ -30,7 +30,7 @@ _ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample
 
 
 class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """An include that no file of the package answers. role: build, test or aside; public: stands in an installed header.
+    """An include that no file of the package answers. role: build, test or aside; public: in an installed header.
     targets: CMake targets that compile it."""
 
     path: str
@@ -509,7 +509,7 @@ def is_header(path: str) -> bool:
 
 
 def place_of_word(data: bytes, word: str) -> tuple[int, int, tuple[Condition, ...]]:
-    """Line, column and preprocessor conditions of the first use of a bare word, (1, 0, ()) when it is only in comments."""
+    """Line, column and preprocessor conditions of the first use of a bare word; (1, 0, ()): only in comments."""
     from ..facts.cpp import places_of
 
     return next(iter(places_of(data, word)), (1, 0, ()))

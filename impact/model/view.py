@@ -313,6 +313,23 @@ class View:
             if c.state == "removed" and c.library and (c.kind, c.package, c.old) not in here
         }  # fmt: skip
 
+    def later_active(self, conditions: Iterable[Condition]) -> bool:
+        """False when a statement under these conditions surely does not count on the newest distro."""
+        conditions = tuple(conditions)
+        return not conditions or all_hold(conditions, self._later_environment) is not False
+
+    @cached_property
+    def _later_environment(self) -> Environment:
+        newest = self.target.newest() or self.target
+
+        def version(name: str) -> str | None:
+            return newest.version(name) or newest.library(name.lower())
+
+        return Environment(
+            ros_distro=newest.distro, ros_version=str(newest.ros), python=(3, newest.python) if newest.python else None,
+            codename=newest.platform.split(" ")[-1], versions=version, testing=True,
+        )  # fmt: skip
+
     @property
     def horizon(self) -> str:
         """Name of the newest distro of this generation."""
@@ -499,6 +516,8 @@ class View:
             found = [Provider("ros", o) for o in owners]
             if not found and stdlib(module, self.target.python or 99, self.target.python_major):
                 found = [Provider("system", "")]
+            if not found and ever_stdlib(module):
+                found = [Provider("system", "")]  # gone from Python, which python-version says; nobody else's module
             if not found:
                 found = list(self.providers.module(module))
                 if not any(p.name == head for p in found) and self._is_package(head):

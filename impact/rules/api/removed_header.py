@@ -57,7 +57,7 @@ def removed_header(view: View):
                           f"include `{change.old}`, or choose with __has_include", package.name, severity=severity)  # fmt: skip
                 continue
             change = view.later.get(path)
-            if change is not None and change.kind.startswith("header"):
+            if change is not None and change.kind.startswith("header") and view.later_active(include.conditions):
                 yield Hit(include.at, path, f"`{path}` is there, and gone in {change.package} {change.version} of {view.horizon}",
                           f"include `{change.new}`" if change.new else "", package.name,
                           severity="warning" if severity == "error" and change.package not in coming else "note",

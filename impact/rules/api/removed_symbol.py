@@ -83,6 +83,8 @@ def removed_symbol(view: View):
                     continue
             guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
             sure = use.role in ("build", "run") and not guarded and change.kind != "api-changed"
+            if later is not None and not view.later_active(use.conditions):
+                continue
             if later is not None:
                 # Enough to see what is coming: the first place for each library loudly, the rest as notes.
                 names = warned.setdefault(later.package, set())

@@ -36,8 +36,10 @@ def misspelt_cmake_name(view: View):
     for package in view:
         declared = view.declared(package)
         found = {f.name for f in package.build.found}
-        near = Names(set(declared) | found | set(view.workspace.packages))
+        near = Names(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
         for at, name, required, conditions, exact in _named(package):
+            if package.name in view.workspace.find_modules.get(name, ()):
+                continue
             if not view.active(conditions) or view.cmake(name) or name in declared or name in found and not required:
                 continue
             halves = _run_together(name, near.names)
@@ -95,9 +97,9 @@ def _variables(view: View, package, found):
             continue  # it sets the variables in both spellings
         if sets is None or use.name in sets:
             continue
-        right = next((v for v in sets if v.endswith(suffix)), None)
+        right = next((v for v in sorted(sets) if v.endswith(suffix)), None)
         if right is None:
-            right = next((v for v in sets if v.lower() == use.name.lower() or v.lower() == use.name.lower() + "s"), None)
+            right = next((v for v in sorted(sets) if v.lower() == use.name.lower() or v.lower() == use.name.lower() + "s"), None)
         if right is not None:
             told.add(use.name)
             if any(use.name == f"{f.prefix}{suffix}" for f in package.build.found if f.prefix):

@@ -30,11 +30,12 @@ from ..rule import Hit, rule
 @rule(severity="warning")
 def unreleased_package(view: View):
     target = view.target
+    gone = {c.old or c.package for c in view.changes("package-removed", "package-renamed") if c.state == "removed"}
     for package in view:
         seen = set()
         for dependency in package.manifest.dependencies:
             name = dependency.name
-            if name in seen or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
+            if name in seen or name in gone or dependency.kind in ("conflict", "replace", "group", "member_of_group"):
                 continue
             if name in view.workspace.packages or target.version(name) is not None or target.resolve(name) is not None:
                 continue
@@ -59,4 +60,6 @@ def unreleased_package(view: View):
 
 def _when(view: View, name: str) -> str:
     last = view.last_distro(name)
+    if last == view.target.distro:
+        return " on that day"
     return f" (last seen in {last})" if last else ""

@@ -47,6 +47,7 @@ def unresolvable_key(view: View):
             if target.ever_released(name) or view.private(name):
                 continue  # unreleased-package says it
             guess = nearest(name, view.known_names)
+            guess = guess if guess and view.available(guess) else None
             known = target.known_key(name)
             at = view.manifest_place(package, dependency)
             if known:

@@ -44,6 +44,8 @@ def missing_include(view: View):
             known = here.get(need.name) or coming.get(need.name)
             if known is None or need.role == "aside" or not view.active(need.conditions):
                 continue
+            if need.name not in here and not view.later_active(need.conditions):
+                continue
             row, version = known
             header = row.headers[0]
             if (need.at.path, header) in told:
