@@ -1,0 +1,148 @@
+"""Times `rosimpact check` on a workspace beside its anchors, in one run, and prints ratios.
+
+usage: check.py WORKSPACE [--ros1 WORKSPACE] [--target jazzy] [--repeat 3]
+
+Every figure is the best of the repeats, wall time of a whole process on this machine, imports included:
+    cold       no facts are known (an empty cache folder; the distro data is unpacked already)
+    warm       nothing has changed since
+    header     a shared header was changed (the one that most packages of the workspace include)
+    macro      a CMake file that packages give their dependants was changed
+Anchors: reading the C++ and CMake bytes, parsing them with tree-sitter (if tree_sitter and tree_sitter_cpp are installed), and
+catkin_lint on the ROS 1 workspace (if it is installed), which reads CMake and manifests only.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+SOURCES = (".cpp", ".hpp", ".h", ".cc", ".c", ".cxx", ".hh", ".cmake", "CMakeLists.txt")
+
+
+def sources(root: Path) -> list[Path]:
+    return [p for p in sorted(root.rglob("*")) if p.name.endswith(SOURCES) and p.is_file()]
+
+
+def run(command: list[str], environment: dict[str, str]) -> tuple[float, int]:
+    """Wall seconds and peak memory in MB of one process (its children not counted)."""
+    start = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
+    _, status, usage = os.wait4(process.pid, 0)
+    took = time.perf_counter() - start
+    if os.waitstatus_to_exitcode(status) not in (0, 1):
+        raise SystemExit(f"{' '.join(command)} failed with status {os.waitstatus_to_exitcode(status)}")
+    return took, usage.ru_maxrss // 1024
+
+
+def best(repeat: int, before, command: list[str], environment: dict[str, str]) -> tuple[float, int]:
+    figures = []
+    for _ in range(repeat):
+        before()
+        figures.append(run(command, environment))
+    return min(f[0] for f in figures), max(f[1] for f in figures)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("workspace", type=Path)
+    parser.add_argument("--ros1", type=Path)
+    parser.add_argument("--target", default="jazzy")
+    parser.add_argument("--repeat", type=int, default=3)
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as scratch:
+        cache, copy = Path(scratch, "cache"), Path(scratch, "ws")
+        shutil.copytree(args.workspace, copy, symlinks=True)
+        environment = {**os.environ, "ROSIMPACT_CACHE": str(cache)}
+        command = [sys.executable, "-m", "rosimpact.impact.cli", "check", str(copy), "--target", args.target, "--quiet"]
+        files = sources(copy)
+        size = sum(p.stat().st_size for p in files)
+        print(f"{args.workspace}: {len(files)} C++ and CMake files, {size / 1e6:.1f} MB; target {args.target}; {os.cpu_count()} cores; best of {args.repeat}")
+        run(command, environment)
+
+        def forget() -> None:
+            for path in cache.glob("facts.sqlite*"):
+                path.unlink()
+
+        anchors = anchor_figures(files, args.repeat)
+        header = most_included(copy)
+        macro = next((p for p in sorted(copy.rglob("cmake/*.cmake")) if "Find" not in p.name), None)
+
+        def change(path: Path | None, comment: str):
+            def touch() -> None:
+                if path is not None:
+                    with path.open("a") as file:
+                        file.write(f"{comment} {time.time_ns()}\n")
+
+            return touch
+
+        rows = [("cold", *best(args.repeat, forget, command, environment)), ("warm", *best(args.repeat + 2, lambda: None, command, environment))]
+        rows.append(("header", *best(args.repeat, change(header, "//"), command, environment)))
+        if macro is not None:
+            rows.append(("macro", *best(args.repeat, change(macro, "#"), command, environment)))
+        rows.append(("--help", *best(args.repeat, lambda: None, [sys.executable, "-m", "rosimpact.impact.cli", "--help"], environment)))
+        for name, seconds, memory in rows:
+            beside = ", ".join(f"{seconds / anchor:.2f} x {label}" for label, anchor in anchors if name in ("cold", "warm"))
+            print(f"  {name:8s} {seconds:6.2f} s  {memory:4d} MB  {beside}")
+        for label, anchor in anchors:
+            print(f"  {label}: {anchor:.2f} s")
+        if args.ros1:
+            lint(args, environment)
+
+
+def anchor_figures(files: list[Path], repeat: int) -> list[tuple[str, float]]:
+    """(label, seconds) of what cannot be done without: reading the bytes, and a plain parse of them."""
+    figures = [("reading", min(timed(lambda: [p.read_bytes() for p in files]) for _ in range(repeat)))]
+    try:
+        import tree_sitter_cpp
+        from tree_sitter import Language, Parser
+    except ImportError:
+        return figures
+    parser = Parser(Language(tree_sitter_cpp.language()))
+    cpp = [p for p in files if not p.name.endswith((".cmake", ".txt"))]
+    figures.append(("tree-sitter parse", min(timed(lambda: [parser.parse(p.read_bytes()) for p in cpp]) for _ in range(repeat))))
+    return figures
+
+
+def timed(work) -> float:
+    start = time.perf_counter()
+    work()
+    return time.perf_counter() - start
+
+
+def most_included(root: Path) -> Path | None:
+    """The header below include/ whose name most files of the workspace include."""
+    counts: dict[str, int] = {}
+    for path in sources(root):
+        for line in path.read_bytes().split(b"\n"):
+            if line.startswith(b"#include"):
+                name = line.rpartition(b"/")[2].strip(b'">\r ').decode("utf-8", "replace")
+                counts[name] = counts.get(name, 0) + 1
+    headers = {p.name: p for p in root.rglob("include/**/*.h*")}
+    known = [name for name in counts if name in headers]
+    return headers[max(known, key=lambda name: counts[name])] if known else None
+
+
+def lint(args, environment: dict[str, str]) -> None:
+    """The ROS 1 workspace, by rosimpact and by catkin_lint."""
+    command = [sys.executable, "-m", "rosimpact.impact.cli", "check", str(args.ros1), "--target", "noetic", "--quiet"]
+    run(command, environment)
+    ours, _ = best(args.repeat, lambda: None, command, environment)
+    print(f"{args.ros1}: rosimpact, warm {ours:.2f} s")
+    tool = shutil.which("catkin_lint", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]))
+    if tool is None:
+        print("  catkin_lint is not installed: pip install catkin_lint")
+        return
+    theirs, _ = best(args.repeat, lambda: None, [tool, "--offline", "-W2", str(args.ros1)], {**environment, "ROS_DISTRO": "noetic"})
+    print(f"  catkin_lint {theirs:.2f} s; {ours / theirs:.2f} x catkin_lint")
+
+
+if __name__ == "__main__":
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    main()
