@@ -3,7 +3,8 @@
 The same judgement as the benchmark's own score.py, which is given as a file; only the trees are read from the
 repositories, so that a whole run takes minutes.
 
-usage: breaks.py --score score.py --repos DIR [--breaks FILE] [--negatives FILE [--known BREAKS]] [--only TEXT] [--out FILE] [--jobs N]
+usage: breaks.py --score score.py --repos DIR [--breaks FILE] [--negatives FILE [--known BREAKS]] [--only TEXT]
+                 [--out FILE] [--jobs N]
 """
 
 from __future__ import annotations
@@ -92,10 +93,11 @@ def main() -> None:
     start(args.score, args.repos, args.breaks or args.known)
     load = _STATE["score"].load
     keep = lambda rows: [r for r in rows if not args.only or args.only in json.dumps(r)]  # noqa: E731
-    out = open(args.out, "w") if args.out else None
-    with ProcessPoolExecutor(
-        args.jobs, initializer=start, initargs=(args.score, args.repos, args.breaks or args.known)
-    ) as pool:
+    setting = (args.score, args.repos, args.breaks or args.known)
+    with (
+        open(args.out or os.devnull, "w") as out,
+        ProcessPoolExecutor(args.jobs, initializer=start, initargs=setting) as pool,
+    ):
         if args.breaks:
             rows = [
                 r for r in pool.map(one_break, keep(load(args.breaks, args.sample))) if r["result"] != "no repository"
@@ -114,8 +116,7 @@ def main() -> None:
                 families[r["family"]][r["result"]] += 1
             for family, counts in sorted(families.items()):
                 print(f"  {family:28s} {counts['found']:3d}/{sum(counts.values()):3d}  {dict(counts)}")
-            if out:
-                out.writelines(json.dumps(r) + "\n" for r in rows)
+            out.writelines(json.dumps(r) + "\n" for r in rows)
         if args.negatives:
             rows = [
                 r
@@ -125,15 +126,14 @@ def main() -> None:
             packages = sum(r["packages"] for r in rows)
             alarmed = sum(r["alarmed"] for r in rows)
             print(
-                f"false alarms: {sum(len(r['alarms']) for r in rows)} errors in {alarmed} of {packages} released packages = "
-                f"{alarmed / max(1, packages):.4f}; failed {sum(r['result'] == 'failed' for r in rows)}"
+                f"false alarms: {sum(len(r['alarms']) for r in rows)} errors in {alarmed} of {packages} "
+                f"released packages = {alarmed / max(1, packages):.4f}; failed {sum(r['result'] == 'failed' for r in rows)}"
             )
             print(f"noise: {sum(r['warnings'] for r in rows) / max(1, packages):.3f} warnings per released package")
             for severity in ("error", "warning"):
                 rules = collections.Counter(s[1] for r in rows for s in r.get("said", ()) if s[0] == severity)
                 print(f"  {severity}: " + ", ".join(f"{rule} {n}" for rule, n in rules.most_common()))
-            if out:
-                out.writelines(json.dumps(r) + "\n" for r in rows)
+            out.writelines(json.dumps(r) + "\n" for r in rows)
 
 
 if __name__ == "__main__":

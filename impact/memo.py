@@ -70,7 +70,7 @@ def key(view: View, rules: Iterable[str]) -> bytes:
 
 
 def recall(store: Store, view: View, rules: Sequence[str]) -> list[tuple[str, Hit]] | None:
-    """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved names."""
+    """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
     data = store.memo("judgement", key(view, rules))
     if data is None:
         return None

@@ -104,7 +104,8 @@ _LIBRARY_OF = {
     "CMake": "cmake",
 }
 # Packages whose version file accepts only the same major version (SameMajorVersion). Others accept anything newer.
-# Sources: OpenCVConfig-version.cmake.in, Eigen3ConfigVersion.cmake, PCLConfigVersion.cmake (newer or equal), BoostConfig.
+# Sources: OpenCVConfig-version.cmake.in, Eigen3ConfigVersion.cmake, PCLConfigVersion.cmake (newer or equal),
+# BoostConfig.
 _SAME_MAJOR = frozenset({"OpenCV", "Eigen3", "Qt5", "Qt6", "VTK", "Protobuf"})
 
 
@@ -135,7 +136,7 @@ def satisfies(target: Target, package: str, request: str, exact: bool) -> Answer
 
 
 class NeededStandard(NamedTuple):
-    """A C++ standard that a header needs: 11, 14, 17 ...; of which package, in which version; sure when all users do."""
+    """A C++ standard that a header needs: 11, 14, 17 ...; of which package, which version; sure when all users do."""
 
     standard: int
     package: str
@@ -193,8 +194,8 @@ def _set_by(stem: str, *endings: str) -> frozenset[str]:
     return frozenset(f"{stem}_{ending}" for ending in (*endings, "FOUND", "VERSION"))
 
 
-# Variables that find_package(X) sets, where their spelling is not X's own. Sources: the packages' configuration files and
-# CMake's find modules.
+# Variables that find_package(X) sets, where their spelling is not X's own. Sources: the packages' configuration files
+# and CMake's find modules.
 _VARIABLES = {
     "Eigen3": _set_by("EIGEN3", "INCLUDE_DIR", "INCLUDE_DIRS", "DEFINITIONS")
     | {"Eigen3_FOUND", "Eigen3_VERSION", "Eigen3_DIR"},

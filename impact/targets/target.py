@@ -8,7 +8,8 @@ from typing import NamedTuple
 class Provider(NamedTuple):
     """Who offers a header, CMake package, Python module or executable.
 
-    kind: `ros` (a released package; `name` is the package) or `system` (`name` is a rosdep key, `package` the Debian one).
+    kind: `ros` (a released package; `name` is the package) or `system` (`name` is a rosdep key, `package` the Debian
+    one).
     sure: False when it was told by convention (first path part) rather than by a file list.
     """
 
@@ -19,7 +20,7 @@ class Provider(NamedTuple):
 
 
 class Resolution(NamedTuple):
-    """A rosdep key on a platform: the manager (apt, pip, ...) and what it installs (empty tuple: nothing needed there)."""
+    """A rosdep key on a platform: the manager (apt, pip, ...) and what it installs (empty tuple: nothing needed)."""
 
     manager: str
     packages: tuple[str, ...]
@@ -57,10 +58,10 @@ class Change(NamedTuple):
 class Target:
     """One machine, real or described. Interface only; see distro.py, capture.py for how one is made.
 
-    Attributes: name, distro (`humble`), ros (1 or 2), date (ISO day), platform (`ubuntu jammy`), python (minor version),
-    python_major (2 or 3), data_date (newest day of the data), notes (what was adjusted, such as a date moved to the
-    first release), approximate (True before the first sync tag), knows_manifests (released manifests of this distro at
-    this date are known).
+    Attributes: name, distro (`humble`), ros (1 or 2), date (ISO day), platform (`ubuntu jammy`), python (minor
+    version), python_major (2 or 3), data_date (newest day of the data), notes (what was adjusted, such as a date moved
+    to the first release), approximate (True before the first sync tag), knows_manifests (released manifests of this
+    distro at this date are known).
     """
 
     name: str
@@ -104,7 +105,7 @@ class Target:
         raise NotImplementedError
 
     def library(self, name: str) -> str | None:
-        """Version of a platform library by the name of platform_versions.yaml (opencv, boost, cmake, gcc, python3 ...)."""
+        """Version of a platform library by the name of platform_versions.yaml (opencv, boost, gcc, python3 ...)."""
         raise NotImplementedError
 
     def released_names(self) -> frozenset[str]:
