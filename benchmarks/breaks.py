@@ -127,7 +127,8 @@ def main() -> None:
             alarmed = sum(r["alarmed"] for r in rows)
             print(
                 f"false alarms: {sum(len(r['alarms']) for r in rows)} errors in {alarmed} of {packages} "
-                f"released packages = {alarmed / max(1, packages):.4f}; failed {sum(r['result'] == 'failed' for r in rows)}"
+                f"released packages = {alarmed / max(1, packages):.4f}; "
+                f"failed {sum(r['result'] == 'failed' for r in rows)}"
             )
             print(f"noise: {sum(r['warnings'] for r in rows) / max(1, packages):.3f} warnings per released package")
             for severity in ("error", "warning"):

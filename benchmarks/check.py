@@ -7,8 +7,8 @@ Every figure is the best of the repeats, wall time of a whole process on this ma
     warm       nothing has changed since
     header     a shared header was changed (the one that most packages of the workspace include)
     macro      a CMake file that packages give their dependants was changed
-Anchors: reading the C++ and CMake bytes, parsing them with tree-sitter (if tree_sitter and tree_sitter_cpp are installed), and
-catkin_lint on the ROS 1 workspace (if it is installed), which reads CMake and manifests only.
+Anchors: reading the C++ and CMake bytes, parsing them with tree-sitter (if tree_sitter and tree_sitter_cpp are installed),
+and catkin_lint on the ROS 1 workspace (if it is installed), which reads CMake and manifests only.
 """
 
 from __future__ import annotations
@@ -63,7 +63,10 @@ def main() -> None:
         command = [sys.executable, "-m", "rosimpact.impact.cli", "check", str(copy), "--target", args.target, "--quiet"]
         files = sources(copy)
         size = sum(p.stat().st_size for p in files)
-        print(f"{args.workspace}: {len(files)} C++ and CMake files, {size / 1e6:.1f} MB; target {args.target}; {os.cpu_count()} cores; best of {args.repeat}")
+        print(
+            f"{args.workspace}: {len(files)} C++ and CMake files, {size / 1e6:.1f} MB; target {args.target}; "
+            f"{os.cpu_count()} cores; best of {args.repeat}"
+        )
         run(command, environment)
 
         def forget() -> None:
@@ -82,13 +85,23 @@ def main() -> None:
 
             return touch
 
-        rows = [("cold", *best(args.repeat, forget, command, environment)), ("warm", *best(args.repeat + 2, lambda: None, command, environment))]
+        rows = [
+            ("cold", *best(args.repeat, forget, command, environment)),
+            ("warm", *best(args.repeat + 2, lambda: None, command, environment)),
+        ]
         rows.append(("header", *best(args.repeat, change(header, "//"), command, environment)))
         if macro is not None:
             rows.append(("macro", *best(args.repeat, change(macro, "#"), command, environment)))
-        rows.append(("--help", *best(args.repeat, lambda: None, [sys.executable, "-m", "rosimpact.impact.cli", "--help"], environment)))
+        rows.append(
+            (
+                "--help",
+                *best(args.repeat, lambda: None, [sys.executable, "-m", "rosimpact.impact.cli", "--help"], environment),
+            )
+        )
         for name, seconds, memory in rows:
-            beside = ", ".join(f"{seconds / anchor:.2f} x {label}" for label, anchor in anchors if name in ("cold", "warm"))
+            beside = ", ".join(
+                f"{seconds / anchor:.2f} x {label}" for label, anchor in anchors if name in ("cold", "warm")
+            )
             print(f"  {name:8s} {seconds:6.2f} s  {memory:4d} MB  {beside}")
         for label, anchor in anchors:
             print(f"  {label}: {anchor:.2f} s")
@@ -106,7 +119,9 @@ def anchor_figures(files: list[Path], repeat: int) -> list[tuple[str, float]]:
         return figures
     parser = Parser(Language(tree_sitter_cpp.language()))
     cpp = [p for p in files if not p.name.endswith((".cmake", ".txt"))]
-    figures.append(("tree-sitter parse", min(timed(lambda: [parser.parse(p.read_bytes()) for p in cpp]) for _ in range(repeat))))
+    figures.append(
+        ("tree-sitter parse", min(timed(lambda: [parser.parse(p.read_bytes()) for p in cpp]) for _ in range(repeat)))
+    )
     return figures
 
 
@@ -135,11 +150,15 @@ def lint(args, environment: dict[str, str]) -> None:
     run(command, environment)
     ours, _ = best(args.repeat, lambda: None, command, environment)
     print(f"{args.ros1}: rosimpact, warm {ours:.2f} s")
-    tool = shutil.which("catkin_lint", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]))
+    tool = shutil.which(
+        "catkin_lint", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    )
     if tool is None:
         print("  catkin_lint is not installed: pip install catkin_lint")
         return
-    theirs, _ = best(args.repeat, lambda: None, [tool, "--offline", "-W2", str(args.ros1)], {**environment, "ROS_DISTRO": "noetic"})
+    theirs, _ = best(
+        args.repeat, lambda: None, [tool, "--offline", "-W2", str(args.ros1)], {**environment, "ROS_DISTRO": "noetic"}
+    )
     print(f"  catkin_lint {theirs:.2f} s; {ours / theirs:.2f} x catkin_lint")
 
 

@@ -1,6 +1,6 @@
 """A workspace as one target sees it: what holds there, what is declared there, who provides what is used.
 
-This is the join that most rules ask: model × target. Nothing here reads files.
+This is the join that most rules ask: model by target. Nothing here reads files.
 """
 
 from __future__ import annotations
@@ -11,31 +11,35 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
+from ..config import Config
 from ..facts.condition import Condition
 from ..targets.changes import transitive_includes
 from ..targets.library import include_roots
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
-from ..config import Config
 from .build import At
 from .conditions import Environment, all_hold
 from .package import role_of_folder
 from .spelling import Names
 from .workspace import Package, Workspace, snake
 
-# Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's Depends).
+# Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's
+# Depends).
 _INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
 # Kinds that are on the machine that builds the package from source.
 _BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test", "doc"})
 # On every machine that builds ROS packages (ros_buildfarm's base image and the dependencies of catkin and ament).
-_ALWAYS = frozenset({"build-essential", "cmake", "pkg-config", "python", "python3", "python-dev", "python3-dev", "git", "g++-static", "libc6-dev"})
+_ALWAYS = frozenset({
+    "build-essential", "cmake", "pkg-config", "python", "python3", "python-dev", "python3-dev", "git", "g++-static",
+    "libc6-dev",
+})  # fmt: skip
 
 
 class Need(NamedTuple):
     """Something a package uses of somebody else.
 
-    how: find_package, component, include, import, launch, plugin or shell. subject: as written. providers: who could give
-    it, best first. role: build, test, run or aside. certain: stands under no condition that is unknown on the target.
+    how: find_package, component, include, import, launch, plugin or shell. subject: as written. providers: who could
+    give it, best first. role: build, test, run or aside. certain: stands under no condition that is unknown on the target.
     required: its absence stops the configuration (find_package) or the program.
     """
 
@@ -65,11 +69,13 @@ _GENERATED = ("rclcpp/node_interfaces/", "rclcpp/logging.hpp")
 _BROAD = frozenset({"mrpt"})
 _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 
+_UNCONFIGURED = Config()
+
 
 class View:
     """One workspace on one target. providers answers for everything outside the workspace."""
 
-    def __init__(self, workspace: Workspace, target: Target, providers, config: Config = Config()):
+    def __init__(self, workspace: Workspace, target: Target, providers, config: Config = _UNCONFIGURED):
         self.workspace, self.target, self.providers, self.config = workspace, target, providers, config
         self._closures: dict[tuple[str, frozenset[str]], dict[str, str]] = {}
         self._needs: dict[str, tuple[Need, ...]] = {}
@@ -103,9 +109,14 @@ class View:
             return target.version(name) or target.library(name.lower())
 
         return Environment(
-            ros_distro=target.distro, ros_version=str(target.ros), python=(2, 7) if target.python_major == 2 else (3, target.python) if target.python else None,
-            codename=target.platform.split(" ")[-1], versions=version, headers=self._has_header, testing=True,
-        )  # fmt: skip
+            ros_distro=target.distro,
+            ros_version=str(target.ros),
+            python=(2, 7) if target.python_major == 2 else (3, target.python) if target.python else None,
+            codename=target.platform.split(" ")[-1],
+            versions=version,
+            headers=self._has_header,
+            testing=True,
+        )
 
     def _has_header(self, path: str) -> bool | None:
         """Whether the compiler finds a header on the target, for __has_include; None when that is not known."""
@@ -199,7 +210,9 @@ class View:
         target = self.target
         if path in self.workspace.broken_headers:
             return Misnamed(f"no package of the workspace has or generates `{path}`", "")
-        if self.providers.system_has(path, target.platform) is False and all(p.kind == "system" for p in self.header(path)):
+        if self.providers.system_has(path, target.platform) is False and all(
+            p.kind == "system" for p in self.header(path)
+        ):
             return Misnamed(f"no package of {target.platform} has `{path}`", "")
         owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
         if not owners or any(p.kind != "ros" for p in self.header(path)):
@@ -219,7 +232,8 @@ class View:
         if any(self.nested_header(owner, path) for owner, _ in lacking) or path.startswith(_GENERATED):
             return None
         if not any(
-            self.providers.has_header(name, header, target.distro, version) for header, _ in self.providers.headers_of(name)
+            self.providers.has_header(name, header, target.distro, version)
+            for header, _ in self.providers.headers_of(name)
         ):
             return None  # a release without any header in its tree gets them while it is built
         spans = self.providers.header_history(name, path)
@@ -239,8 +253,10 @@ class View:
     def nested_header(self, package: str, path: str) -> bool:
         """True when the release has the header in a subfolder that it exports too (xmlrpcpp/XmlRpc.h as XmlRpc.h)."""
         version = self.target.version(package)
-        return "/" not in path and bool(version) and bool(
-            self.providers.has_header(package, f"{package}/{path}", self.target.distro, version)
+        return (
+            "/" not in path
+            and bool(version)
+            and bool(self.providers.has_header(package, f"{package}/{path}", self.target.distro, version))
         )
 
     def _renamed(self, name: str, path: str, version: str) -> str:
@@ -342,7 +358,7 @@ class View:
         if path.endswith(".py") or change.kind.startswith("python"):
             return True
         names = self.closure(package)
-        if head in names or any(head in (p.name, p.package) for p in self.cmake(head)) and head in names:
+        if head in names or (any(head in (p.name, p.package) for p in self.cmake(head)) and head in names):
             return True
         roots = include_roots(head)
         return any(i.path.startswith(roots) for i in package.digest.includes) if roots else head in names
@@ -422,14 +438,14 @@ class View:
         return known
 
     def answered(self, providers: Iterable[Provider], names: dict[str, str] | dict[str, set[str]] | set[str]) -> bool:
-        """True when one of the providers is among the names, as itself, as a key that installs the same package, or as the
-        package that vendors it."""
+        """True when one of the providers is among the names, as itself, as a key that installs the same package, or as
+        the package that vendors it."""
         for provider in providers:
             if not provider.name or provider.name in names:
                 return True
         vendored, installed = self._reach(names)
         for provider in providers:
-            if vendored and _stem(provider.name) in vendored:
+            if vendored and not vendored.isdisjoint(_stems(provider.name)):
                 return True
             if provider.package in installed or not installed.isdisjoint(self.debian(provider.name)):
                 return True
@@ -439,7 +455,9 @@ class View:
         """What a set of names vendors, and the system packages that its keys install."""
         known = self._reached.get(id(names))
         if known is None or known[0] is not names:
-            vendored = frozenset(n.removesuffix("_vendor").removeprefix("rviz_") for n in names if n.endswith("_vendor"))
+            vendored = frozenset(
+                n.removesuffix("_vendor").removeprefix("rviz_") for n in names if n.endswith("_vendor")
+            )
             installed: set[str] = set()
             for name in names:
                 if name not in self.workspace.packages:
@@ -450,16 +468,23 @@ class View:
     # -- who provides --------------------------------------------------------------------------------------------------
 
     def header(self, path: str) -> tuple[Provider, ...]:
-        """Who could answer an include path; empty when nobody is known to, a provider without name when the compiler does."""
+        """Who could answer an include path; empty when nobody is known to, a nameless provider when the compiler does."""
         known = self._headers.get(path)
         if known is None:
             known = self._headers[path] = tuple(self._header(path))
         return known
 
     def _header(self, path: str) -> list[Provider]:
+        if "/" not in path and self.is_standard(path):
+            return [Provider("system", "")]
         own = self.workspace.provides_header(path)
         head = path.split("/", 1)[0]
-        if own and head not in own and path not in self.workspace.rooted_headers and self.target.version(head) is not None:
+        if (
+            own
+            and head not in own
+            and path not in self.workspace.rooted_headers
+            and self.target.version(head) is not None
+        ):
             own = []  # a file of the workspace ends like this by chance
         if own:
             return [Provider("ros", name) for name in own]
@@ -496,13 +521,19 @@ class View:
         return known
 
     def _cmake_elsewhere(self, name: str) -> list[Provider]:
-        found = [p for p in self.providers.cmake(name) if (p.name != name or p.kind != "ros") and p.name not in _BROAD]
+        known = self.providers.cmake(name)
+        if name != name.lower():
+            # `x-config.cmake` answers to any spelling of X.
+            known = known + [p for p in self.providers.cmake(name.lower()) if p not in known]
+        found = [p for p in known if (p.name != name or p.kind != "ros") and p.name not in _BROAD]
         modules = [p for p in found if p.kind == "ros" and p.name in ("cmake_modules", "eigen3_cmake_module")]
         if modules and name in ("Eigen", "TinyXML", "TinyXML2", "NUMPY", "GSL", "UUID", "Xenomai"):
             # The library alone brings no find module of this name; catkin itself did until hydro.
             if self.target.distro in ("groovy", "hydro"):
                 return [Provider("system", "")]
-            return [p for p in found if p.kind == "ros"]
+            return [
+                p for p in found if p.kind == "ros" or p in self.providers.cmake(name.lower()) and name == "TinyXML2"
+            ]
         return found
 
     def module(self, module: str) -> tuple[Provider, ...]:
@@ -539,7 +570,9 @@ class View:
         for found in package.build.found:
             if found.how not in ("find_package", "catkin") or not self.active(found.conditions):
                 continue
-            if found.name in ("catkin", package.name) or package.name in self.workspace.find_modules.get(found.name, ()):
+            if found.name in ("catkin", package.name) or package.name in self.workspace.find_modules.get(
+                found.name, ()
+            ):
                 continue
             providers = self.cmake(found.name)
             if not providers:
@@ -547,9 +580,17 @@ class View:
                 continue
             testing = any("TESTING" in c.text for c in found.conditions)
             certain = self.certain(found.conditions)
-            yield Need("find_package" if found.how == "find_package" else "component", found.name, providers, found.at,
-                       "test" if testing or role_of_folder(found.at.path[len(package.path):].lstrip("/")) == "test" else "build",
-                       certain, found.required or found.how == "catkin")  # fmt: skip
+            yield Need(
+                "find_package" if found.how == "find_package" else "component",
+                found.name,
+                providers,
+                found.at,
+                "test"
+                if testing or role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
+                else "build",
+                certain,
+                found.required or found.how == "catkin",
+            )
         for include in digest.includes:
             if not self.active(include.conditions):
                 continue
@@ -581,21 +622,33 @@ class View:
             if not name or name == package.name or "$" in name or not self._is_package(name):
                 continue
             how = {"plugin": "plugin", "command": "shell"}.get(reference.kind, "launch")
-            yield Need(how, name, (Provider("ros", name),), use.at, use.role, not reference.conditional, not reference.conditional)
+            yield Need(
+                how,
+                name,
+                (Provider("ros", name),),
+                use.at,
+                use.role,
+                not reference.conditional,
+                not reference.conditional,
+            )
 
 
 @lru_cache(maxsize=10000)
-def _stem(name: str) -> str:
-    """`libogre-1.9-dev` gives `ogre`: what `ogre_vendor` is called after."""
-    return re.split(r"[-\d.]", name.removeprefix("lib"))[0].replace("-", "_")
+def _stems(name: str) -> frozenset[str]:
+    """What a package that vendors a key may be called after: `libogre-1.9-dev` gives `ogre`, `libyaml-cpp-dev` also
+    `yaml_cpp`."""
+    plain = name.removeprefix("lib").removesuffix("-dev")
+    return frozenset({re.split(r"[-.]", plain)[0], plain.replace("-", "_")})
 
 
 def interface_of(view: View, include: str) -> str | None:
-    """The package whose interface an include path names by its form (`p/msg/x.hpp`, `p/X.h`), None for other headers."""
+    """The package whose interface an include path names by its form (`p/msg/x.hpp`, `p/X.h`), None for others."""
     head, _, rest = include.partition("/")
     package = view.workspace.packages.get(head)
     if package is not None:
         return head if package.is_interface_package and view.workspace.is_interface_header(head, rest) else None
-    if not head.endswith(("_msgs", "_srvs", "_interfaces", "_actions")) and not rest.startswith(("msg/", "srv/", "action/")):
+    if not head.endswith(("_msgs", "_srvs", "_interfaces", "_actions")) and not rest.startswith(
+        ("msg/", "srv/", "action/")
+    ):
         return None
     return head

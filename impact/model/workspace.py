@@ -22,7 +22,7 @@ from .discovery import Discovered, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
 # Raise with every change of what a digest or the CMake interpreter says.
-DIGEST_VERSION = "9"
+DIGEST_VERSION = "10"
 _VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 
@@ -79,9 +79,14 @@ class Workspace:
     """All packages of a tree, linked. `packages` is by name; `watched` is what digests were asked to look out for."""
 
     def __init__(
-        self, packages: Iterable[Digest], discovered: Discovered, ros: int, gathered: Gathered, read: Callable[[str], bytes],
+        self,
+        packages: Iterable[Digest],
+        discovered: Discovered,
+        ros: int,
+        gathered: Gathered,
+        read: Callable[[str], bytes],
         identity: bytes = b"",
-    ):  # fmt: skip
+    ):
         self.packages: dict[str, Package] = {d.name: Package(d) for d in packages}
         self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
         # Differs whenever anything that the digests were joined from does.
@@ -110,8 +115,8 @@ class Workspace:
 
     @cached_property
     def rooted_headers(self) -> dict[str, list[str]]:
-        """Include paths as they follow an `include` folder, and again after a folder named as the package (the layout of
-        ROS 2), to the packages that have them."""
+        """Include paths as they follow an `include` folder, and again after a folder named as the package (the layout
+        of ROS 2), to the packages that have them."""
         found: dict[str, list[str]] = {}
         for package in self:
             for path in package.digest.headers:
@@ -211,12 +216,18 @@ class Workspace:
             return False
         if rest.endswith("Config.h") and any(g.how == "reconfigure" for g in package.build.generated):
             return True
-        if rest.rsplit("/", 1)[-1] in ("visibility_control.h", "visibility_control.hpp", "version.h", "version.hpp", "export.h"):
+        if rest.rsplit("/", 1)[-1] in (
+            "visibility_control.h",
+            "visibility_control.hpp",
+            "version.h",
+            "version.hpp",
+            "export.h",
+        ):
             return True
         return package.is_interface_package and self.is_interface_header(package.name, rest)
 
     def is_interface_header(self, package: str, rest: str) -> bool:
-        """True when `rest` (an include path after `package/`) is generated from an interface of the workspace's package."""
+        """True when `rest` (an include path after `package/`) is generated from an interface of the package."""
         stems = self._interface_stems.get(package)
         if stems is None:
             stems = self._interface_stems[package] = _stems(self.interface_names.get(package, ()))
@@ -224,7 +235,7 @@ class Workspace:
 
     @cached_property
     def broken_headers(self) -> frozenset[str]:
-        """Include paths that begin with a package of the workspace, and that neither a file nor a generator of it answers.
+        """Include paths that begin with a package of the workspace, and that no file or generator of it answers.
 
         Only of packages whose headers all lie in the tree, or that are generated from interfaces alone."""
         found = set()
@@ -232,7 +243,7 @@ class Workspace:
             for include in package.digest.includes:
                 head, _, rest = include.path.partition("/")
                 owner = self.packages.get(head)
-                if owner is None or not rest or "_export." in rest or include.path in self._provided and self._provided[include.path]:
+                if owner is None or not rest or "_export." in rest or self._provided.get(include.path):
                     continue
                 if owner.manifest.metapackage or not self._closed(owner) or self.provides_header(include.path):
                     continue
@@ -241,9 +252,14 @@ class Workspace:
 
     def _closed(self, package: Package) -> bool:
         """True when nothing in a package makes headers but its interfaces and dynamic_reconfigure."""
-        if any(g.how not in ("rosidl", "catkin", "reconfigure") for g in package.build.generated) or package.build.unresolved:
+        if (
+            any(g.how not in ("rosidl", "catkin", "reconfigure") for g in package.build.generated)
+            or package.build.unresolved
+        ):
             return False
-        if any(path.endswith((".in", ".em", ".proto", ".ui", ".fbs", ".idl", ".xtext")) for path in package.digest.files):
+        if any(
+            path.endswith((".in", ".em", ".proto", ".ui", ".fbs", ".idl", ".xtext")) for path in package.digest.files
+        ):
             return False
         if any(t.kind in ("custom", "external", "fetched", "unknown") for t in package.build.targets):
             return False
@@ -262,8 +278,8 @@ class Workspace:
 
 
 def importable(package: Package) -> set[str]:
-    """Top-level Python modules that others can import once the package is installed: `name/__init__.py` and `name.py` in
-    the package's folder or its src/, and what setup.py lists."""
+    """Top-level Python modules that others can import once the package is installed: `name/__init__.py` and `name.py`
+    in the package's folder or its src/, and what setup.py lists."""
     found = set()
     for path in package.digest.files:
         if not path.endswith(".py"):
@@ -278,7 +294,9 @@ def importable(package: Package) -> set[str]:
     return found
 
 
-_ROS1_SUFFIXES = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback", "Request", "Response", "")
+_ROS1_SUFFIXES = (
+    "ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback", "Request", "Response", "",
+)  # fmt: skip
 
 
 @lru_cache(maxsize=20000)
@@ -400,16 +418,25 @@ class _Linker:
         """What stands for a package whose join failed: its manifest, and a problem that says so."""
         manifest = _manifest(self.gathered, place.manifest_path)
         assert manifest is not None
-        why = f"the package could not be analysed ({type(error).__name__}: {error}); this is a fault of rosimpact, please report it"
+        why = (
+            f"the package could not be analysed ({type(error).__name__}: {error}); "
+            "this is a fault of rosimpact, please report it"
+        )
         return Digest(place.name, place.path, place.manifest_path, manifest, build_type_of(manifest, self.ros), Build(),
                       problems=((place.manifest_path, 0, why),), files=tuple(self.paths_of[place.path]))  # fmt: skip
 
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
-        digest = hashlib.sha1(f"{_VERSIONS} {self.watched.version} {self.ros} {self._extras_key} {place.path}\n".encode("utf-8", "surrogateescape"))
+        digest = hashlib.sha1(
+            f"{_VERSIONS} {self.watched.version} {self.ros} {self._extras_key} {place.path}\n".encode(
+                "utf-8", "surrogateescape"
+            )
+        )
         digest.update(
-            "\n".join([f"{path} {ids.get(path, '')}" for path in self.paths_of[place.path]]).encode("utf-8", "surrogateescape")
+            "\n".join([f"{path} {ids.get(path, '')}" for path in self.paths_of[place.path]]).encode(
+                "utf-8", "surrogateescape"
+            )
         )
         return digest.digest()
 
@@ -436,16 +463,34 @@ class _Linker:
             file = gathered.facts(path)
             return file.facts if file is not None else None
 
-        build = interpret(
-            place.path, cmake, self.all_paths.__contains__, self.glob(place, files), package=manifest.name,
-            dependencies=_named(manifest, "build", "buildtool"), test_dependencies=_named(manifest, "test"),
-            exported_dependencies=_named(manifest, "build_export", "buildtool_export", "exec"),
-            extras=self.extras,
-        ) if (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths else Build()  # fmt: skip
+        build = (
+            interpret(
+                place.path,
+                cmake,
+                self.all_paths.__contains__,
+                self.glob(place, files),
+                package=manifest.name,
+                dependencies=_named(manifest, "build", "buildtool"),
+                test_dependencies=_named(manifest, "test"),
+                exported_dependencies=_named(manifest, "build_export", "buildtool_export", "exec"),
+                extras=self.extras,
+            )
+            if (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
+            else Build()
+        )
         digest = digest_of(
-            place.name or manifest.name, place.path, place.manifest_path, manifest, build, build_type_of(manifest, self.ros),
-            gathered.kinds, files, gathered.facts, self.tree.read, self.watched,
-        )  # fmt: skip
+            place.name or manifest.name,
+            place.path,
+            place.manifest_path,
+            manifest,
+            build,
+            build_type_of(manifest, self.ros),
+            gathered.kinds,
+            files,
+            gathered.facts,
+            self.tree.read,
+            self.watched,
+        )
         return digest, read
 
     def glob(self, place, files: list[str]):
@@ -458,7 +503,9 @@ class _Linker:
             found = []
             for path in files:
                 at, _, leaf = path.rpartition("/")
-                inside = base(at) if base else (at == folder or (recurse and (not folder or at.startswith(folder + "/"))))
+                inside = (
+                    base(at) if base else (at == folder or (recurse and (not folder or at.startswith(folder + "/"))))
+                )
                 if inside and matcher(leaf):
                     found.append(path)
             return sorted(found)
