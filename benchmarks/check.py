@@ -7,8 +7,8 @@ Every figure is the best of the repeats, wall time of a whole process on this ma
     warm       nothing has changed since
     header     a shared header was changed (the one that most packages of the workspace include)
     macro      a CMake file that packages give their dependants was changed
-Anchors: reading the C++ and CMake bytes, parsing them with tree-sitter (if tree_sitter and tree_sitter_cpp are installed),
-and catkin_lint on the ROS 1 workspace (if it is installed), which reads CMake and manifests only.
+Anchors: reading the C++ and CMake bytes, parsing them with tree-sitter (if tree_sitter and tree_sitter_cpp are
+installed), and catkin_lint on the ROS 1 workspace (if it is installed), which reads CMake and manifests only.
 """
 
 from __future__ import annotations

@@ -39,8 +39,8 @@ class Need(NamedTuple):
     """Something a package uses of somebody else.
 
     how: find_package, component, include, import, launch, plugin or shell. subject: as written. providers: who could
-    give it, best first. role: build, test, run or aside. certain: stands under no condition that is unknown on the target.
-    required: its absence stops the configuration (find_package) or the program.
+    give it, best first. role: build, test, run or aside. certain: stands under no condition that is unknown on the
+    target. required: its absence stops the configuration (find_package) or the program.
     """
 
     how: str
@@ -468,7 +468,7 @@ class View:
     # -- who provides --------------------------------------------------------------------------------------------------
 
     def header(self, path: str) -> tuple[Provider, ...]:
-        """Who could answer an include path; empty when nobody is known to, a nameless provider when the compiler does."""
+        """Who could answer an include path; empty when nobody is known to, a nameless one when the compiler does."""
         known = self._headers.get(path)
         if known is None:
             known = self._headers[path] = tuple(self._header(path))
@@ -532,7 +532,7 @@ class View:
             if self.target.distro in ("groovy", "hydro"):
                 return [Provider("system", "")]
             return [
-                p for p in found if p.kind == "ros" or p in self.providers.cmake(name.lower()) and name == "TinyXML2"
+                p for p in found if p.kind == "ros" or (name == "TinyXML2" and p in self.providers.cmake(name.lower()))
             ]
         return found
 
