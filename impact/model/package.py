@@ -128,6 +128,8 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     mains: tuple[str, ...] = ()
     scripts: tuple[str, ...] = ()
     source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    # Watched names that the package's own files #define.
+    defined: tuple[str, ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -273,6 +275,7 @@ class _Join:
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter),
+            defined=tuple(sorted({n for f in self.cpp.values() for n in f.defined} & self.watched.words)),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
         )
 

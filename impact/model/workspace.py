@@ -475,7 +475,8 @@ class _Linker:
                 exported_dependencies=_named(manifest, "build_export", "buildtool_export", "exec"),
                 extras=self.extras,
             )
-            if (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
+            if build_type_of(manifest, self.ros) != "ament_python"
+            and (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
             else Build()
         )
         digest = digest_of(

@@ -31,7 +31,8 @@ def circular(view: View, package: Package, name: str) -> bool:
 
 def name_to_declare(view: View, need: Need) -> str | None:
     """The name a person would put into the manifest for a need: the first provider that can be had on the target."""
-    for provider in need.providers:
+    other = "python3-" if view.target.python_major == 2 else "python-"
+    for provider in sorted(need.providers, key=lambda p: p.name.startswith(other)):
         if provider.name and present(view, provider.name):
             return provider.name
     return None

@@ -119,7 +119,12 @@ def all_rows() -> tuple[Row, ...]:
         for g in _file().changes
         for old, new in g.names.items()
     ]  # fmt: skip
-    return tuple({(row.kind, row.package, row.old): row for row in reversed(rows)}.values())
+    known: dict[tuple[str, str, str], Row] = {}
+    for row in rows:
+        first = known.setdefault((row.kind, row.package, row.old), row)
+        if first is not row and row.unless:
+            known[row.kind, row.package, row.old] = first._replace(unless=tuple(dict.fromkeys(first.unless + row.unless)))
+    return tuple(known.values())
 
 
 @cache

@@ -284,6 +284,13 @@ def default_distros(
         if not named or any(lives(distro) for found in by_branch.values() for distro in found):
             named = by_branch
     if named:
+        if not any(lives(distro) for found in named.values() for distro in found):
+            # Files of long ended distros are often left behind; only long-term ones are still deployed.
+            named = {
+                repository: {distro: place for distro, place in found.items() if fitting[distro].lts}
+                for repository, found in named.items()
+            }
+    if any(named.values()):
         counts = Counter(distro for found in named.values() for distro in found)
         most = max(counts.values())
         chosen = [distro for distro in fitting if counts[distro] == most]

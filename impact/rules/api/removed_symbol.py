@@ -27,6 +27,7 @@ Not reported
 from ...model.package import is_header
 from ...model.view import View
 from ...targets.changes import excuses
+from ...targets.library import include_roots
 from ...targets.target import Change
 from ..rule import Hit, rule
 
@@ -54,6 +55,7 @@ def removed_symbol(view: View):
         use.text for package in view.workspace for use in package.digest.names
         if use.language == "cpp" and is_header(use.at.path) and "::" not in use.text and not use.text.isupper()
     }  # fmt: skip
+    own.update(name for package in view.workspace for name in package.digest.defined)
     for package in view:
         included = None
         warned: dict[str, set[str]] = {}
@@ -79,10 +81,13 @@ def removed_symbol(view: View):
             if endings:
                 if included is None:
                     included = _by_file(package)
-                if any(path.endswith(endings) for path in included.get(use.at.path, ())):
+                if any(path.endswith(endings) for path in included.get(use.at.path, included[""])):
                     continue
             guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
             sure = use.role in ("build", "run") and not guarded and change.kind != "api-changed"
+            if endings and sure and included is not None:
+                # It only moved to another header, which the headers of whatever uses the library may include.
+                sure = not any(_may_bring(view, change, path) for path in included.get(use.at.path, included[""]))
             if later is not None and not view.later_active(use.conditions):
                 continue
             if later is not None:
@@ -103,10 +108,22 @@ def removed_symbol(view: View):
                       package.name, severity="error" if sure else "note" if guarded else "warning")  # fmt: skip
 
 
+_CMAKE_NAME = {"opencv": "OpenCV", "boost": "Boost", "pcl": "PCL"}
+
+
+def _may_bring(view: View, change: Change, path: str) -> bool:
+    """True for headers of packages that depend on the changed library, and of nobody known."""
+    if path.startswith(include_roots(change.package) or "\0") or view.is_standard(path):
+        return False
+    providers = view.header(path)
+    keys = {provider.name for provider in view.cmake(_CMAKE_NAME.get(change.package, change.package))}
+    return not providers or any(p.kind == "ros" and keys & view.spread((p.name,)).keys() for p in providers)
+
+
 def _by_file(package) -> dict[str, set[str]]:
     """What each file includes of others, with what the package's own headers do, since any of them may come before."""
     found: dict[str, set[str]] = {}
-    shared = {i.path for i in package.digest.includes if is_header(i.at.path)}
+    found[""] = shared = {i.path for i in package.digest.includes if is_header(i.at.path)}
     for include in package.digest.includes:
         found.setdefault(include.at.path, set(shared)).add(include.path)
     return found

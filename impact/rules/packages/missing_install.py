@@ -211,6 +211,7 @@ def _folders(view: View, package, installs, referred):
         if path in package.files and not _covered(package, installs, path):
             folder = name.split("/")[0] if "/" in name else name
             missing.setdefault(folder, name)
+    missing.pop("package.xml", None)  # every build type installs it
     for folder, name in missing.items():
         at = package.build.catkin_package or package.build.ament_package or At(package.build.files[0], 1)
         yield Hit(at, folder, f"`{name}` is opened through the package's share folder and not installed",

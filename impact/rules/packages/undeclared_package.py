@@ -36,6 +36,7 @@ from ..rule import Hit, rule
 _VIEWERS = ("rviz", "rqt", "image_view", "joint_state_publisher", "moveit_ros_benchmarks", "joint_state_publisher_gui", "plotjuggler", "teleop_", "joy", "moveit_setup_assistant",
             "urdf_tutorial", "turtlesim")  # fmt: skip
 _ON_THE_DESK = frozenset("python3-matplotlib python-matplotlib python3-pytest python-pytest python-gtk2 python3-tk python-tk".split())
+_COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 _LOUD = 2
 # The macros that make tests bring these headers.
 _WITH_TESTS = ("gtest/", "gmock/")
@@ -153,7 +154,8 @@ def _how(need: Need) -> str:
         "component": f"CMake asks catkin for `{need.subject}`",
         "include": f"`{need.subject}` is included",
         "import": f"`{need.subject}` is imported",
-        "launch": f"`{need.subject}` is used when launching",
+        "launch": f"`{need.subject}` is "
+        + ("looked up at run time" if need.at.path.endswith(_COMPILED) else "used when launching"),
         "plugin": f"a plugin of `{need.subject}` is loaded",
         "shell": f"`{need.subject}` is run by a script",
     }[need.how]

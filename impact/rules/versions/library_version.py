@@ -37,7 +37,7 @@ def library_version(view: View):
                 continue
             # A second, weaker request beside it (`find_package(OpenCV 4 QUIET)` then 3) means that both are handled.
             others = [f for f in package.build.found if f.name == found.name and f is not found]
-            if any(_holds(view, o) for o in others):
+            if any(_holds(view, o) or o.quiet for o in others) or found.quiet:
                 continue
             sure = found.required and view.certain(found.conditions)
             yield Hit(found.at, found.name, f"{found.name} is {answer.version}, and CMake asks for {found.version}",
