@@ -283,7 +283,9 @@ def default_distros(
                     by_branch.setdefault(repository, {}).setdefault(word, f"branch {branch}")
         if not named or any(lives(distro) for found in by_branch.values() for distro in found):
             named = by_branch
+    old: list[str] = []
     if named:
+        old = sorted({distro for found in named.values() for distro in found})
         if not any(lives(distro) for found in named.values() for distro in found):
             # Files of long ended distros are often left behind; only long-term ones are still deployed.
             named = {
@@ -298,6 +300,8 @@ def default_distros(
         places = list(dict.fromkeys(found[distro] for found in named.values() for distro in chosen if distro in found))
         where = places[0] + (f" and {len(places) - 1} more" if len(places) > 1 else "")
         return tuple(chosen), f"named by the workspace ({where})"
+    if old:
+        return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, since {', '.join(old)} ended long ago"
     return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, since nothing names another"
 
 

@@ -203,7 +203,7 @@ CHOICES = [
         "1 more",
     ),
     (2, [("", "ci.yml", workflow("bouncy"))], [("", "jazzy-devel")], {}, ("jazzy",), "branch jazzy-devel"),
-    (2, [("", "ci.yml", workflow("bouncy"))], [("", "main")], {}, ("bouncy",), "ci.yml"),
+    (2, [("", "ci.yml", workflow("bouncy"))], [("", "main")], {}, ("lyrical",), "bouncy ended long ago"),
     (2, [], [("", "humble")], {}, ("humble",), "branch humble"),
     (1, [], [("", "kinetic-devel")], {}, ("kinetic",), "branch kinetic-devel"),
     (2, [], [("", "main")], {}, ("lyrical",), "newest long-term"),
