@@ -154,7 +154,7 @@ def as_text(name: str, found: list[Answer]) -> str:
 
 def _is_gone(change: str, name: str) -> bool:
     """True for a change that takes the very name away from a target."""
-    return change.startswith("gone: ") or f"`{name}`" in change.partition(" → ")[0] and "(removed" in change
+    return change.startswith("gone: ") or (f"`{name}`" in change.partition(" → ")[0] and "(removed" in change)
 
 
 def _offer_line(offer: Offer) -> str:

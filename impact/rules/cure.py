@@ -22,7 +22,7 @@ class Remove(NamedTuple):
 
 
 class Replace(NamedTuple):
-    """Replace `old`, which stands at a line and column (characters, from 1), by `new`. column 0: the only `old` in it."""
+    """Replace `old`, which stands at a line and column (characters, from 1), by `new`. column 0: the only one."""
 
     path: str
     line: int

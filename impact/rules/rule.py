@@ -60,7 +60,7 @@ class Finding(NamedTuple):
 
 
 class Rule(NamedTuple):
-    """A registered rule: its name, family (folder), severity, whether it is a preview, its function, its documentation."""
+    """A registered rule: name, family (folder), severity, whether it is a preview, function, documentation."""
 
     name: str
     family: str

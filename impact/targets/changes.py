@@ -123,7 +123,8 @@ def all_rows() -> tuple[Row, ...]:
     for row in rows:
         first = known.setdefault((row.kind, row.package, row.old), row)
         if first is not row and row.unless:
-            known[row.kind, row.package, row.old] = first._replace(unless=tuple(dict.fromkeys(first.unless + row.unless)))
+            both = tuple(dict.fromkeys(first.unless + row.unless))
+            known[row.kind, row.package, row.old] = first._replace(unless=both)
     return tuple(known.values())
 
 

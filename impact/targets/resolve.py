@@ -301,7 +301,8 @@ def default_distros(
         where = places[0] + (f" and {len(places) - 1} more" if len(places) > 1 else "")
         return tuple(chosen), f"named by the workspace ({where})"
     if old:
-        return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, since {', '.join(old)} ended long ago"
+        why = f"since {', '.join(old)} ended long ago"
+        return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, {why}"
     return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, since nothing names another"
 
 

@@ -25,8 +25,11 @@ from ..rule import Hit, rule
 
 @rule(severity="note")
 def deprecated_name(view: View):
-    old = {c.old: c for c in view.changes("api-removed", "api-renamed", "python-removed", "cmake-removed", "cmake-renamed")
-           if c.state == "deprecated" and c.old}  # fmt: skip
+    old = {
+        c.old: c
+        for c in view.changes("api-removed", "api-renamed", "python-removed", "cmake-removed", "cmake-renamed")
+        if c.state == "deprecated" and c.old
+    }
     if not old:
         return
     for package in view:
@@ -36,5 +39,10 @@ def deprecated_name(view: View):
             change = old.get(text)
             if change is None or not view.active(conditions) or not view.concerned(package, change, at.path):
                 continue
-            yield Hit(at, text, f"`{text}` is deprecated in {change.package} {change.version}".strip(),
-                      f"use `{change.new}`" if change.new else "", package.name)  # fmt: skip
+            yield Hit(
+                at,
+                text,
+                f"`{text}` is deprecated in {change.package} {change.version}".strip(),
+                f"use `{change.new}`" if change.new else "",
+                package.name,
+            )

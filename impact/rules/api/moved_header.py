@@ -29,15 +29,26 @@ from ..rule import Hit, rule
 
 @rule(severity="note")
 def moved_header(view: View):
-    moved = {c.old: c for c in view.changes("header-removed", "header-renamed", "header-moved") if c.state == "deprecated" and c.old}
+    moved = {
+        c.old: c
+        for c in view.changes("header-removed", "header-renamed", "header-moved")
+        if c.state == "deprecated" and c.old
+    }
     for package in view:
         for include in package.digest.includes:
             change = moved.get(include.path)
             if change is None or not view.active(include.conditions) or view.workspace.provides_header(include.path):
                 continue
-            yield Hit(include.at, include.path, f"`{include.path}` is deprecated in {change.package} {change.version}".strip(),
-                      f"include `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
-                      package.name, fix=respelt(view, package, include, change))  # fmt: skip
+            yield Hit(
+                include.at,
+                include.path,
+                f"`{include.path}` is deprecated in {change.package} {change.version}".strip(),
+                f"include `{change.new}`" + (f", there since {change.since}" if change.since else "")
+                if change.new
+                else "",
+                package.name,
+                fix=respelt(view, package, include, change),
+            )
 
 
 def respelt(view: View, package: Package, include: IncludeUse, change: Change) -> tuple[Replace, ...]:

@@ -34,12 +34,21 @@ def removed_cmake_name(view: View):
     for package in view:
         told = set()
         names = [(u.name, u.at, u.conditions, u.kind) for u in package.build.uses]
-        names += [(link.item, link.at, (*t.conditions, *link.conditions), "target") for t in package.build.targets for link in t.links]
+        names += [
+            (link.item, link.at, (*t.conditions, *link.conditions), "target")
+            for t in package.build.targets
+            for link in t.links
+        ]
         for name, at, conditions, kind in names:
             change = gone.get(name) or (folded.get(name.lower()) if kind == "command" else None)
             if change is None or name in told or not view.active(conditions):
                 continue
             told.add(name)
-            yield Hit(at, name, f"`{name}` is gone in {change.package} {change.version}".strip(),
-                      f"use `{change.new}`" if change.new else "", package.name,
-                      severity="warning" if kind == "variable" or not view.certain(conditions) else "error")  # fmt: skip
+            yield Hit(
+                at,
+                name,
+                f"`{name}` is gone in {change.package} {change.version}".strip(),
+                f"use `{change.new}`" if change.new else "",
+                package.name,
+                severity="warning" if kind == "variable" or not view.certain(conditions) else "error",
+            )

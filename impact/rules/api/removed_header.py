@@ -30,7 +30,11 @@ from .moved_header import respelt
 
 @rule(severity="error")
 def removed_header(view: View):
-    gone = {c.old: c for c in view.changes("header-removed", "header-renamed", "header-moved") if c.state == "removed" and c.old}
+    gone = {
+        c.old: c
+        for c in view.changes("header-removed", "header-renamed", "header-moved")
+        if c.state == "removed" and c.old
+    }
     early = {c.new: c for c in view.changes("header-renamed", "header-moved") if c.state == "absent" and c.new}
     for package in view:
         dual = view.target.ros == 2 and any(i.path.startswith("ros/") for i in package.digest.includes)
@@ -42,26 +46,51 @@ def removed_header(view: View):
             if include.role == "aside" or not include.targets:
                 severity = "note"
             else:
-                severity = "note" if not view.certain(include.conditions) else "error" if include.role == "build" else "warning"
+                severity = (
+                    "note"
+                    if not view.certain(include.conditions)
+                    else "error"
+                    if include.role == "build"
+                    else "warning"
+                )
             change = gone.get(path)
             if change is not None and not view.nested_header(change.package, path):
                 where = f"{change.package} {change.version}".strip()
-                yield Hit(include.at, path, f"`{path}` is gone in {where}",
-                          f"include `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
-                          package.name, severity=severity, fix=respelt(view, package, include, change))  # fmt: skip
+                yield Hit(
+                    include.at,
+                    path,
+                    f"`{path}` is gone in {where}",
+                    f"include `{change.new}`" + (f", there since {change.since}" if change.since else "")
+                    if change.new
+                    else "",
+                    package.name,
+                    severity=severity,
+                    fix=respelt(view, package, include, change),
+                )
                 continue
             change = early.get(path)
             if change is not None and view.has_released_header(change.package, path) is False:
                 where = f"{change.package} {change.version}".strip()
-                yield Hit(include.at, path, f"`{path}` is not there yet in {where}",
-                          f"include `{change.old}`, or choose with __has_include", package.name, severity=severity)  # fmt: skip
+                yield Hit(
+                    include.at,
+                    path,
+                    f"`{path}` is not there yet in {where}",
+                    f"include `{change.old}`, or choose with __has_include",
+                    package.name,
+                    severity=severity,
+                )
                 continue
             change = view.later.get(path)
             if change is not None and change.kind.startswith("header") and view.later_active(include.conditions):
-                yield Hit(include.at, path, f"`{path}` is there, and gone in {change.package} {change.version} of {view.horizon}",
-                          f"include `{change.new}`" if change.new else "", package.name,
-                          severity="warning" if severity == "error" and change.package not in coming else "note",
-                          fix=respelt(view, package, include, change))  # fmt: skip
+                yield Hit(
+                    include.at,
+                    path,
+                    f"`{path}` is there, and gone in {change.package} {change.version} of {view.horizon}",
+                    f"include `{change.new}`" if change.new else "",
+                    package.name,
+                    severity="warning" if severity == "error" and change.package not in coming else "note",
+                    fix=respelt(view, package, include, change),
+                )
                 coming.add(change.package)
                 continue
             lost = view.lost_header(path)

@@ -40,20 +40,32 @@ def gone_packages(view: View, kind: str):
             change = gone.get(dependency.name)
             if change is None or dependency.name in told or dependency.kind in ("conflict", "replace"):
                 continue
-            if view.available(dependency.name) or dependency.condition and not view.active_manifest(dependency.condition):
+            if view.available(dependency.name) or (
+                dependency.condition and not view.active_manifest(dependency.condition)
+            ):
                 continue
             told.add(dependency.name)
-            yield Hit(view.manifest_place(package, dependency), dependency.name, _message(view, change, dependency.name),
-                      f"depend on `{change.new}`" if change.new else "remove the dependency", package.name,
-                      severity="error" if dependency.kind in ("build", "buildtool", "exec") else "warning")  # fmt: skip
+            yield Hit(
+                view.manifest_place(package, dependency),
+                dependency.name,
+                _message(view, change, dependency.name),
+                f"depend on `{change.new}`" if change.new else "remove the dependency",
+                package.name,
+                severity="error" if dependency.kind in ("build", "buildtool", "exec") else "warning",
+            )
         for found in package.build.found:
             change = gone.get(found.name)
             if change is None or found.name in told or view.available(found.name) or not view.active(found.conditions):
                 continue
             told.add(found.name)
-            yield Hit(found.at, found.name, _message(view, change, found.name),
-                      f"find `{change.new}`" if change.new else "", package.name,
-                      severity="error" if found.required and view.certain(found.conditions) else "warning")  # fmt: skip
+            yield Hit(
+                found.at,
+                found.name,
+                _message(view, change, found.name),
+                f"find `{change.new}`" if change.new else "",
+                package.name,
+                severity="error" if found.required and view.certain(found.conditions) else "warning",
+            )
 
 
 def _message(view: View, change, name: str) -> str:

@@ -52,9 +52,11 @@ def removed_symbol(view: View):
             early.setdefault(change.new, []).append(change)
     # A method that a header of the workspace has may be meant wherever its name stands.
     own = {
-        use.text for package in view.workspace for use in package.digest.names
+        use.text
+        for package in view.workspace
+        for use in package.digest.names
         if use.language == "cpp" and is_header(use.at.path) and "::" not in use.text and not use.text.isupper()
-    }  # fmt: skip
+    }
     own.update(name for package in view.workspace for name in package.digest.defined)
     for package in view:
         included = None
@@ -68,14 +70,25 @@ def removed_symbol(view: View):
             if change is None and use.text in early and use.text not in own and view.certain(use.conditions):
                 change = next((c for c in early[use.text] if view.concerned(package, c, use.at.path)), None)
                 if change is not None and use.role in ("build", "run"):
-                    yield Hit(use.at, use.text, f"`{use.text}` is not there yet in {change.package} {change.version}".strip(),
-                              f"use `{change.old}`" if change.old else "", package.name, severity="warning")  # fmt: skip
+                    yield Hit(
+                        use.at,
+                        use.text,
+                        f"`{use.text}` is not there yet in {change.package} {change.version}".strip(),
+                        f"use `{change.old}`" if change.old else "",
+                        package.name,
+                        severity="warning",
+                    )
                 continue
             if change is None:
                 change = later = view.later.get(use.text)
                 if later is not None and later.kind.startswith("header"):
                     continue
-            if change is None or change.new and use.text.endswith(change.new) or not view.active(use.conditions) or not view.concerned(package, change, use.at.path):
+            if (
+                change is None
+                or (change.new and use.text.endswith(change.new))
+                or not view.active(use.conditions)
+                or not view.concerned(package, change, use.at.path)
+            ):
                 continue
             endings = excuses(change)
             if endings:
@@ -94,18 +107,33 @@ def removed_symbol(view: View):
                 # Enough to see what is coming: the first place for each library loudly, the rest as notes.
                 names = warned.setdefault(later.package, set())
                 loud = (
-                    use.language == "cpp" and use.role == "build" and view.certain(use.conditions)
-                    and later.kind != "api-changed" and later.package != "python" and not names
-                )  # fmt: skip
+                    use.language == "cpp"
+                    and use.role == "build"
+                    and view.certain(use.conditions)
+                    and later.kind != "api-changed"
+                    and later.package != "python"
+                    and not names
+                )
                 if loud:
                     names.add(use.text)
-                yield Hit(use.at, use.text, f"`{use.text}` is there, and gone in {later.package} {later.version} of {view.horizon}",
-                          f"use `{later.new}`" if later.new else "", package.name, severity="warning" if loud else "note")  # fmt: skip
+                yield Hit(
+                    use.at,
+                    use.text,
+                    f"`{use.text}` is there, and gone in {later.package} {later.version} of {view.horizon}",
+                    f"use `{later.new}`" if later.new else "",
+                    package.name,
+                    severity="warning" if loud else "note",
+                )
                 continue
             verb = "changed" if change.kind == "api-changed" else "is gone"
-            yield Hit(use.at, use.text, f"`{use.text}` {verb} in {change.package} {change.version}".strip(),
-                      f"use `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
-                      package.name, severity="error" if sure else "note" if guarded else "warning")  # fmt: skip
+            yield Hit(
+                use.at,
+                use.text,
+                f"`{use.text}` {verb} in {change.package} {change.version}".strip(),
+                f"use `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
+                package.name,
+                severity="error" if sure else "note" if guarded else "warning",
+            )
 
 
 _CMAKE_NAME = {"opencv": "OpenCV", "boost": "Boost", "pcl": "PCL"}

@@ -18,4 +18,9 @@ from ..rule import Hit, rule
 @rule(severity="error", per_target=False)
 def nothing_analysed(workspace: Workspace):
     if not workspace.packages:
-        yield Hit(At("", 0), "package.xml", "no package was found", "give the folder that holds the packages, or remove its COLCON_IGNORE")
+        yield Hit(
+            At("", 0),
+            "package.xml",
+            "no package was found",
+            "give the folder that holds the packages, or remove its COLCON_IGNORE",
+        )

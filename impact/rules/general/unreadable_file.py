@@ -24,12 +24,28 @@ def unreadable_file(workspace: Workspace):
     for package in workspace:
         told = set()
         for path, line, message in package.digest.problems:
-            if path in told or path == package.digest.manifest_path and line:
+            if path in told or (path == package.digest.manifest_path and line):
                 continue
             told.add(path)
             yield Hit(At(path, max(1, line)), path.rsplit("/", 1)[-1], message, "", package.name)
         for at, reason in package.build.unresolved:
-            if at.path not in told and reason.endswith(("is never closed", "without if()", "without foreach()", "without while()",
-                                                        "without function()", "without macro()", "without block()")):  # fmt: skip
+            if at.path not in told and reason.endswith(
+                (
+                    "is never closed",
+                    "without if()",
+                    "without foreach()",
+                    "without while()",
+                    "without function()",
+                    "without macro()",
+                    "without block()",
+                )
+            ):
                 told.add(at.path)
-                yield Hit(at, at.path.rsplit("/", 1)[-1], f"{reason}, and CMake stops here", "close the block", package.name, severity="warning")
+                yield Hit(
+                    at,
+                    at.path.rsplit("/", 1)[-1],
+                    f"{reason}, and CMake stops here",
+                    "close the block",
+                    package.name,
+                    severity="warning",
+                )

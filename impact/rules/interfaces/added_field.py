@@ -28,6 +28,10 @@ def added_field(workspace: Workspace, base: Workspace):
         before = {f.name for f in pair.old.fields}
         for field in pair.new.fields:
             if field.name not in before:
-                yield Hit(pair.at(field.line, field.column), field.name,
-                          f"`{pair.name}` has the new field `{field.name}`: {wire(workspace)}; {users(workspace, pair)}",
-                          "update every machine together, or add a new message", pair.package.name)  # fmt: skip
+                yield Hit(
+                    pair.at(field.line, field.column),
+                    field.name,
+                    f"`{pair.name}` has the new field `{field.name}`: {wire(workspace)}; {users(workspace, pair)}",
+                    "update every machine together, or add a new message",
+                    pair.package.name,
+                )

@@ -32,10 +32,19 @@ def changed_constant(workspace: Workspace, base: Workspace):
             new = after.get(constant.name)
             who = users(workspace, pair)
             if new is None:
-                yield Hit(pair.at(1), constant.name, f"`{pair.name}` lost the constant `{constant.name}`; {who}",
-                          "keep it for one release", pair.package.name,
-                          severity="error" if who.startswith("used") else "warning")  # fmt: skip
+                yield Hit(
+                    pair.at(1),
+                    constant.name,
+                    f"`{pair.name}` lost the constant `{constant.name}`; {who}",
+                    "keep it for one release",
+                    pair.package.name,
+                    severity="error" if who.startswith("used") else "warning",
+                )
             elif new.value != constant.value:
-                yield Hit(pair.at(new.line, new.column), constant.name,
-                          f"`{pair.name}.{constant.name}` is {new.value} and was {constant.value}: {wire}; {who}",
-                          "add a new constant instead", pair.package.name)  # fmt: skip
+                yield Hit(
+                    pair.at(new.line, new.column),
+                    constant.name,
+                    f"`{pair.name}.{constant.name}` is {new.value} and was {constant.value}: {wire}; {who}",
+                    "add a new constant instead",
+                    pair.package.name,
+                )

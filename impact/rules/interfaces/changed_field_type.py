@@ -30,7 +30,12 @@ def changed_field_type(workspace: Workspace, base: Workspace):
             old = before.get(field.name)
             if old is not None and type_of(old) != type_of(field):
                 who = users(workspace, pair)
-                yield Hit(pair.at(field.line, field.column), field.name,
-                          f"`{pair.name}.{field.name}` is `{type_of(field)}` and was `{type_of(old)}`: {wire(workspace)}; {who}",
-                          "add a new field instead, or change every user with it", pair.package.name,
-                          severity="error" if who.startswith("used") else "warning")  # fmt: skip
+                yield Hit(
+                    pair.at(field.line, field.column),
+                    field.name,
+                    f"`{pair.name}.{field.name}` is `{type_of(field)}` and was `{type_of(old)}`: "
+                    f"{wire(workspace)}; {who}",
+                    "add a new field instead, or change every user with it",
+                    pair.package.name,
+                    severity="error" if who.startswith("used") else "warning",
+                )

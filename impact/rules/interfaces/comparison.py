@@ -40,7 +40,9 @@ def pairs(workspace: Workspace, base: Workspace) -> Iterator[Pair]:
             sections = {s.name: s for s in old.definition.sections}
             for section in file.definition.sections:
                 if section.name in sections:
-                    label = f"{package.name}/{file.name}" + (f" ({section.name})" if len(file.definition.sections) > 1 else "")
+                    label = f"{package.name}/{file.name}" + (
+                        f" ({section.name})" if len(file.definition.sections) > 1 else ""
+                    )
                     yield Pair(package, label, sections[section.name], section, file)
 
 
@@ -56,13 +58,18 @@ def _users(workspace: Workspace, package: str, name: str) -> tuple[str, ...]:
         if other.name == package and not other.build.targets:
             continue
         includes = any(
-            i.path.startswith(package + "/") and is_interface_header(i.path.partition("/")[2], (name,)) for i in other.digest.includes
+            i.path.startswith(package + "/") and is_interface_header(i.path.partition("/")[2], (name,))
+            for i in other.digest.includes
         )
-        imports = any(i.module.split(".")[0] == package and (name in i.names or not i.names) for i in other.digest.imports)
+        imports = any(
+            i.module.split(".")[0] == package and (name in i.names or not i.names) for i in other.digest.imports
+        )
         fields = any(
-            f.type in (f"{package}/{name}", f"{package}/msg/{name}") or other.name == package and f.type == name
-            for i in other.digest.interfaces for s in i.definition.sections for f in s.fields
-        )  # fmt: skip
+            f.type in (f"{package}/{name}", f"{package}/msg/{name}") or (other.name == package and f.type == name)
+            for i in other.digest.interfaces
+            for s in i.definition.sections
+            for f in s.fields
+        )
         if includes or imports or fields:
             found.append(other.name)
     return tuple(found)
@@ -81,4 +88,6 @@ def wire(workspace: Workspace) -> str:
     """What a change of fields does to nodes and bags that were built before it."""
     if workspace.ros == 1:
         return "its md5 changes, so nodes built before it do not connect and recorded bags need a migration rule"
-    return "its type hash changes, so nodes built before it do not match and recorded bags are read wrongly or not at all"
+    return (
+        "its type hash changes, so nodes built before it do not match and recorded bags are read wrongly or not at all"
+    )

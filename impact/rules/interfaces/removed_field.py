@@ -29,6 +29,11 @@ def removed_field(workspace: Workspace, base: Workspace):
         for field in pair.old.fields:
             if field.name not in there:
                 who = users(workspace, pair)
-                yield Hit(pair.at(1), field.name, f"`{pair.name}` lost the field `{field.name}`: {wire(workspace)}; {who}",
-                          "keep the field for one release, or change every user with it", pair.package.name,
-                          severity="error" if who.startswith("used") else "warning")  # fmt: skip
+                yield Hit(
+                    pair.at(1),
+                    field.name,
+                    f"`{pair.name}` lost the field `{field.name}`: {wire(workspace)}; {who}",
+                    "keep the field for one release, or change every user with it",
+                    pair.package.name,
+                    severity="error" if who.startswith("used") else "warning",
+                )

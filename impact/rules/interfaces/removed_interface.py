@@ -39,6 +39,11 @@ def removed_interface(workspace: Workspace, base: Workspace):
             moved = [n for n in now.get(key, ()) if n != before.name]
             at = At(package.digest.manifest_path, 1) if package else At(file.path, 1)
             who = "used by " + ", ".join(f"`{n}`" for n in users[:4]) if users else "nothing in the workspace uses it"
-            yield Hit(at, f"{before.name}/{file.name}", f"`{before.name}/{file.name}` is gone; {who}",
-                      f"use `{moved[0]}/{file.name}`" if moved else "keep it for one release", before.name,
-                      severity="error" if users else "warning")  # fmt: skip
+            yield Hit(
+                at,
+                f"{before.name}/{file.name}",
+                f"`{before.name}/{file.name}` is gone; {who}",
+                f"use `{moved[0]}/{file.name}`" if moved else "keep it for one release",
+                before.name,
+                severity="error" if users else "warning",
+            )

@@ -28,10 +28,18 @@ def reordered_fields(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
         new = [f for f in pair.new.fields if any(f.name == o.name for o in pair.old.fields)]
         old = [f.name for f in pair.old.fields if any(f.name == n.name for n in pair.new.fields)]
-        moved = next((f for f, name in zip(new, old, strict=True) if f.name != name), None) if len(new) == len(old) else None
+        moved = (
+            next((f for f, name in zip(new, old, strict=True) if f.name != name), None)
+            if len(new) == len(old)
+            else None
+        )
         if moved is not None:
             who = users(workspace, pair)
-            yield Hit(pair.at(moved.line, moved.column), moved.name,
-                      f"the fields of `{pair.name}` stand in another order from `{moved.name}` on: {wire(workspace)}; {who}",
-                      "put them back in their old order", pair.package.name,
-                      severity="error" if who.startswith("used") else "warning")  # fmt: skip
+            yield Hit(
+                pair.at(moved.line, moved.column),
+                moved.name,
+                f"the fields of `{pair.name}` stand in another order from `{moved.name}` on: {wire(workspace)}; {who}",
+                "put them back in their old order",
+                pair.package.name,
+                severity="error" if who.startswith("used") else "warning",
+            )

@@ -30,9 +30,10 @@ def dependency_cycle(view: View):
     needs: dict[str, set[str]] = {}
     for package in view:
         needs[package.name] = {
-            name for name, kinds in view.declared(package).items()
+            name
+            for name, kinds in view.declared(package).items()
             if name in view.workspace.packages and name != package.name and kinds - {"test", "doc"}
-        }  # fmt: skip
+        }
     while True:
         try:
             TopologicalSorter(needs).prepare()
@@ -44,6 +45,11 @@ def dependency_cycle(view: View):
         names = names[names.index(first) :] + names[: names.index(first)]
         package = view.workspace.packages[first]
         dependency = next(d for d in package.manifest.dependencies if d.name == names[1])
-        yield Hit(view.manifest_place(package, dependency), names[1], "dependency cycle: " + " → ".join([*names, first]),
-                  "cut one of these dependencies", first)  # fmt: skip
+        yield Hit(
+            view.manifest_place(package, dependency),
+            names[1],
+            "dependency cycle: " + " → ".join([*names, first]),
+            "cut one of these dependencies",
+            first,
+        )
         needs[first].discard(names[1])

@@ -26,9 +26,17 @@ from ..rule import Hit, rule
 
 _TAGS = {
     1: ("build_depend", "buildtool_depend", "run_depend", "test_depend"),
-    2: ("build_depend", "build_export_depend", "buildtool_depend", "buildtool_export_depend", "depend", "doc_depend", "exec_depend",
-        "test_depend"),
-}  # fmt: skip
+    2: (
+        "build_depend",
+        "build_export_depend",
+        "buildtool_depend",
+        "buildtool_export_depend",
+        "depend",
+        "doc_depend",
+        "exec_depend",
+        "test_depend",
+    ),
+}
 
 
 @rule(severity="error", per_target=False)
@@ -39,16 +47,28 @@ def invalid_manifest(workspace: Workspace):
         for tag, text, line in manifest.unknown_tags:
             misspelt[line] = tag
             words = tag.replace("-", "_").replace("depends", "depend")
-            yield Hit(At(path, line), tag, f"`<{tag}>{text}</{tag}>` is no tag of format {manifest.format}, so `{text}` is not declared",
-                      f"write `<{words}>`" if words != tag else "use a tag of this format", package.name,
-                      fix=_respelt(path, line, tag, words) if words in _TAGS[min(manifest.format, 2)] else ())  # fmt: skip
+            yield Hit(
+                At(path, line),
+                tag,
+                f"`<{tag}>{text}</{tag}>` is no tag of format {manifest.format}, so `{text}` is not declared",
+                f"write `<{words}>`" if words != tag else "use a tag of this format",
+                package.name,
+                fix=_respelt(path, line, tag, words) if words in _TAGS[min(manifest.format, 2)] else (),
+            )
         for problem in manifest.problems:
             if problem.line not in misspelt:
-                yield Hit(At(path, problem.line), package.name or path, problem.message, "correct the manifest", package.name)
+                yield Hit(
+                    At(path, problem.line), package.name or path, problem.message, "correct the manifest", package.name
+                )
         for condition, line in {d.condition: d.line for d in manifest.dependencies if d.condition}.items():
             if not _PLAIN.match(condition) and not _readable(condition):
-                yield Hit(At(path, line), condition, f"the condition `{condition}` cannot be read",
-                          "write it as REP 149 says, such as `$ROS_VERSION == 2`", package.name)  # fmt: skip
+                yield Hit(
+                    At(path, line),
+                    condition,
+                    f"the condition `{condition}` cannot be read",
+                    "write it as REP 149 says, such as `$ROS_VERSION == 2`",
+                    package.name,
+                )
 
 
 # One comparison, or several joined by and/or: nothing that catkin_pkg could refuse. Asking it costs 60 ms of import.

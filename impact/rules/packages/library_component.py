@@ -41,12 +41,26 @@ def library_component(view: View):
                 newest = view.target.newest()
                 later = gone_component(newest, found.name, name) if newest is not None and not gone else None
                 if later:
-                    yield Hit(at, name, f"`{name}` is there, and gone in {found.name} {later.version} of {view.horizon}", later.help,
-                              package.name, severity="warning" if found.required and name != "system" and view.certain(found.conditions) else "note")  # fmt: skip
+                    yield Hit(
+                        at,
+                        name,
+                        f"`{name}` is there, and gone in {found.name} {later.version} of {view.horizon}",
+                        later.help,
+                        package.name,
+                        severity="warning"
+                        if found.required and name != "system" and view.certain(found.conditions)
+                        else "note",
+                    )
                 if gone:
                     sure = found.required and view.certain(found.conditions)
-                    yield Hit(at, name, f"{found.name} {gone.version} has no component `{name}`", gone.help, package.name,
-                              severity="error" if sure else "warning")  # fmt: skip
+                    yield Hit(
+                        at,
+                        name,
+                        f"{found.name} {gone.version} has no component `{name}`",
+                        gone.help,
+                        package.name,
+                        severity="error" if sure else "warning",
+                    )
         yield from _old_qt(view, package)
         yield from _linked(view, package, asked)
         yield from _included(view, package, asked)
@@ -56,13 +70,24 @@ def _old_qt(view: View, package):
     """Qt 4 beside rviz or rqt, which are built with Qt 5 since version 1.12 and Kinetic."""
     found = {f.name: f for f in package.build.found if f.how == "find_package" and view.active(f.conditions)}
     qt4 = found.get("Qt4")
-    if qt4 is None or "Qt5Widgets" in found or "Qt5" in found or not view.declared(package).keys() & {"rviz", "rqt_gui_cpp"}:
+    if (
+        qt4 is None
+        or "Qt5Widgets" in found
+        or "Qt5" in found
+        or not view.declared(package).keys() & {"rviz", "rqt_gui_cpp"}
+    ):
         return
     rviz = view.target.version("rviz") or ""
     if rviz and at_least(rviz, "1.12"):
         sure = qt4.required and view.certain(qt4.conditions)
-        yield Hit(qt4.at, "Qt4", f"`{package.name}` finds Qt 4, and rviz {rviz} is built with Qt 5", "find_package(Qt5 COMPONENTS Core Widgets)",
-                  package.name, severity="error" if sure else "warning")  # fmt: skip
+        yield Hit(
+            qt4.at,
+            "Qt4",
+            f"`{package.name}` finds Qt 4, and rviz {rviz} is built with Qt 5",
+            "find_package(Qt5 COMPONENTS Core Widgets)",
+            package.name,
+            severity="error" if sure else "warning",
+        )
 
 
 def _linked(view: View, package, asked):
@@ -77,8 +102,14 @@ def _linked(view: View, package, asked):
             if component not in BOOST_COMPILED or not view.active((*target.conditions, *link.conditions)):
                 continue
             told.add(component)
-            yield Hit(link.at, f"Boost::{component}", f"`Boost::{component}` is linked and the component `{component}` is not asked for",
-                      f"add `{component}` to find_package(Boost COMPONENTS ...)", package.name, severity="warning")  # fmt: skip
+            yield Hit(
+                link.at,
+                f"Boost::{component}",
+                f"`Boost::{component}` is linked and the component `{component}` is not asked for",
+                f"add `{component}` to find_package(Boost COMPONENTS ...)",
+                package.name,
+                severity="warning",
+            )
 
 
 def _included(view: View, package, asked):
@@ -96,15 +127,26 @@ def _included(view: View, package, asked):
         if "boost_libraries" not in linked and "Boost" in asked and asked["Boost"]:
             pass
         told.add(component)
-        yield Hit(include.at, component, f"`{include.path}` needs the compiled Boost component `{component}`, which is not asked for",
-                  f"find_package(Boost REQUIRED COMPONENTS {component}) and link it", package.name,
-                  severity="warning" if "Boost" in asked and asked["Boost"] else "note")  # fmt: skip
+        yield Hit(
+            include.at,
+            component,
+            f"`{include.path}` needs the compiled Boost component `{component}`, which is not asked for",
+            f"find_package(Boost REQUIRED COMPONENTS {component}) and link it",
+            package.name,
+            severity="warning" if asked.get("Boost") else "note",
+        )
 
 
 BOOST_COMPILED_HEADERS = {
-    "boost/filesystem.hpp": "filesystem", "boost/filesystem/path.hpp": "filesystem", "boost/filesystem/operations.hpp": "filesystem",
-    "boost/program_options.hpp": "program_options", "boost/regex.hpp": "regex", "boost/iostreams/device/mapped_file.hpp": "iostreams",
-    "boost/iostreams/filter/gzip.hpp": "iostreams", "boost/iostreams/filter/zlib.hpp": "iostreams",
-    "boost/serialization/serialization.hpp": "serialization", "boost/archive/text_oarchive.hpp": "serialization",
+    "boost/filesystem.hpp": "filesystem",
+    "boost/filesystem/path.hpp": "filesystem",
+    "boost/filesystem/operations.hpp": "filesystem",
+    "boost/program_options.hpp": "program_options",
+    "boost/regex.hpp": "regex",
+    "boost/iostreams/device/mapped_file.hpp": "iostreams",
+    "boost/iostreams/filter/gzip.hpp": "iostreams",
+    "boost/iostreams/filter/zlib.hpp": "iostreams",
+    "boost/serialization/serialization.hpp": "serialization",
+    "boost/archive/text_oarchive.hpp": "serialization",
     "boost/archive/binary_oarchive.hpp": "serialization",
-}  # fmt: skip
+}

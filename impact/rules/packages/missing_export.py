@@ -57,8 +57,14 @@ def _directories(view: View, package):
         inside = item[len(package.path) :].lstrip("/") if package.path and item.startswith(package.path + "/") else item
         if inside in (".", "") or package.has_files(inside) or inside.startswith(".."):
             continue
-        yield Hit(export.at, "INCLUDE_DIRS", f"the exported include directory `{inside}` does not exist, so catkin stops",
-                  "create it, or drop INCLUDE_DIRS", package.name, severity="error")  # fmt: skip
+        yield Hit(
+            export.at,
+            "INCLUDE_DIRS",
+            f"the exported include directory `{inside}` does not exist, so catkin stops",
+            "create it, or drop INCLUDE_DIRS",
+            package.name,
+            severity="error",
+        )
 
 
 def _catkin(view: View, package):
@@ -68,15 +74,30 @@ def _catkin(view: View, package):
         if not view.active(export.conditions) or "$" in export.item:
             continue
         if export.how == "libraries" and export.item not in targets and not package.build.unresolved:
-            if "/" in export.item or export.item.startswith("-") or export.item.endswith((".so", ".a")) or view.cmake(export.item):
+            if (
+                "/" in export.item
+                or export.item.startswith("-")
+                or export.item.endswith((".so", ".a"))
+                or view.cmake(export.item)
+            ):
                 continue
-            yield Hit(export.at, export.item, f"the exported library `{export.item}` is no target of `{package.name}`",
-                      "export the library's target name", package.name)  # fmt: skip
+            yield Hit(
+                export.at,
+                export.item,
+                f"the exported library `{export.item}` is no target of `{package.name}`",
+                "export the library's target name",
+                package.name,
+            )
         elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
             near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
-            yield Hit(export.at, export.item, f"nothing sets `{export.item}_INCLUDE_DIRS` or `{export.item}_LIBRARIES`, so DEPENDS exports nothing",
-                      f"write `{near.upper() if near == 'Eigen3' else near}`" if near else f"find `{export.item}` first",
-                      package.name, severity="warning" if near else "note")  # fmt: skip
+            yield Hit(
+                export.at,
+                export.item,
+                f"nothing sets `{export.item}_INCLUDE_DIRS` or `{export.item}_LIBRARIES`, so DEPENDS exports nothing",
+                f"write `{near.upper() if near == 'Eigen3' else near}`" if near else f"find `{export.item}` first",
+                package.name,
+                severity="warning" if near else "note",
+            )
 
 
 def _sets(package, stem: str) -> bool:
@@ -85,7 +106,9 @@ def _sets(package, stem: str) -> bool:
         names = variables(found.name)
         if names is None and found.name.lower() == stem.lower():
             return True
-        if names and any(name.startswith(stem + "_") and not name.endswith(("FOUND", "VERSION", "DIR")) for name in names):
+        if names and any(
+            name.startswith(stem + "_") and not name.endswith(("FOUND", "VERSION", "DIR")) for name in names
+        ):
             return True
     return False
 
@@ -93,17 +116,31 @@ def _sets(package, stem: str) -> bool:
 def _ament(view: View, package):
     exports = [e for e in package.build.exports if view.active(e.conditions)]
     hows = {e.how for e in exports}
-    if not hows & {"ament_export_targets", "ament_export_libraries", "ament_export_include_directories", "ament_export_dependencies"}:
+    if not hows & {
+        "ament_export_targets",
+        "ament_export_libraries",
+        "ament_export_include_directories",
+        "ament_export_dependencies",
+    }:
         if package.digest.public_headers and not any(f.how == "ament_auto" for f in package.build.found):
-            libraries = [t for t in package.build.targets if t.kind in ("library", "interface") and t.name in _installed(package)]
+            libraries = [
+                t for t in package.build.targets if t.kind in ("library", "interface") and t.name in _installed(package)
+            ]
             if libraries and any("/include/" in f"/{h}" for h in package.digest.public_headers):
                 first = package.build.ament_package
                 if package.name not in view.workspace.includers:
                     return
-                yield Hit(first, "ament_export_include_directories", f"`{package.name}` installs headers and exports neither them nor a target",
-                          "call ament_export_targets or ament_export_include_directories", package.name)  # fmt: skip
+                yield Hit(
+                    first,
+                    "ament_export_include_directories",
+                    f"`{package.name}` installs headers and exports neither them nor a target",
+                    "call ament_export_targets or ament_export_include_directories",
+                    package.name,
+                )
         return
-    if any(f.how == "ament_auto" for f in package.build.found) or any("$" in e.item for e in exports if e.how == "ament_export_dependencies"):
+    if any(f.how == "ament_auto" for f in package.build.found) or any(
+        "$" in e.item for e in exports if e.how == "ament_export_dependencies"
+    ):
         return
     yield from _linked(view, package, exports)
     exported = set()
@@ -124,9 +161,21 @@ def _ament(view: View, package):
         if name is None or name in told or name == package.name or need.providers[0].kind != "ros":
             continue
         told.add(name)
-        severity = "warning" if apart and name not in WITH_CLIENT and (includers or "ament_export_libraries" in hows or "ament_export_targets" in hows) else "note"
-        yield Hit(need.at, name, f"an installed header includes `{need.subject}` and `{name}` is not exported",
-                  f"add `{name}` to ament_export_dependencies", package.name, severity=severity)  # fmt: skip
+        severity = (
+            "warning"
+            if apart
+            and name not in WITH_CLIENT
+            and (includers or "ament_export_libraries" in hows or "ament_export_targets" in hows)
+            else "note"
+        )
+        yield Hit(
+            need.at,
+            name,
+            f"an installed header includes `{need.subject}` and `{name}` is not exported",
+            f"add `{name}` to ament_export_dependencies",
+            package.name,
+            severity=severity,
+        )
 
 
 def _installed(package) -> set[str]:
@@ -144,15 +193,30 @@ def _linked(view: View, package, exports):
     extras = any(e.how == "cfg_extras" for e in exports)
     told = set()
     for target in package.build.targets:
-        if target.name not in installed or target.kind not in ("library", "interface") or not view.certain(target.conditions):
+        if (
+            target.name not in installed
+            or target.kind not in ("library", "interface")
+            or not view.certain(target.conditions)
+        ):
             continue
         for link in target.links:
             head, _, rest = link.item.partition("::")
             known = found.get(head.lower())
             if link.how != "link" or not rest or "$" in link.item or link.visibility == "PRIVATE" or known is None:
                 continue
-            if head.lower() in names or head.lower() in reach or head in told or extras or head in view.workspace.packages:
+            if (
+                head.lower() in names
+                or head.lower() in reach
+                or head in told
+                or extras
+                or head in view.workspace.packages
+            ):
                 continue
             told.add(head)
-            yield Hit(link.at, known.name, f"`{target.name}` passes `{link.item}` on and `{known.name}` is not exported",
-                      f"add `{known.name}` to ament_export_dependencies", package.name)  # fmt: skip
+            yield Hit(
+                link.at,
+                known.name,
+                f"`{target.name}` passes `{link.item}` on and `{known.name}` is not exported",
+                f"add `{known.name}` to ament_export_dependencies",
+                package.name,
+            )

@@ -28,7 +28,19 @@ from ...model.view import View, interface_of
 from ..evidence import weight
 from ..rule import Hit, rule
 
-_SYSTEM_BY_DEFAULT = ("boost/", "yaml-cpp/", "tinyxml", "SDL/", "libusb", "GL/", "zlib", "curl/", "gtest/", "gmock/", "openssl/")
+_SYSTEM_BY_DEFAULT = (
+    "boost/",
+    "yaml-cpp/",
+    "tinyxml",
+    "SDL/",
+    "libusb",
+    "GL/",
+    "zlib",
+    "curl/",
+    "gtest/",
+    "gmock/",
+    "openssl/",
+)
 
 
 @rule(severity="warning")
@@ -51,8 +63,14 @@ def missing_find_package(view: View):
             if name in reachable or name in told or name in package.digest.modules or name == package.name:
                 continue
             told.add(name)
-            yield Hit(at, name, f"`{name}` is given to a target and find_package(`{name}`) is never called",
-                      f"add find_package({name} REQUIRED)", package.name, severity="error")  # fmt: skip
+            yield Hit(
+                at,
+                name,
+                f"`{name}` is given to a target and find_package(`{name}`) is never called",
+                f"add find_package({name} REQUIRED)",
+                package.name,
+                severity="error",
+            )
         sought = {_folded(f.name) for f in package.build.found}
         linked = {_folded(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
         for need in sorted(view.needs(package), key=weight):
@@ -74,9 +92,14 @@ def missing_find_package(view: View):
                 continue
             told.add(name)
             direct = name in view.declared(package)
-            yield Hit(need.at, name, f"`{need.subject}` is included and CMake never looks for `{name}`",
-                      f"add find_package({name} REQUIRED) and give it to the target", package.name,
-                      severity=_weight_of(view, need, direct and ros and not header_only))  # fmt: skip
+            yield Hit(
+                need.at,
+                name,
+                f"`{need.subject}` is included and CMake never looks for `{name}`",
+                f"add find_package({name} REQUIRED) and give it to the target",
+                package.name,
+                severity=_weight_of(view, need, direct and ros and not header_only),
+            )
 
 
 # Find modules that cmake_modules puts on CMake's path, once it is found itself. Catkin did so until Hydro.
@@ -95,9 +118,14 @@ def _find_modules(view: View, package):
         if "cmake_modules" in names or view.providers.cmake_platforms(found.name) or not view.active(found.conditions):
             continue
         sure = found.required and view.certain(found.conditions)
-        yield Hit(found.at, "cmake_modules", f"`Find{found.name}.cmake` comes with `cmake_modules`, which CMake never looks for",
-                  "add `cmake_modules` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml", package.name,
-                  severity="error" if sure else "warning" if found.required else "note")  # fmt: skip
+        yield Hit(
+            found.at,
+            "cmake_modules",
+            f"`Find{found.name}.cmake` comes with `cmake_modules`, which CMake never looks for",
+            "add `cmake_modules` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml",
+            package.name,
+            severity="error" if sure else "warning" if found.required else "note",
+        )
 
 
 def _weight_of(view: View, need, counts: bool) -> str:
@@ -126,7 +154,12 @@ def _not_given(view: View, package):
     told = set()
     for include in package.digest.includes:
         providers = view.header(include.path)
-        if not include.targets or not view.certain(include.conditions) or len(providers) != 1 or providers[0].kind != "ros":
+        if (
+            not include.targets
+            or not view.certain(include.conditions)
+            or len(providers) != 1
+            or providers[0].kind != "ros"
+        ):
             continue
         name = providers[0].name
         if name not in found or name == package.name or name in told:
@@ -138,9 +171,14 @@ def _not_given(view: View, package):
             if name in view.spread(n for n in (*given, *everywhere) if n):
                 continue
             told.add(name)
-            yield Hit(targets[target].at, name, f"`{target}` includes `{include.path}` and is not given `{name}`",
-                      f"give `{name}` to the target", package.name,
-                      severity="error" if include.role == "build" and view.certain(targets[target].conditions) else "warning")  # fmt: skip
+            yield Hit(
+                targets[target].at,
+                name,
+                f"`{target}` includes `{include.path}` and is not given `{name}`",
+                f"give `{name}` to the target",
+                package.name,
+                severity="error" if include.role == "build" and view.certain(targets[target].conditions) else "warning",
+            )
             break
 
 
@@ -176,19 +214,33 @@ def _directories_not_given(view: View, package):
     build = package.build
     if package.build_type != "catkin" or not any(f.how == "catkin" for f in build.found) or build.unresolved:
         return
-    given = " ".join([item for item, _ in build.include_dirs] + [link.item for t in build.targets for link in t.links if link.how == "include"])
+    given = " ".join(
+        [item for item, _ in build.include_dirs]
+        + [link.item for t in build.targets for link in t.links if link.how == "include"]
+    )
     if "catkin_INCLUDE_DIRS" in given or "/opt/ros" in given:
         return
     for target in build.targets:
         if target.kind not in ("executable", "library") or not view.certain(target.conditions):
             continue
         include = next(
-            (i for i in package.digest.includes if target.name in i.targets and view.certain(i.conditions)
-             and any(p.kind == "ros" and p.name not in view.workspace.packages for p in view.header(i.path))), None
-        )  # fmt: skip
+            (
+                i
+                for i in package.digest.includes
+                if target.name in i.targets
+                and view.certain(i.conditions)
+                and any(p.kind == "ros" and p.name not in view.workspace.packages for p in view.header(i.path))
+            ),
+            None,
+        )
         if include is not None:
-            yield Hit(target.at, "catkin_INCLUDE_DIRS", f"`{include.path}` is included by `{target.name}`, which does not get catkin_INCLUDE_DIRS",
-                      "include_directories(${catkin_INCLUDE_DIRS})", package.name)  # fmt: skip
+            yield Hit(
+                target.at,
+                "catkin_INCLUDE_DIRS",
+                f"`{include.path}` is included by `{target.name}`, which does not get catkin_INCLUDE_DIRS",
+                "include_directories(${catkin_INCLUDE_DIRS})",
+                package.name,
+            )
             return
 
 
@@ -198,13 +250,22 @@ def _no_components(view: View, package):
         name = found.name
         if found.how != "catkin" or name == "catkin" or not view.certain(found.conditions):
             continue
-        if name in view.workspace.packages or view.target.version(name) is not None or view.target.resolve(name) is None:
+        if (
+            name in view.workspace.packages
+            or view.target.version(name) is not None
+            or view.target.resolve(name) is None
+        ):
             continue
         if view.providers.cmake_platforms(name) or any(p.kind == "system" for p in view.cmake(name)):
             continue  # a plain CMake package of the system answers, and catkin takes it
-        yield Hit(found.at, name, f"`{name}` is a system library in {view.target.distro} and no catkin component",
-                  f"find_package({name} REQUIRED), or pkg-config, on its own", package.name,
-                  severity="warning")  # fmt: skip
+        yield Hit(
+            found.at,
+            name,
+            f"`{name}` is a system library in {view.target.distro} and no catkin component",
+            f"find_package({name} REQUIRED), or pkg-config, on its own",
+            package.name,
+            severity="warning",
+        )
 
 
 def _folded(name: str) -> str:
@@ -238,7 +299,12 @@ def _given_to_targets(view: View, package):
     for target in package.build.targets:
         for link in target.links:
             conditions = (*target.conditions, *link.conditions)
-            if not view.certain(conditions) or "$" in link.item or link.item in own or any("TESTING" in c.text for c in conditions):
+            if (
+                not view.certain(conditions)
+                or "$" in link.item
+                or link.item in own
+                or any("TESTING" in c.text for c in conditions)
+            ):
                 continue
             if link.how == "ament" and view._is_package(link.item):
                 yield link.at, link.item

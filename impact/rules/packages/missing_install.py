@@ -68,19 +68,33 @@ def _absent(view: View, package, installs):
             continue
         for item in install.items:
             path = posixpath.normpath(item)
-            if "$" in item or item.startswith("/") or path in package.files or path in package.folders or path in (".", package.path):
+            if (
+                "$" in item
+                or item.startswith("/")
+                or path in package.files
+                or path in package.folders
+                or path in (".", package.path)
+            ):
                 continue
             if package.path and not path.startswith(package.path + "/"):
                 continue
             if any(path.startswith(p) for p in ("build", "devel")) or re.search(r"[*?<>]", item):
                 continue
-            if re.search(r"\.so(\.|$)|\.a$|\.dylib$", path) or install.kind == "directory" and re.search(r"(^|/)(include|lib|bin)(/|$)", item):
+            if re.search(r"\.so(\.|$)|\.a$|\.dylib$", path) or (
+                install.kind == "directory" and re.search(r"(^|/)(include|lib|bin)(/|$)", item)
+            ):
                 continue  # made by the build, or a folder that git cannot keep while it is empty
-            if path + ".in" in package.files or install.kind == "files" and "." in path and _made(package, path):
+            if path + ".in" in package.files or (install.kind == "files" and "." in path and _made(package, path)):
                 continue
             inside = path[len(package.path) :].lstrip("/")
-            yield Hit(install.at, inside, f"`{inside}` is installed and does not exist", "create it, or drop it from the rule",
-                      package.name, severity="error")  # fmt: skip
+            yield Hit(
+                install.at,
+                inside,
+                f"`{inside}` is installed and does not exist",
+                "create it, or drop it from the rule",
+                package.name,
+                severity="error",
+            )
 
 
 def _doubled(view: View, package, installs):
@@ -90,8 +104,13 @@ def _doubled(view: View, package, installs):
             continue
         for item in install.items:
             if item.rpartition("/")[2] == "include" and not item.endswith("/"):
-                yield Hit(install.at, "include", "the folder `include` is installed into `include`, so headers end up in include/include",
-                          "write `include/` with a slash at its end", package.name)  # fmt: skip
+                yield Hit(
+                    install.at,
+                    "include",
+                    "the folder `include` is installed into `include`, so headers end up in include/include",
+                    "write `include/` with a slash at its end",
+                    package.name,
+                )
 
 
 def _not_executable(view: View, package, installs):
@@ -103,8 +122,13 @@ def _not_executable(view: View, package, installs):
             path = posixpath.normpath(item)
             if path in package.digest.scripts:
                 name = posixpath.basename(path)
-                yield Hit(install.at, name, f"`{name}` is installed with install(FILES), so it cannot be executed",
-                          "install(PROGRAMS ...)", package.name)  # fmt: skip
+                yield Hit(
+                    install.at,
+                    name,
+                    f"`{name}` is installed with install(FILES), so it cannot be executed",
+                    "install(PROGRAMS ...)",
+                    package.name,
+                )
 
 
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
@@ -114,25 +138,34 @@ def _nothing(view: View, package):
     """A package that only holds data, and installs none of it."""
     folders = [folder for folder in _DATA if package.has_files(folder)]
     if folders and package.build.catkin_package is not None and not package.manifest.metapackage:
-        yield Hit(package.build.catkin_package, "install", f"nothing of `{package.name}` is installed, and it has {', '.join(folders)}",
-                  f"install(DIRECTORY {' '.join(folders)} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})", package.name)  # fmt: skip
+        yield Hit(
+            package.build.catkin_package,
+            "install",
+            f"nothing of `{package.name}` is installed, and it has {', '.join(folders)}",
+            f"install(DIRECTORY {' '.join(folders)} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})",
+            package.name,
+        )
 
 
 def _made(package, path: str) -> bool:
-    """True for files that the build itself writes (configured, generated): their name is mentioned by another command."""
+    """True for files that the build itself writes: another command mentions their name."""
     return not any(path.endswith(e) for e in (".launch", ".xml", ".yaml", ".py", ".h", ".hpp", ".md", ".rviz"))
 
 
 def _targets(view: View, package, installs, referred):
     installed = {item for i in installs if i.kind == "targets" for item in i.items}
-    if any("$" in item for item in installed) or any(i.kind == "export" for i in installs) and not installed:
+    if any("$" in item for item in installed) or (any(i.kind == "export" for i in installs) and not installed):
         return
     exported = {e.item for e in package.build.exports if e.how == "libraries"}
     started = referred.get(package.name, {}).get("executable", set())
     plugins = {posixpath.basename(c.library).removeprefix("lib").removesuffix(".so") for _, c in package.digest.plugins}
     linked = {link.item for t in package.build.targets if t.name in installed for link in t.links if link.how == "link"}
     for target in package.build.targets:
-        if target.name in installed or target.kind not in ("executable", "library", "module") or not view.certain(target.conditions):
+        if (
+            target.name in installed
+            or target.kind not in ("executable", "library", "module")
+            or not view.certain(target.conditions)
+        ):
             continue
         if _aside(package, target):
             continue
@@ -146,12 +179,18 @@ def _targets(view: View, package, installs, referred):
             why = "a plugin description names it"
         elif target.kind == "library" and target.name in linked and not _static(target):
             why = "an installed target links it"
-        elif target.kind == "executable" and any(t.name in installed for t in package.build.targets if t.kind == "executable"):
+        elif target.kind == "executable" and any(
+            t.name in installed for t in package.build.targets if t.kind == "executable"
+        ):
             why = "other executables are"
         if why:
-            yield Hit(target.at, name, f"`{name}` is not installed, although {why}",
-                      f"add it to install(TARGETS ...)", package.name,
-                      severity="note" if why == "other executables are" and package.build_type == "catkin" and False else "")  # fmt: skip
+            yield Hit(
+                target.at,
+                name,
+                f"`{name}` is not installed, although {why}",
+                "add it to install(TARGETS ...)",
+                package.name,
+            )
 
 
 def _static(target) -> bool:
@@ -162,7 +201,9 @@ def _aside(package, target) -> bool:
     from ...model.package import role_of_folder
 
     inside = lambda p: p[len(package.path) :].lstrip("/")  # noqa: E731
-    if role_of_folder(inside(target.at.path)) or re.search(r"(^|_)(test|tests|example|demo|benchmark)(_|$)", target.name):
+    if role_of_folder(inside(target.at.path)) or re.search(
+        r"(^|_)(test|tests|example|demo|benchmark)(_|$)", target.name
+    ):
         return True
     return bool(target.sources) and all(role_of_folder(inside(s)) for s in target.sources)
 
@@ -193,13 +234,21 @@ def _descriptions(view: View, package, installs):
         if path not in package.files:
             if path + ".in" in package.files or _covered(package, installs, path):
                 continue
-            yield Hit(At(package.digest.manifest_path, export.line), value[len("${prefix}/") :],
-                      f"the exported plugin description `{value[len('${prefix}/'):]}` does not exist", "correct the path",
-                      package.name)  # fmt: skip
+            yield Hit(
+                At(package.digest.manifest_path, export.line),
+                value[len("${prefix}/") :],
+                f"the exported plugin description `{value[len('${prefix}/') :]}` does not exist",
+                "correct the path",
+                package.name,
+            )
         elif package.build_type == "catkin" and not _covered(package, installs, path):
-            yield Hit(At(package.digest.manifest_path, export.line), posixpath.basename(path),
-                      f"the exported plugin description `{posixpath.basename(path)}` is not installed",
-                      f"install(FILES {value[len('${prefix}/'):]} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})", package.name)  # fmt: skip
+            yield Hit(
+                At(package.digest.manifest_path, export.line),
+                posixpath.basename(path),
+                f"the exported plugin description `{posixpath.basename(path)}` is not installed",
+                f"install(FILES {value[len('${prefix}/') :]} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})",
+                package.name,
+            )
 
 
 def _folders(view: View, package, installs, referred):
@@ -214,14 +263,24 @@ def _folders(view: View, package, installs, referred):
     missing.pop("package.xml", None)  # every build type installs it
     for folder, name in missing.items():
         at = package.build.catkin_package or package.build.ament_package or At(package.build.files[0], 1)
-        yield Hit(at, folder, f"`{name}` is opened through the package's share folder and not installed",
-                  f"install(DIRECTORY {folder} DESTINATION "
-                  + ("${CATKIN_PACKAGE_SHARE_DESTINATION})" if package.build_type == "catkin" else "share/${PROJECT_NAME})"),
-                  package.name)  # fmt: skip
+        yield Hit(
+            at,
+            folder,
+            f"`{name}` is opened through the package's share folder and not installed",
+            f"install(DIRECTORY {folder} DESTINATION "
+            + ("${CATKIN_PACKAGE_SHARE_DESTINATION})" if package.build_type == "catkin" else "share/${PROJECT_NAME})"),
+            package.name,
+        )
     scripts = referred.get(package.name, {}).get("executable", set())
     for path in package.digest.scripts:
         name = posixpath.basename(path)
         if name in scripts and not _covered(package, installs, path):
-            yield Hit(At(path, 1), name, f"`{name}` is started by a launch file and not installed",
-                      "catkin_install_python(PROGRAMS ...)" if package.build_type == "catkin" else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})",
-                      package.name)  # fmt: skip
+            yield Hit(
+                At(path, 1),
+                name,
+                f"`{name}` is started by a launch file and not installed",
+                "catkin_install_python(PROGRAMS ...)"
+                if package.build_type == "catkin"
+                else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})",
+                package.name,
+            )

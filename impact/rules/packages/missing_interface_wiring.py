@@ -26,8 +26,31 @@ from ...model.view import View
 from ..cure import Declare, Insert
 from ..rule import Hit, rule
 
-_ROS1_PRIMITIVE = frozenset("bool int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64 string time duration char byte "
-                            "wstring float double octet Header".split())  # fmt: skip
+_ROS1_PRIMITIVE = frozenset(
+    [
+        "bool",
+        "int8",
+        "uint8",
+        "int16",
+        "uint16",
+        "int32",
+        "uint32",
+        "int64",
+        "uint64",
+        "float32",
+        "float64",
+        "string",
+        "time",
+        "duration",
+        "char",
+        "byte",
+        "wstring",
+        "float",
+        "double",
+        "octet",
+        "Header",
+    ]
+)
 
 
 @rule(severity="warning")
@@ -61,8 +84,14 @@ def _field_packages(view: View, package):
                     names = {i.name for i in package.digest.interfaces}
                     if field.type not in names and field.type not in told:
                         told.add(field.type)
-                        yield Hit(_at(interface, field), field.type, f"`{field.type}` is no message of `{package.name}`",
-                                  "correct the type, or name its package", package.name, severity="error")  # fmt: skip
+                        yield Hit(
+                            _at(interface, field),
+                            field.type,
+                            f"`{field.type}` is no message of `{package.name}`",
+                            "correct the type, or name its package",
+                            package.name,
+                            severity="error",
+                        )
                     continue
                 if not owner or owner == package.name or owner in told:
                     continue
@@ -70,15 +99,27 @@ def _field_packages(view: View, package):
                 if owner in given:
                     if names and name not in names and (owner, name) not in told:
                         told.add((owner, name))
-                        yield Hit(_at(interface, field), f"{owner}/{name}", f"`{owner}` has no message `{name}`",
-                                  "correct the type", package.name, severity="error")  # fmt: skip
+                        yield Hit(
+                            _at(interface, field),
+                            f"{owner}/{name}",
+                            f"`{owner}` has no message `{name}`",
+                            "correct the type",
+                            package.name,
+                            severity="error",
+                        )
                     continue
                 if owner in _reached(view, given):
                     continue
                 told.add(owner)
-                yield Hit(_at(interface, field), owner, f"`{field.type}` is a field type and the generator is not given `{owner}`",
-                          f"add `{owner}` to DEPENDENCIES of {generated[0].how == 'rosidl' and 'rosidl_generate_interfaces' or 'generate_messages'}",
-                          package.name, severity="error" if generated[0].how == "rosidl" or field.type != "Header" else "warning")  # fmt: skip
+                yield Hit(
+                    _at(interface, field),
+                    owner,
+                    f"`{field.type}` is a field type and the generator is not given `{owner}`",
+                    f"add `{owner}` to DEPENDENCIES of "
+                    + ("rosidl_generate_interfaces" if generated[0].how == "rosidl" else "generate_messages"),
+                    package.name,
+                    severity="error" if generated[0].how == "rosidl" or field.type != "Header" else "warning",
+                )
 
 
 def _at(interface, field):
@@ -97,9 +138,15 @@ def _rosidl_manifest(view: View, package):
             continue
         groups = {d.name for d in package.manifest.dependencies if d.kind == "member_of_group"}
         if "rosidl_interface_packages" not in groups:
-            yield Hit(generated.at, "rosidl_interface_packages", f"`{package.name}` generates interfaces and is not in their group",
-                      "add `<member_of_group>rosidl_interface_packages</member_of_group>` to package.xml", package.name,
-                      severity="warning", fix=_joined(package))  # fmt: skip
+            yield Hit(
+                generated.at,
+                "rosidl_interface_packages",
+                f"`{package.name}` generates interfaces and is not in their group",
+                "add `<member_of_group>rosidl_interface_packages</member_of_group>` to package.xml",
+                package.name,
+                severity="warning",
+                fix=_joined(package),
+            )
         return
 
 
@@ -119,8 +166,13 @@ def _catkin_generation(view: View, package):
         at = generated[0].at
         reach = view.spread(found)
         if "message_generation" not in reach and "genmsg" not in reach:
-            yield Hit(at, "message_generation", "messages are generated and `message_generation` is never found",
-                      "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)", package.name)  # fmt: skip
+            yield Hit(
+                at,
+                "message_generation",
+                "messages are generated and `message_generation` is never found",
+                "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)",
+                package.name,
+            )
 
 
 def _orders(package) -> dict[str, set[str]]:
@@ -166,7 +218,11 @@ def _catkin_order(view: View, package):
             kind = "generate_messages_cpp"
         for name in include.targets:
             target = targets.get(name)
-            if target is None or not view.active(target.conditions) or _waits(orders.get(name, ()), head, kind, package.name):
+            if (
+                target is None
+                or not view.active(target.conditions)
+                or _waits(orders.get(name, ()), head, kind, package.name)
+            ):
                 continue
             wanted.setdefault((head, kind), []).append((include, target))
     for (head, kind), uses in wanted.items():
@@ -174,10 +230,14 @@ def _catkin_order(view: View, package):
         own = head == package.name
         cure = "${" + (f"{package.name}" if own else "catkin") + "_EXPORTED_TARGETS}"
         names = sorted({t.name for _, t in uses})
-        yield Hit(target.at, f"${{PROJECT_NAME}}_{kind}" if own else f"{head}_{kind}",
-                  f"{_several(names)} `{include.path}` and may be built before it is generated",
-                  f"add_dependencies({names[0]} {cure})", package.name,
-                  fix=_waiting(package, [t for _, t in uses], cure) if own or _component(package, head) else ())  # fmt: skip
+        yield Hit(
+            target.at,
+            f"${{PROJECT_NAME}}_{kind}" if own else f"{head}_{kind}",
+            f"{_several(names)} `{include.path}` and may be built before it is generated",
+            f"add_dependencies({names[0]} {cure})",
+            package.name,
+            fix=_waiting(package, [t for _, t in uses], cure) if own or _component(package, head) else (),
+        )
 
 
 def _component(package, name: str) -> bool:
@@ -212,7 +272,7 @@ def _waits(items, head: str, kind: str, package: str) -> bool:
                 return True
             continue
         if text.startswith(head + "_") and (
-            text.endswith(("_EXPORTED_TARGETS", "_generate_messages", "_genparam")) or "_gen" in text[len(head):]
+            text.endswith(("_EXPORTED_TARGETS", "_generate_messages", "_genparam")) or "_gen" in text[len(head) :]
         ):
             if kind == "gencfg" and not text.endswith(("_gencfg", "_EXPORTED_TARGETS", "_genparam")):
                 continue

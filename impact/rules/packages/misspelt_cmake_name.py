@@ -28,7 +28,16 @@ from ...targets.library import variables
 from ..cure import Replace
 from ..rule import Hit, rule
 
-_SUFFIXES = ("_INCLUDE_DIRS", "_INCLUDE_DIR", "_LIBRARIES", "_LIBRARY", "_LIBS", "_EXPORTED_TARGETS", "_DEFINITIONS", "_VERSION")
+_SUFFIXES = (
+    "_INCLUDE_DIRS",
+    "_INCLUDE_DIR",
+    "_LIBRARIES",
+    "_LIBRARY",
+    "_LIBS",
+    "_EXPORTED_TARGETS",
+    "_DEFINITIONS",
+    "_VERSION",
+)
 
 
 @rule(severity="warning")
@@ -40,19 +49,31 @@ def misspelt_cmake_name(view: View):
         for at, name, required, conditions, exact in _named(package):
             if package.name in view.workspace.find_modules.get(name, ()):
                 continue
-            if not view.active(conditions) or view.cmake(name) or name in declared or name in found and not required:
+            if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
                 continue
             halves = _run_together(name, near.names)
             if halves:
-                yield Hit(at, name, f"`{name}` is `{halves[0]}` and `{halves[1]}` run together", f"write `{halves[0]} {halves[1]}`",
-                          package.name, severity="error" if required else "warning",
-                          fix=(Replace(at.path, at.line, at.column, name, " ".join(halves)),))  # fmt: skip
+                yield Hit(
+                    at,
+                    name,
+                    f"`{name}` is `{halves[0]}` and `{halves[1]}` run together",
+                    f"write `{halves[0]} {halves[1]}`",
+                    package.name,
+                    severity="error" if required else "warning",
+                    fix=(Replace(at.path, at.line, at.column, name, " ".join(halves)),),
+                )
                 continue
             meant = near.nearest(name) if exact else None
             if meant is not None and meant != name and view.target.ever_released(name) is False:
-                yield Hit(at, name, f"nobody provides `{name}`; `{meant}` is declared", f"write `{meant}`", package.name,
-                          severity="error" if required and view.certain(conditions) else "warning",
-                          fix=(Replace(at.path, at.line, at.column, name, meant),))  # fmt: skip
+                yield Hit(
+                    at,
+                    name,
+                    f"nobody provides `{name}`; `{meant}` is declared",
+                    f"write `{meant}`",
+                    package.name,
+                    severity="error" if required and view.certain(conditions) else "warning",
+                    fix=(Replace(at.path, at.line, at.column, name, meant),),
+                )
         yield from _variables(view, package, found)
 
 
@@ -89,7 +110,7 @@ def _variables(view: View, package, found):
                 break
         else:
             continue
-        if stem.lower() not in folded or stem in found and variables(stem) is None:
+        if stem.lower() not in folded or (stem in found and variables(stem) is None):
             continue
         meant = folded[stem.lower()]
         sets = variables(meant)
@@ -99,10 +120,18 @@ def _variables(view: View, package, found):
             continue
         right = next((v for v in sorted(sets) if v.endswith(suffix)), None)
         if right is None:
-            right = next((v for v in sorted(sets) if v.lower() == use.name.lower() or v.lower() == use.name.lower() + "s"), None)
+            right = next(
+                (v for v in sorted(sets) if v.lower() == use.name.lower() or v.lower() == use.name.lower() + "s"), None
+            )
         if right is not None:
             told.add(use.name)
             if any(use.name == f"{f.prefix}{suffix}" for f in package.build.found if f.prefix):
                 continue
-            yield Hit(use.at, use.name, f"find_package({meant}) sets `{right}`, so `{use.name}` is empty", f"write `${{{right}}}`",
-                      package.name, fix=(Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", f"${{{right}}}"),))  # fmt: skip
+            yield Hit(
+                use.at,
+                use.name,
+                f"find_package({meant}) sets `{right}`, so `{use.name}` is empty",
+                f"write `${{{right}}}`",
+                package.name,
+                fix=(Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", f"${{{right}}}"),),
+            )

@@ -31,30 +31,104 @@ from ..cure import Declare
 from ..evidence import circular, name_to_declare, present, weight
 from ..rule import Hit, rule
 
-
 # Tools that people start on their own desk.
-_VIEWERS = ("rviz", "rqt", "image_view", "joint_state_publisher", "moveit_ros_benchmarks", "joint_state_publisher_gui", "plotjuggler", "teleop_", "joy", "moveit_setup_assistant",
-            "urdf_tutorial", "turtlesim")  # fmt: skip
-_ON_THE_DESK = frozenset("python3-matplotlib python-matplotlib python3-pytest python-pytest python-gtk2 python3-tk python-tk".split())
+_VIEWERS = (
+    "rviz",
+    "rqt",
+    "image_view",
+    "joint_state_publisher",
+    "moveit_ros_benchmarks",
+    "joint_state_publisher_gui",
+    "plotjuggler",
+    "teleop_",
+    "joy",
+    "moveit_setup_assistant",
+    "urdf_tutorial",
+    "turtlesim",
+)
+_ON_THE_DESK = frozenset(
+    [
+        "python3-matplotlib",
+        "python-matplotlib",
+        "python3-pytest",
+        "python-pytest",
+        "python-gtk2",
+        "python3-tk",
+        "python-tk",
+    ]
+)
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 _LOUD = 2
 # The macros that make tests bring these headers.
 _WITH_TESTS = ("gtest/", "gmock/")
 # Whoever starts a launch file has these: the launch tool itself brings them.
-_LAUNCHING = frozenset({"launch", "launch_ros", "launch_xml", "launch_yaml", "roslaunch", "launch_testing", "launch_testing_ros"})
+_LAUNCHING = frozenset(
+    {"launch", "launch_ros", "launch_xml", "launch_yaml", "roslaunch", "launch_testing", "launch_testing_ros"}
+)
 
 
 # Client libraries and what their own headers include: always there with them, and customarily not declared apart.
 WITH_CLIENT = frozenset(
-    "roscpp rospy rosconsole rostime xmlrpcpp roslib cpp_common roscpp_traits roscpp_serialization class_loader pluginlib "
-    "nodelet tf tf2 tf2_ros tf2_msgs eigen_conversions tf_conversions message_filters rclcpp rclcpp_components rclcpp_lifecycle "
-    "rclpy rcl rcutils builtin_interfaces std_msgs geometry_msgs sensor_msgs nav_msgs catkin actionlib dynamic_reconfigure "
-    "message_generation message_runtime genmsg rcl_interfaces opencv2 opencv3".split()
+    [
+        "roscpp",
+        "rospy",
+        "rosconsole",
+        "rostime",
+        "xmlrpcpp",
+        "roslib",
+        "cpp_common",
+        "roscpp_traits",
+        "roscpp_serialization",
+        "class_loader",
+        "pluginlib",
+        "nodelet",
+        "tf",
+        "tf2",
+        "tf2_ros",
+        "tf2_msgs",
+        "eigen_conversions",
+        "tf_conversions",
+        "message_filters",
+        "rclcpp",
+        "rclcpp_components",
+        "rclcpp_lifecycle",
+        "rclpy",
+        "rcl",
+        "rcutils",
+        "builtin_interfaces",
+        "std_msgs",
+        "geometry_msgs",
+        "sensor_msgs",
+        "nav_msgs",
+        "catkin",
+        "actionlib",
+        "dynamic_reconfigure",
+        "message_generation",
+        "message_runtime",
+        "genmsg",
+        "rcl_interfaces",
+        "opencv2",
+        "opencv3",
+    ]
 )
 _MESSAGES = ("_msgs", "_srvs", "_interfaces")
 # Keys that most graphs of dependencies bring anyway.
-_COMMON_KEYS = frozenset({"boost", "libboost-dev", "libboost-all-dev", "libopencv-dev", "opencv2", "python3-dev", "python-dev", "eigen",
-                          "libpcl-all-dev", "python", "python3", "liborocos-kdl-dev"})  # fmt: skip
+_COMMON_KEYS = frozenset(
+    {
+        "boost",
+        "libboost-dev",
+        "libboost-all-dev",
+        "libopencv-dev",
+        "opencv2",
+        "python3-dev",
+        "python-dev",
+        "eigen",
+        "libpcl-all-dev",
+        "python",
+        "python3",
+        "liborocos-kdl-dev",
+    }
+)
 
 
 @rule(severity="error")
@@ -65,7 +139,9 @@ def undeclared_package(view: View):
         missing: dict[str, list[Need]] = {}
         borrowed: dict[str, list[Need]] = {}
         for need in view.needs(package):
-            if view.answered(need.providers, declared) or need.subject.startswith(_WITH_TESTS) and need.role == "test":
+            if view.answered(need.providers, declared) or (
+                need.subject.startswith(_WITH_TESTS) and need.role == "test"
+            ):
                 continue
             name = name_to_declare(view, need)
             if name is None or name == package.name:
@@ -90,7 +166,7 @@ def undeclared_package(view: View):
                 at=first.at,
                 subject=name,
                 message=f"{_how(first)}, and nothing that `{package.name}` declares brings `{name}`",
-                help=f"add `<{_tag(first, package.manifest.format)}>{name}</{_tag(first, package.manifest.format)}>` to "
+                help=f"add `<{(tag := _tag(first, package.manifest.format))}>{name}</{tag}>` to "
                 f"{package.digest.manifest_path}",
                 package=package.name,
                 severity=severity,
@@ -99,32 +175,50 @@ def undeclared_package(view: View):
 
 
 def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dict[str, str]):
-    """What built code uses directly and only a dependency of a dependency brings, so that it leaves when that one does."""
+    """What built code uses and only a dependency of a dependency brings: it leaves when that one does."""
     for name, needs in borrowed.items():
         if name in WITH_CLIENT or name.startswith(("ament_", "rosidl_", "rmw")) or name.endswith(_MESSAGES):
             continue
         ours = name in view.workspace.packages
         ros = ours or view.target.version(name) is not None
         strong = [
-            n for n in needs
-            if n.certain and n.required and (
-                n.how in ("find_package", "component") and n.role == "build" and (ros or name not in _COMMON_KEYS)
-                or n.how == "include" and n.role == "build" and n.targets and ros and interface_of(view, n.subject) is None
-                or n.how == "import" and ours and n.role == "run"
+            n
+            for n in needs
+            if n.certain
+            and n.required
+            and (
+                (n.how in ("find_package", "component") and n.role == "build" and (ros or name not in _COMMON_KEYS))
+                or (
+                    n.how == "include"
+                    and n.role == "build"
+                    and n.targets
+                    and ros
+                    and interface_of(view, n.subject) is None
+                )
+                or (n.how == "import" and ours and n.role == "run")
             )
-        ]  # fmt: skip
+        ]
         if not strong:
             continue
         first = min(strong, key=weight)
-        if ours and first.how == "include" and closure.get(name, "") in view.workspace.packages and view.target.ros == 1:
+        if (
+            ours
+            and first.how == "include"
+            and closure.get(name, "") in view.workspace.packages
+            and view.target.ros == 1
+        ):
             continue  # one repository, built in its order
         through = closure.get(name) or next((closure[p.name] for p in first.providers if p.name in closure), "")
         yield Hit(
-            first.at, name, f"{_how(first)}, and `{name}` only comes along with `{through}`",
+            first.at,
+            name,
+            f"{_how(first)}, and `{name}` only comes along with `{through}`",
             f"add `<{_tag(first, package.manifest.format)}>{name}</{_tag(first, package.manifest.format)}>` to "
             f"{package.digest.manifest_path}",
-            package.name, severity="warning", fix=_cure(view, package, first, name),
-        )  # fmt: skip
+            package.name,
+            severity="warning",
+            fix=_cure(view, package, first, name),
+        )
 
 
 def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
@@ -138,7 +232,11 @@ def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
         loud = need.required and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
         return "warning" if loud else "note"
     if need.role == "test" or need.how == "import":
-        return "warning" if need.required and name not in _ON_THE_DESK and (need.role != "test" or name not in WITH_CLIENT) else "note"
+        return (
+            "warning"
+            if need.required and name not in _ON_THE_DESK and (need.role != "test" or name not in WITH_CLIENT)
+            else "note"
+        )
     if not need.certain:
         return "note"
     if need.how == "include" and not need.targets:

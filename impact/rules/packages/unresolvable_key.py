@@ -24,8 +24,8 @@ Not reported
 
 import re
 
-from ...model.view import View
 from ...model.spelling import nearest, one_edit
+from ...model.view import View
 from ..cure import Remove, Replace
 from ..rule import Hit, rule
 
@@ -52,17 +52,31 @@ def unresolvable_key(view: View):
             at = view.manifest_place(package, dependency)
             if known:
                 yield Hit(
-                    at, name, f"rosdep has no rule for `{name}` on {target.platform}", _cure(guess, name), package.name,
+                    at,
+                    name,
+                    f"rosdep has no rule for `{name}` on {target.platform}",
+                    _cure(guess, name),
+                    package.name,
                     severity="error",
-                )  # fmt: skip
+                )
             elif guess:
-                yield Hit(at, name, f"`{name}` is neither a package nor a rosdep key", _cure(guess, name), package.name,
-                          fix=_fix(view, package, name, guess))  # fmt: skip
+                yield Hit(
+                    at,
+                    name,
+                    f"`{name}` is neither a package nor a rosdep key",
+                    _cure(guess, name),
+                    package.name,
+                    fix=_fix(view, package, name, guess),
+                )
             else:
                 yield Hit(
-                    at, name, f"`{name}` is no package or rosdep key known in public",
-                    "name it in `[workspace] private` of rosimpact.toml if it is your own", package.name, severity="note",
-                )  # fmt: skip
+                    at,
+                    name,
+                    f"`{name}` is no package or rosdep key known in public",
+                    "name it in `[workspace] private` of rosimpact.toml if it is your own",
+                    package.name,
+                    severity="note",
+                )
 
 
 def _fix(view: View, package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
@@ -78,7 +92,7 @@ def _fix(view: View, package, name: str, guess: str) -> tuple[Replace | Remove, 
 
 
 def _slip(name: str, guess: str) -> bool:
-    """True when only case and separators, or one letter of a longer name, part the two. A digit tells versions apart."""
+    """True when only case, separators or one letter of a longer name part the two; a digit tells versions."""
     if _plain(name) == _plain(guess):
         return True
     return len(name) > 5 and one_edit(name, guess) and re.findall(r"\d", name) == re.findall(r"\d", guess)
@@ -89,4 +103,6 @@ def _plain(name: str) -> str:
 
 
 def _cure(guess: str | None, name: str) -> str:
-    return f"declare `{guess}`" if guess and guess != name else "declare a key that exists there, or put a condition on it"
+    return (
+        f"declare `{guess}`" if guess and guess != name else "declare a key that exists there, or put a condition on it"
+    )

@@ -23,14 +23,30 @@ Not reported
 from ...model.view import View
 from ..rule import Hit, rule
 
-_SILENT = ("_vendor", "_runtime", "_generators", "message_generation", "message_runtime", "ament_", "rosidl", "python", "ros2launch",
-           "launch", "rmw", "roslaunch", "rviz", "robot_state_publisher", "joint_state_publisher", "xacro")  # fmt: skip
+_SILENT = (
+    "_vendor",
+    "_runtime",
+    "_generators",
+    "message_generation",
+    "message_runtime",
+    "ament_",
+    "rosidl",
+    "python",
+    "ros2launch",
+    "launch",
+    "rmw",
+    "roslaunch",
+    "rviz",
+    "robot_state_publisher",
+    "joint_state_publisher",
+    "xacro",
+)
 
 
 @rule(severity="note")
 def unused_dependency(view: View):
     for package in view:
-        if package.manifest.metapackage or package.build_type == "ament_python" and not package.digest.imports:
+        if package.manifest.metapackage or (package.build_type == "ament_python" and not package.digest.imports):
             continue
         if not package.digest.includes and not package.digest.imports and not package.digest.references:
             continue
@@ -38,16 +54,37 @@ def unused_dependency(view: View):
         debian = {p.package for need in view.needs(package) for p in need.providers}
         used.update(dep for g in package.build.generated for dep, _ in g.dependencies)
         used.update(e.item for e in package.build.exports)
-        used.update(f.type.split("/")[0] for i in package.digest.interfaces for s in i.definition.sections for f in s.fields)
+        used.update(
+            f.type.split("/")[0] for i in package.digest.interfaces for s in i.definition.sections for f in s.fields
+        )
         found = {f.name for f in package.build.found}
-        included = {i.path.split("/", 1)[0] for i in package.digest.includes} | {i.module.split(".")[0] for i in package.digest.imports}
+        included = {i.path.split("/", 1)[0] for i in package.digest.includes} | {
+            i.module.split(".")[0] for i in package.digest.imports
+        }
         for name, kinds in view.declared(package).items():
-            if name in used or name in included or not kinds & {"build", "exec"} or name.startswith(_SILENT) or name.endswith(_SILENT):
+            if (
+                name in used
+                or name in included
+                or not kinds & {"build", "exec"}
+                or name.startswith(_SILENT)
+                or name.endswith(_SILENT)
+            ):
                 continue
-            if name in found and kinds & {"build"} and any(name in link.item for t in package.build.targets for link in t.links):
+            if (
+                name in found
+                and kinds & {"build"}
+                and any(name in link.item for t in package.build.targets for link in t.links)
+            ):
                 continue
-            if view.debian(name) & debian or view.target.version(name) is None and name not in view.workspace.packages:
+            if view.debian(name) & debian or (
+                view.target.version(name) is None and name not in view.workspace.packages
+            ):
                 continue
             place = next(d for d in package.manifest.dependencies if d.name == name)
-            yield Hit(view.manifest_place(package, place), name, f"nothing in `{package.name}` uses `{name}`",
-                      "remove the dependency if it is not wanted for another reason", package.name)  # fmt: skip
+            yield Hit(
+                view.manifest_place(package, place),
+                name,
+                f"nothing in `{package.name}` uses `{name}`",
+                "remove the dependency if it is not wanted for another reason",
+                package.name,
+            )

@@ -46,7 +46,9 @@ def wrong_dependency_kind(view: View):
             name = own[0]
             if need.role == "build" and need.how in ("find_package", "component", "include"):
                 if not kinds & _FOR_BUILD:
-                    build = build if build is not None else view.spread(n for n, k in declared.items() if k & _FOR_BUILD)
+                    build = (
+                        build if build is not None else view.spread(n for n, k in declared.items() if k & _FOR_BUILD)
+                    )
                     if view.answered(need.providers, build):
                         continue
                     if package.manifest.format == 1 or kinds <= {"exec"}:
@@ -56,28 +58,48 @@ def wrong_dependency_kind(view: View):
                         severity = "warning"
                     told.add(name)
                     kind = "for tests" if kinds == {"test"} else "for running"
-                    yield Hit(need.at, name, f"`{name}` is needed to build and declared only {kind}",
-                              f"declare it as `<{'build_depend' if package.manifest.format == 1 else 'depend'}>`",
-                              package.name, severity=severity, fix=_cure(view, package, name, "depend", kinds))  # fmt: skip
+                    yield Hit(
+                        need.at,
+                        name,
+                        f"`{name}` is needed to build and declared only {kind}",
+                        f"declare it as `<{'build_depend' if package.manifest.format == 1 else 'depend'}>`",
+                        package.name,
+                        severity=severity,
+                        fix=_cure(view, package, name, "depend", kinds),
+                    )
                 elif need.public and need.how == "include" and not kinds & {"build_export", "exec"}:
-                    exported = exported if exported is not None else view.spread(
-                        n for n, k in declared.items() if k & {"build_export", "exec", "buildtool_export"}
+                    exported = (
+                        exported
+                        if exported is not None
+                        else view.spread(
+                            n for n, k in declared.items() if k & {"build_export", "exec", "buildtool_export"}
+                        )
                     )
                     if view.answered(need.providers, exported):
                         continue
                     told.add(name)
-                    yield Hit(need.at, name, f"an installed header includes `{need.subject}` and dependants do not get `{name}`",
-                              f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
-                              package.name, fix=_cure(view, package, name, "depend", kinds))  # fmt: skip
+                    yield Hit(
+                        need.at,
+                        name,
+                        f"an installed header includes `{need.subject}` and dependants do not get `{name}`",
+                        f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
+                        package.name,
+                        fix=_cure(view, package, name, "depend", kinds),
+                    )
             elif need.role == "run" and need.how in ("import", "launch") and not kinds & _FOR_RUN:
                 run = run if run is not None else view.spread(n for n, k in declared.items() if k & _FOR_RUN)
                 if view.answered(need.providers, run):
                     continue
                 told.add(name)
-                yield Hit(need.at, name, f"`{name}` is needed to run and declared only {'for tests' if kinds == {'test'} else 'for building'}",
-                          f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'exec_depend'}>`",
-                          package.name, severity="warning" if kinds != {"test"} else "note",
-                          fix=_cure(view, package, name, "exec_depend", kinds))  # fmt: skip
+                yield Hit(
+                    need.at,
+                    name,
+                    f"`{name}` is needed to run and declared only for {'tests' if kinds == {'test'} else 'building'}",
+                    f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'exec_depend'}>`",
+                    package.name,
+                    severity="warning" if kinds != {"test"} else "note",
+                    fix=_cure(view, package, name, "exec_depend", kinds),
+                )
 
 
 def _cure(view: View, package, name: str, tag: str, kinds: set[str]) -> tuple[Declare | Remove, ...]:

@@ -51,7 +51,9 @@ def missing_include(view: View):
             if (need.at.path, header) in told:
                 continue
             outside = [r for r in need.reach if not view.is_standard(r)]
-            if row.through and not any(r.startswith(row.through) for r in need.reach) or outside and not row.through:
+            if (row.through and not any(r.startswith(row.through) for r in need.reach)) or (
+                outside and not row.through
+            ):
                 continue
             missed = row.through or _out_of_reach(need, row.library, version)
             if not missed:
@@ -59,23 +61,42 @@ def missing_include(view: View):
             told.add((need.at.path, header))
             now = need.name in here
             sure = (
-                now and need.role == "build" and not row.through and not outside and not is_header(need.at.path)
+                now
+                and need.role == "build"
+                and not row.through
+                and not outside
+                and not is_header(need.at.path)
                 and view.certain(need.conditions)
-            )  # fmt: skip
+            )
             where = "" if now else f" of {view.horizon}"
-            yield Hit(need.at, header, f"`{need.name}` is used without `<{header}>`, which {row.library} {version}{where} no longer brings along",
-                      f"#include <{header}>", package.name, severity="error" if sure else "warning" if now and not (row.through and is_header(need.at.path)) else "note",
-                      fix=_included(view, package, need, header) if not row.through else ())  # fmt: skip
+            yield Hit(
+                need.at,
+                header,
+                f"`{need.name}` is used without `<{header}>`, "
+                f"which {row.library} {version}{where} no longer brings along",
+                f"#include <{header}>",
+                package.name,
+                severity="error"
+                if sure
+                else "warning"
+                if now and not (row.through and is_header(need.at.path))
+                else "note",
+                fix=_included(view, package, need, header) if not row.through else (),
+            )
 
 
 def _included(view: View, package, need, header: str) -> tuple[Insert, ...]:
     """The cure that includes a header behind the standard C++ headers of the file that sort before it; nothing where it
     includes none outside of conditions."""
     standard = [
-        i for i in package.digest.includes
-        if i.at.path == need.at.path and i.at.line < need.at.line and not i.conditions and "." not in i.path
+        i
+        for i in package.digest.includes
+        if i.at.path == need.at.path
+        and i.at.line < need.at.line
+        and not i.conditions
+        and "." not in i.path
         and view.is_standard(i.path)
-    ]  # fmt: skip
+    ]
     before = [i for i in standard if i.path < header] or standard
     return (Insert(need.at.path, max(i.at.line for i in before), f"#include <{header}>"),) if before else ()
 

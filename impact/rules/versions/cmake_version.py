@@ -38,8 +38,18 @@ def cmake_version(view: View):
         if not low[:1].isdigit():
             continue
         if compare(low, cmake) > 0:
-            yield Hit(at, low, f"CMake {low} is asked for and {view.target.platform} has {cmake}", f"ask for at most {cmake}",
-                      package.name)  # fmt: skip
+            yield Hit(
+                at,
+                low,
+                f"CMake {low} is asked for and {view.target.platform} has {cmake}",
+                f"ask for at most {cmake}",
+                package.name,
+            )
         elif at_least(cmake, "4.0") and not at_least(high or low, "3.5"):
-            yield Hit(at, low, f"CMake {cmake} no longer accepts projects written for {low}",
-                      "cmake_minimum_required(VERSION 3.5) or newer", package.name)  # fmt: skip
+            yield Hit(
+                at,
+                low,
+                f"CMake {cmake} no longer accepts projects written for {low}",
+                "cmake_minimum_required(VERSION 3.5) or newer",
+                package.name,
+            )

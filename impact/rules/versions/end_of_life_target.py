@@ -21,5 +21,10 @@ def end_of_life_target(view: View):
     if ended and ended <= view.target.data_date:
         first = next(iter(view.workspace), None)
         if first is not None:
-            yield Hit(At(first.digest.manifest_path, 1), view.target.distro, f"{view.target.distro} reached its end of life on {ended}",
-                      "plan the move to a maintained distro", first.name)  # fmt: skip
+            yield Hit(
+                At(first.digest.manifest_path, 1),
+                view.target.distro,
+                f"{view.target.distro} reached its end of life on {ended}",
+                "plan the move to a maintained distro",
+                first.name,
+            )

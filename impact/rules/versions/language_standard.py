@@ -34,9 +34,10 @@ def language_standard(view: View):
             continue
         fixed = package.build.standard
         have = _order(fixed[0]) if fixed else default
-        if not fixed and (any(u.kind == "command" for u in package.build.uses) or any(
-            f.name in view.workspace.packages for f in package.build.found
-        )):  # fmt: skip
+        if not fixed and (
+            any(u.kind == "command" for u in package.build.uses)
+            or any(f.name in view.workspace.packages for f in package.build.found)
+        ):
             continue  # a macro of another package may set it
         if have is None:
             continue
@@ -50,11 +51,19 @@ def language_standard(view: View):
             if need is None or need.package in view.workspace.packages or _order(need.standard) <= have:
                 continue
             at = fixed[1] if fixed else include.at
-            written = f"C++{fixed[0] % 100:02d} is set" if fixed else f"no C++ standard is set and {view.target.platform}'s compiler takes C++{have % 100:02d}"
-            yield Hit(at, f"-std=c++{fixed[0] % 100:02d}" if fixed else include.path,
-                      f"{written}, and `{include.path}` of {need.package} {need.version} needs C++{need.standard}",
-                      f"set(CMAKE_CXX_STANDARD {need.standard})", package.name,
-                      severity="error" if need.sure and fixed else "warning")  # fmt: skip
+            written = (
+                f"C++{fixed[0] % 100:02d} is set"
+                if fixed
+                else f"no C++ standard is set and {view.target.platform}'s compiler takes C++{have % 100:02d}"
+            )
+            yield Hit(
+                at,
+                f"-std=c++{fixed[0] % 100:02d}" if fixed else include.path,
+                f"{written}, and `{include.path}` of {need.package} {need.version} needs C++{need.standard}",
+                f"set(CMAKE_CXX_STANDARD {need.standard})",
+                package.name,
+                severity="error" if need.sure and fixed else "warning",
+            )
             break
 
 

@@ -40,9 +40,14 @@ def library_version(view: View):
             if any(_holds(view, o) or o.quiet for o in others) or found.quiet:
                 continue
             sure = found.required and view.certain(found.conditions)
-            yield Hit(found.at, found.name, f"{found.name} is {answer.version}, and CMake asks for {found.version}",
-                      "ask for a version that every target has, or for none", package.name,
-                      severity="error" if sure else "warning" if found.required else "note")  # fmt: skip
+            yield Hit(
+                found.at,
+                found.name,
+                f"{found.name} is {answer.version}, and CMake asks for {found.version}",
+                "ask for a version that every target has, or for none",
+                package.name,
+                severity="error" if sure else "warning" if found.required else "note",
+            )
 
 
 def _holds(view: View, found) -> bool:

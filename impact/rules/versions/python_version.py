@@ -38,16 +38,33 @@ def python_version(view: View):
             severity = _SEVERITY.get(use.role, "note")
             if use.needs == 2 and minor and use.at.path not in told:
                 told.add(use.at.path)
-                yield Hit(use.at, use.what, f"Python 3.{minor} refuses {use.what}", "write it so that Python 3 takes it", package.name,
-                          severity=severity)  # fmt: skip
+                yield Hit(
+                    use.at,
+                    use.what,
+                    f"Python 3.{minor} refuses {use.what}",
+                    "write it so that Python 3 takes it",
+                    package.name,
+                    severity=severity,
+                )
             elif use.needs > 2 and minor and use.needs > minor:
-                yield Hit(use.at, use.what, f"{use.what} needs Python 3.{use.needs}, and the target has 3.{minor}",
-                          "write it so that every target's Python takes it", package.name, severity=severity)  # fmt: skip
+                yield Hit(
+                    use.at,
+                    use.what,
+                    f"{use.what} needs Python 3.{use.needs}, and the target has 3.{minor}",
+                    "write it so that every target's Python takes it",
+                    package.name,
+                    severity=severity,
+                )
         for item in package.digest.imports:
             if not minor or not view.certain(item.conditions):
                 continue
             if view.left_python(item.module) and item.module.split(".")[0] not in view.workspace.modules:
                 severity = _SEVERITY.get(item.role, "note")
-                yield Hit(item.at, item.module, f"module `{item.module}` is not in Python 3.{minor}",
-                          "use its successor, with an except branch where both must work", package.name,
-                          severity="warning" if item.lazy and severity == "error" else severity)  # fmt: skip
+                yield Hit(
+                    item.at,
+                    item.module,
+                    f"module `{item.module}` is not in Python 3.{minor}",
+                    "use its successor, with an except branch where both must work",
+                    package.name,
+                    severity="warning" if item.lazy and severity == "error" else severity,
+                )

@@ -26,9 +26,12 @@ from ...targets.version import compare
 from ..rule import Hit, rule
 
 _HOLDS = {
-    "version_lt": lambda c: c < 0, "version_lte": lambda c: c <= 0, "version_eq": lambda c: c == 0,
-    "version_gte": lambda c: c >= 0, "version_gt": lambda c: c > 0,
-}  # fmt: skip
+    "version_lt": lambda c: c < 0,
+    "version_lte": lambda c: c <= 0,
+    "version_eq": lambda c: c == 0,
+    "version_gte": lambda c: c >= 0,
+    "version_gt": lambda c: c > 0,
+}
 _SIGN = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
 
 
@@ -42,14 +45,22 @@ def unsatisfied_version(view: View):
             if dependency.condition and not view.active_manifest(dependency.condition):
                 continue
             here = view.workspace.packages.get(dependency.name)
-            version = here.manifest.version if here else view.target.version(dependency.name) or view.target.library(dependency.name)
+            version = (
+                here.manifest.version
+                if here
+                else view.target.version(dependency.name) or view.target.library(dependency.name)
+            )
             if not version:
                 continue
             for name, bound in dependency.bounds:
                 if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
                     seen.add(dependency.name)
-                    yield Hit(view.manifest_place(package, dependency), dependency.name,
-                              f"`{dependency.name}` is {version}, and the manifest asks for {_SIGN[name]} {bound}",
-                              "relax the bound, or update that target", package.name,
-                              severity="" if not here else "warning")  # fmt: skip
+                    yield Hit(
+                        view.manifest_place(package, dependency),
+                        dependency.name,
+                        f"`{dependency.name}` is {version}, and the manifest asks for {_SIGN[name]} {bound}",
+                        "relax the bound, or update that target",
+                        package.name,
+                        severity="" if not here else "warning",
+                    )
                     break
