@@ -73,7 +73,6 @@ def main() -> None:
             for path in cache.glob("facts.sqlite*"):
                 path.unlink()
 
-        anchors = anchor_figures(files, args.repeat)
         header = most_included(copy)
         macro = next((p for p in sorted(copy.rglob("cmake/*.cmake")) if "Find" not in p.name), None)
 
@@ -98,6 +97,8 @@ def main() -> None:
                 *best(args.repeat, lambda: None, [sys.executable, "-m", "rosimpact.impact.cli", "--help"], environment),
             )
         )
+        # Last, since a child's peak memory counts what its parent held when it was forked.
+        anchors = anchor_figures(files, args.repeat)
         for name, seconds, memory in rows:
             beside = ", ".join(
                 f"{seconds / anchor:.2f} x {label}" for label, anchor in anchors if name in ("cold", "warm")
