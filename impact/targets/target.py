@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 
 class Provider(NamedTuple):
@@ -55,7 +55,7 @@ class Change(NamedTuple):
     library: bool = False
 
 
-class Target:
+class Target(Protocol):
     """One machine, real or described. Interface only; see distro.py, capture.py for how one is made.
 
     Attributes: name, distro (`humble`), ros (1 or 2), date (ISO day), platform (`ubuntu jammy`), python (minor
@@ -78,64 +78,64 @@ class Target:
 
     def identity(self) -> str:
         """Differs whenever the target, or the data that answers for it, does."""
-        raise NotImplementedError
+        ...
 
     def version(self, package: str) -> str | None:
         """Version of a released ROS package on this target (`2.0.1`), None when it is not there."""
-        raise NotImplementedError
+        ...
 
     def ever_released(self, package: str) -> bool:
         """True when any distro at any date has released a package of this name."""
-        raise NotImplementedError
+        ...
 
     def dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         """What the released package declares, None when its manifest is not known."""
-        raise NotImplementedError
+        ...
 
     def similar_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         """The same in the nearest distro of this generation that knows it; likely, not sure."""
-        raise NotImplementedError
+        ...
 
     def resolve(self, key: str) -> Resolution | None:
         """The rosdep rule for a key on this platform, None when there is none."""
-        raise NotImplementedError
+        ...
 
     def known_key(self, key: str) -> bool:
         """True when rosdep has, or had, a key of this name for any platform."""
-        raise NotImplementedError
+        ...
 
     def library(self, name: str) -> str | None:
         """Version of a platform library by the name of platform_versions.yaml (opencv, boost, gcc, python3 ...)."""
-        raise NotImplementedError
+        ...
 
     def released_names(self) -> frozenset[str]:
         """Every ROS package that is there."""
-        raise NotImplementedError
+        ...
 
     def key_names(self) -> frozenset[str]:
         """Every rosdep key that any platform has, or had."""
-        raise NotImplementedError
+        ...
 
     def last_distro(self, package: str) -> str:
         """The newest distro of the same generation that has released a package, empty when none has."""
-        raise NotImplementedError
+        ...
 
     def newest(self) -> Target | None:
         """The newest long-term distro of this generation as of the data's day, None when this is it or a newer one."""
-        raise NotImplementedError
+        ...
 
     def library_names(self) -> frozenset[str]:
         """Platform libraries whose version is known here."""
-        raise NotImplementedError
+        ...
 
     def has_changes(self) -> bool:
         """True when changes() answers without working them out."""
-        raise NotImplementedError
+        ...
 
     def set_changes(self, changes: tuple[Change, ...]) -> None:
         """What changes() is to answer, worked out by an earlier run on the same data."""
-        raise NotImplementedError
+        ...
 
     def changes(self) -> tuple[Change, ...]:
         """Known upstream changes that are in force here, deprecations included."""
-        raise NotImplementedError
+        ...
