@@ -36,12 +36,16 @@ def removed_header(view: View):
         if c.state == "removed" and c.old
     }
     early = {c.new: c for c in view.changes("header-renamed", "header-moved") if c.state == "absent" and c.new}
+    quiet: set[str] = set()  # paths of which nothing can be said, whoever includes them
     for package in view:
         dual = view.target.ros == 2 and any(i.path.startswith("ros/") for i in package.digest.includes)
         coming = set()
         for include in package.digest.includes:
             path = include.path
-            if not view.active(include.conditions) or view.workspace.provides_header(path):
+            if path in quiet or not view.active(include.conditions):
+                continue
+            if view.workspace.provides_header(path):
+                quiet.add(path)
                 continue
             if include.role == "aside" or not include.targets:
                 severity = "note"
@@ -97,6 +101,8 @@ def removed_header(view: View):
             if lost is not None:
                 yield Hit(include.at, path, lost.message, lost.help, package.name, severity=severity)
                 continue
-            wrong = None if dual else view.misnamed_interface(path)
-            if wrong:
+            wrong = view.misnamed_interface(path)
+            if wrong is None and path not in gone and path not in early and path not in view.later:
+                quiet.add(path)
+            if wrong and not dual:
                 yield Hit(include.at, path, wrong.message, wrong.help, package.name, severity=severity)

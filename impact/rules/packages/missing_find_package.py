@@ -23,6 +23,7 @@ Not reported
 """
 
 import re
+from functools import lru_cache
 
 from ...model.view import View, interface_of
 from ..evidence import weight
@@ -152,6 +153,7 @@ def _not_given(view: View, package):
     if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
         return
     told = set()
+    reach: dict[str, dict[str, str] | None] = {}
     for include in package.digest.includes:
         providers = view.header(include.path)
         if (
@@ -165,10 +167,11 @@ def _not_given(view: View, package):
         if name not in found or name == package.name or name in told:
             continue
         for target in include.targets:
-            given = _given(view, targets, target)
-            if given is None or name in given or name in everywhere:
-                continue
-            if name in view.spread(n for n in (*given, *everywhere) if n):
+            if target not in reach:
+                given = _given(view, targets, target)
+                reach[target] = None if given is None else view.spread(n for n in (*given, *everywhere) if n)
+            brought = reach[target]
+            if brought is None or name in brought:
                 continue
             told.add(name)
             yield Hit(
@@ -182,6 +185,7 @@ def _not_given(view: View, package):
             break
 
 
+@lru_cache(maxsize=10000)
 def _package_of(item: str) -> str:
     """The package that a link item stands for: `pkg::target`, `${pkg_LIBRARIES}`, or the item itself."""
     match = _OF_PACKAGE.match(item)
