@@ -415,8 +415,8 @@ def data_status(format: str = "text") -> int:
 
 def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path | None) -> int:
     """Builds the snapshot from git repositories."""
+    from .cache import cache_folder
     from .targets.build_data import BuildError, build
-    from .targets.snapshot import cache_folder
 
     try:
         with told(rosdistro):

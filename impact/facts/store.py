@@ -14,6 +14,8 @@ import time
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
 
+from ..cache import cache_folder
+
 _SCHEMA_VERSION = 1
 _TABLES = ("facts", "memo")
 # used: the day of its last use, since 1970
@@ -26,16 +28,6 @@ _AT_ONCE = 900
 _DAY = 86_400
 # Below this, deflating takes longer than reading the bytes it saves.
 _PACK_FROM = 2_000
-
-
-def cache_folder() -> str:
-    """$ROSIMPACT_CACHE, else the user's cache folder for rosimpact as the platform has it."""
-    place = os.environ.get("ROSIMPACT_CACHE")
-    if place:
-        return os.path.abspath(os.path.expanduser(place))
-    import platformdirs
-
-    return platformdirs.user_cache_dir("rosimpact", appauthor=False)
 
 
 def fact_key(content_id: str, extractor: str) -> bytes:
@@ -73,7 +65,7 @@ class Store:
     """
 
     def __init__(self, folder: str | os.PathLike[str] | None = None, limit: int = LIMIT_BYTES):
-        self.folder = cache_folder() if folder is None else os.fspath(folder)
+        self.folder = os.fspath(cache_folder() if folder is None else folder)
         self.path = os.path.join(self.folder, "facts.sqlite")
         self.limit = limit
         self.notes: list[str] = []

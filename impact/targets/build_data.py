@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from ..cache import cache_folder
 from . import snapshot as snapshots
 from .build.git import BuildError, Report
 from .build.write import DistroRow, Sync
@@ -128,7 +129,7 @@ def build(
     def blob(oid: str) -> bytes:
         return repository[oid].data
 
-    work = work or snapshots.cache_folder() / "build"
+    work = work or cache_folder() / "build"
     work.mkdir(parents=True, exist_ok=True)
     histories = {}
     for row in distros:

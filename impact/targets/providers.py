@@ -7,11 +7,8 @@ remembers it.
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import os
 import sqlite3
-import tempfile
 import threading
 from functools import cached_property
 from pathlib import Path
@@ -19,7 +16,9 @@ from typing import NamedTuple
 
 import msgspec
 
-from .snapshot import DATA, SnapshotError, cache_folder
+from ..cache import cache_folder
+from . import unpacked
+from .snapshot import DATA, SnapshotError
 from .target import Provider
 from .version import parts
 
@@ -312,81 +311,11 @@ def _open(data: Path, cache: Path) -> sqlite3.Connection:
     except (OSError, msgspec.MsgspecError) as error:
         raise SnapshotError(f"{info}: {error}; install rosimpact again") from None
     path = cache / f"providers-{_FORMAT}-{sha[:16]}-{hashlib.sha256(facts).hexdigest()[:16]}.sqlite"
-    if path.is_file():
-        with contextlib.suppress(sqlite3.DatabaseError):
-            return _connect(path)
-    raw = _unpack(packed, sha)
-    try:
-        _write(raw, facts, path)
-        return _connect(path)
-    except (OSError, sqlite3.DatabaseError):
-        return _in_memory(raw, facts)
-
-
-def _unpack(packed: Path, sha: str) -> bytes:
-    import zstandard
-
-    try:
-        raw = zstandard.ZstdDecompressor().decompress(packed.read_bytes())
-    except (OSError, zstandard.ZstdError) as error:
-        raise SnapshotError(f"{packed}: {error}; install rosimpact again") from None
-    if hashlib.sha256(raw).hexdigest() != sha:
-        raise SnapshotError(f"{packed}: does not match providers.json; install rosimpact again")
-    return raw
-
-
-def _connect(path: Path) -> sqlite3.Connection:
-    """Opens a finished file; raises sqlite3.DatabaseError when it is not whole."""
-    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True, check_same_thread=False)
-    try:
-        (pages,) = connection.execute("PRAGMA page_count").fetchone()
-        (size,) = connection.execute("PRAGMA page_size").fetchone()
-        connection.execute("SELECT kind FROM fact LIMIT 1").fetchone()
-        if pages * size != path.stat().st_size:
-            raise sqlite3.DatabaseError("truncated")
-    except BaseException:
-        connection.close()
-        raise
-    return connection
-
-
-def _write(raw: bytes, facts: bytes, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=".providers-", suffix=".part", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(raw)
-        with contextlib.closing(sqlite3.connect(name)) as connection:
-            # A crash leaves only a .part file, so no journal is needed.
-            connection.execute("PRAGMA journal_mode=OFF")
-            add_facts(connection, facts)
-        os.replace(name, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(name)
-        raise
-    for old in path.parent.glob("providers-*.sqlite"):
-        if old.name != path.name:
-            with contextlib.suppress(OSError):
-                old.unlink()
-
-
-def _in_memory(raw: bytes, facts: bytes) -> sqlite3.Connection:
-    connection = sqlite3.connect(":memory:", check_same_thread=False)
-    deserialize = getattr(connection, "deserialize", None)  # Python 3.11 and newer
-    if deserialize is not None:
-        deserialize(raw)
-    else:
-        try:
-            with tempfile.NamedTemporaryFile(suffix=".sqlite") as file:
-                file.write(raw)
-                file.flush()
-                with contextlib.closing(sqlite3.connect(file.name)) as disk:
-                    disk.backup(connection)
-        except OSError as error:
-            raise SnapshotError(f"no folder to unpack the provider table into ({error})") from None
-    add_facts(connection, facts)
-    return connection
+    connection = unpacked.connect(path, "fact")
+    if connection is not None:
+        return connection
+    raw = unpacked.decompress(packed, sha, info.name)
+    return unpacked.unpack(raw, lambda connection: add_facts(connection, facts), path, "fact")
 
 
 def add_facts(connection: sqlite3.Connection, facts: bytes) -> None:

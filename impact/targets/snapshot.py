@@ -8,15 +8,17 @@ old file. A file that turns out broken is unpacked again; where no folder can be
 
 import contextlib
 import hashlib
-import os
 import sqlite3
 import threading
-import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import msgspec
+
+from ..cache import cache_folder
+from . import unpacked
+from .unpacked import SnapshotError
 
 SCHEMA = """
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;
@@ -72,13 +74,7 @@ KINDS = {
 """One letter for each kind of dependency, as stored in dependencies.entries."""
 
 DATA = Path(__file__).parent / "data"
-CACHE_VARIABLE = "ROSIMPACT_CACHE"
 _FORMAT = 1
-_STALE = 3600
-
-
-class SnapshotError(Exception):
-    """The shipped snapshot cannot be read; the message says what to do."""
 
 
 class SnapshotInfo(msgspec.Struct, frozen=True):
@@ -87,16 +83,6 @@ class SnapshotInfo(msgspec.Struct, frozen=True):
     date: str
     sha256: str
     sources: dict[str, str] = {}
-
-
-def cache_folder(environment: Mapping[str, str] = os.environ) -> Path:
-    """The user's cache folder; `ROSIMPACT_CACHE` overrides it. Nothing is created here."""
-    chosen = environment.get(CACHE_VARIABLE)
-    if chosen:
-        return Path(chosen)
-    import platformdirs
-
-    return Path(platformdirs.user_cache_dir("rosimpact", appauthor=False))
 
 
 def shipped_info(data: Path = DATA) -> SnapshotInfo:
@@ -112,16 +98,7 @@ def shipped_info(data: Path = DATA) -> SnapshotInfo:
 
 def unpack(data: Path = DATA) -> bytes:
     """The database as bytes, decompressed and checked against its hash, before the fact files are added."""
-    import zstandard
-
-    packed = data / "distros.sqlite.zst"
-    try:
-        raw = zstandard.ZstdDecompressor().decompress(packed.read_bytes())
-    except (OSError, zstandard.ZstdError) as error:
-        raise SnapshotError(f"{packed}: {error}; install rosimpact again") from None
-    if hashlib.sha256(raw).hexdigest() != shipped_info(data).sha256:
-        raise SnapshotError(f"{packed}: does not match snapshot.json; install rosimpact again")
-    return raw
+    return unpacked.decompress(data / "distros.sqlite.zst", shipped_info(data).sha256, "snapshot.json")
 
 
 def updated_folder() -> Path:
@@ -219,11 +196,7 @@ class Snapshot:
         return folder / f"distros-{_FORMAT}-{self.info.sha256[:16]}-{facts[:16]}.sqlite"
 
     def _open(self) -> sqlite3.Connection:
-        path = self.path()
-        if path.is_file():
-            with contextlib.suppress(sqlite3.DatabaseError):
-                return _connect(path)
-        return self._open_again()
+        return unpacked.connect(self.path(), "distro_fact") or self._open_again()
 
     def _open_again(self) -> sqlite3.Connection:
         try:
@@ -234,91 +207,8 @@ class Snapshot:
             # What an update left broken is passed over; the shipped data is always there.
             self.data, self._info = DATA, None
             raw = unpack(self.data)
-        path = self.path()
-        try:
-            _write(raw, _fact_files(self.facts), path)
-            return _connect(path)
-        except (OSError, sqlite3.DatabaseError):
-            return _in_memory(raw, _fact_files(self.facts))
-
-
-def _connect(path: Path) -> sqlite3.Connection:
-    """Opens a finished file; raises sqlite3.DatabaseError when it is not whole."""
-    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True, check_same_thread=False)
-    try:
-        (pages,) = connection.execute("PRAGMA page_count").fetchone()
-        (size,) = connection.execute("PRAGMA page_size").fetchone()
-        connection.execute("SELECT facts FROM distro_fact LIMIT 1").fetchone()
-        if pages * size != path.stat().st_size:
-            raise sqlite3.DatabaseError("truncated")
-    except BaseException:
-        connection.close()
-        raise
-    return connection
-
-
-def _write(raw: bytes, facts: tuple[bytes, bytes], path: Path) -> None:
-    """Makes the unpacked file under another name and renames it, so that nobody ever sees half of it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    import tempfile
-
-    handle, name = tempfile.mkstemp(prefix=".distros-", suffix=".part", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(raw)
-        connection = sqlite3.connect(name)
-        try:
-            # A crash leaves only a .part file, so no journal is needed.
-            connection.execute("PRAGMA journal_mode=OFF")
-            add_facts(connection, *facts)
-        finally:
-            connection.close()
-        os.replace(name, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(name)
-        raise
-    _forget_old(path)
-
-
-def _forget_old(path: Path) -> None:
-    """Removes databases of earlier versions of the data, and what runs killed an hour ago or more left behind.
-
-    Another run may still read an old database, which Unix allows.
-    """
-    for old in path.parent.glob("distros-*.sqlite"):
-        if old.name != path.name:
-            with contextlib.suppress(OSError):
-                old.unlink()
-    for part in path.parent.glob(".distros-*.part"):
-        with contextlib.suppress(OSError):
-            if part.stat().st_mtime < time.time() - _STALE:
-                part.unlink()
-
-
-def _deserializer(connection: sqlite3.Connection) -> Callable[[bytes], None] | None:
-    """What opens bytes as a database; only Python 3.11 and newer have it."""
-    return getattr(connection, "deserialize", None)
-
-
-def _in_memory(raw: bytes, facts: tuple[bytes, bytes]) -> sqlite3.Connection:
-    connection = sqlite3.connect(":memory:", check_same_thread=False)
-    deserialize = _deserializer(connection)
-    if deserialize is not None:
-        deserialize(raw)
-    else:
-        import tempfile
-
-        try:
-            with tempfile.NamedTemporaryFile(suffix=".sqlite") as file:
-                file.write(raw)
-                file.flush()
-                with contextlib.closing(sqlite3.connect(file.name)) as disk:
-                    disk.backup(connection)
-        except OSError as error:
-            raise SnapshotError(f"no folder to unpack the distro data into ({error}); set {CACHE_VARIABLE}") from None
-    add_facts(connection, *facts)
-    return connection
+        facts = _fact_files(self.facts)
+        return unpacked.unpack(raw, lambda connection: add_facts(connection, *facts), self.path(), "distro_fact")
 
 
 _default: Snapshot | None = None

@@ -11,8 +11,9 @@ import time
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rosimpact.impact.cache import cache_folder
 from rosimpact.impact.facts import store as store_module
-from rosimpact.impact.facts.store import Store, cache_folder, fact_key, pack, unpack
+from rosimpact.impact.facts.store import Store, fact_key, pack, unpack
 
 
 def key(number, extractor="cpp.1"):
@@ -197,6 +198,7 @@ def test_another_process_that_keeps_the_file_locked(tmp_path, monkeypatch):
 
 WRITER = """
 import sys
+from rosimpact.impact.cache import cache_folder
 from rosimpact.impact.facts.store import Store, fact_key, pack
 folder, start, count = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 store = Store(folder)
@@ -277,7 +279,7 @@ def test_a_run_that_writes_nothing_drops_nothing(tmp_path):
 
 def test_where_the_cache_lies(tmp_path, monkeypatch):
     monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "here"))
-    assert cache_folder() == str(tmp_path / "here")
+    assert os.fspath(cache_folder()) == str(tmp_path / "here")
     monkeypatch.delenv("ROSIMPACT_CACHE")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
     assert "rosimpact" in os.path.basename(cache_folder())

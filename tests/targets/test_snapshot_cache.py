@@ -9,9 +9,11 @@ from pathlib import Path
 
 import pytest
 import yaml
+from rosimpact.impact.cache import cache_folder
 from rosimpact.impact.targets import snapshot as snapshots
+from rosimpact.impact.targets import unpacked
 from rosimpact.impact.targets.distro import DistroTarget
-from rosimpact.impact.targets.snapshot import DATA, Snapshot, SnapshotError, cache_folder
+from rosimpact.impact.targets.snapshot import DATA, Snapshot, SnapshotError
 
 
 def answers(snapshot):
@@ -67,7 +69,7 @@ def test_without_a_writable_folder_it_lives_in_memory(tmp_path):
 
 def test_without_deserialize_it_lives_in_memory_too(tmp_path, monkeypatch):
     """Python 3.10's sqlite3 cannot open bytes."""
-    monkeypatch.setattr(snapshots, "_deserializer", lambda connection: None)
+    monkeypatch.setattr(unpacked, "_deserializer", lambda connection: None)
     (tmp_path / "file").write_text("a file where a folder is wanted")
     assert answers(Snapshot(cache=tmp_path / "file"))
 
