@@ -159,7 +159,29 @@ def _name_problems(entries: Iterable[Entry]) -> Iterator[PathProblem]:
                 yield PathProblem(entry.path, "the name is not valid UTF-8")
 
 
-class WorkingTree:
+class _Walked:
+    """A tree that is walked once, when its entries are first asked for."""
+
+    problems: list[PathProblem]
+    skipped: list[PathProblem]
+    _entries: list[Entry] | None
+
+    def _walk(self, found: list[Entry]) -> None:
+        raise NotImplementedError
+
+    def entries(self) -> list[Entry]:
+        if self._entries is None:
+            found: list[Entry] = []
+            self._walk(found)
+            found.sort(key=lambda entry: entry.path)
+            self._entries = found
+            self.problems.extend(_name_problems(found))
+            self.problems.sort()
+            self.skipped.sort()
+        return self._entries
+
+
+class WorkingTree(_Walked):
     """A directory as it stands, uncommitted and untracked files included.
 
     root: a folder; raises TreeError when it is none. Nothing is read before entries() or another question is asked.
@@ -188,17 +210,6 @@ class WorkingTree:
     def repositories(self) -> dict[str, str]:
         self.entries()
         return self._repositories
-
-    def entries(self) -> list[Entry]:
-        if self._entries is None:
-            found: list[Entry] = []
-            self._walk(found)
-            found.sort(key=lambda entry: entry.path)
-            self._entries = found
-            self.problems.extend(_name_problems(found))
-            self.problems.sort()
-            self.skipped.sort()
-        return self._entries
 
     def _walk(self, found: list[Entry]) -> None:
         real_root = os.path.realpath(self.root)
@@ -510,7 +521,7 @@ def _trust_any_owner(pygit2) -> None:
     pygit2.option(pygit2.enums.Option.SET_OWNER_VALIDATION, False)
 
 
-class GitTree:
+class GitTree(_Walked):
     """One revision of a git repository, read from its objects; bare repositories too, nothing is checked out.
 
     repository: the repository or any folder in it. revision: whatever git rev-parse takes; a branch that exists only at
@@ -567,17 +578,6 @@ class GitTree:
                 f"`{revision}` and {self.label} share no history here; fetch more of it (git fetch --unshallow)"
             )
         return self.at(str(base))
-
-    def entries(self) -> list[Entry]:
-        if self._entries is None:
-            found: list[Entry] = []
-            self._walk(found)
-            found.sort(key=lambda entry: entry.path)
-            self._entries = found
-            self.problems.extend(_name_problems(found))
-            self.problems.sort()
-            self.skipped.sort()
-        return self._entries
 
     def _list(self, oid) -> tuple[tuple[str, int, Any], ...]:
         """(name, mode, id) of everything in a folder."""
