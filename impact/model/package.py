@@ -394,9 +394,9 @@ class _Join:
                                                    conditions + name.conditions))  # fmt: skip
             if facts.words:
                 words = facts.words.split(" ")
-                for word in watched.words.intersection(words) - defined:
+                for word in sorted(watched.words.intersection(words) - defined):
                     names.append(self.bare(word, path, role, public, targets, conditions))
-                for word in watched.headers_of.keys() & set(words):
+                for word in sorted(watched.headers_of.keys() & set(words)):
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in watched.headers_of[word]):
                         at = self.bare(word, path, role, public, targets, conditions).at
