@@ -197,7 +197,7 @@ def _guard(directives: list[tuple[int, int, str, str]], visible: str) -> tuple[i
     return None
 
 
-class _Scan(NamedTuple):
+class Scan(NamedTuple):
     """A file with comments, literals and includes blanked out, cut into stretches that stand under equal conditions."""
 
     text: str
@@ -209,7 +209,8 @@ class _Scan(NamedTuple):
     problems: list[Problem]
 
 
-def _scan(data: bytes) -> _Scan:
+def scan(data: bytes) -> Scan:
+    """Reads a file as far as all that looks into it needs."""
     text = _decode(data)
     problems: list[Problem] = []
     # Where each line starts, for places.
@@ -284,16 +285,16 @@ def _scan(data: bytes) -> _Scan:
     segments.append((position, len(visible), conditions))
     if blocks.open:
         problems.append(Problem(len(starts) - 1, f"{len(blocks.open)} `#if` without `#endif`"))
-    return _Scan(text, visible, place, segments, found, defined, problems)
+    return Scan(text, visible, place, segments, found, defined, problems)
 
 
 def places_of(data: bytes, word: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
     """Line, column and preprocessor conditions of every use of a bare identifier outside comments and literals."""
-    scan = _scan(data)
+    scanned = scan(data)
     pattern = re.compile(rf"(?<![\w]){re.escape(word)}(?!\w)")
-    for start, end, conditions in scan.segments:
-        for match in pattern.finditer(scan.visible, start, end):
-            yield (*scan.place(match.start()), conditions)
+    for start, end, conditions in scanned.segments:
+        for match in pattern.finditer(scanned.visible, start, end):
+            yield (*scanned.place(match.start()), conditions)
 
 
 def extract(data: bytes) -> CppFile:
@@ -301,9 +302,9 @@ def extract(data: bytes) -> CppFile:
 
     Undecodable bytes become replacement characters, so columns are those of an editor that shows them so.
     """
-    scan = _scan(data)
-    text, visible, place, segments = scan.text, scan.visible, scan.place, scan.segments
-    found, defined, problems = scan.found, scan.defined, scan.problems
+    scanned = scan(data)
+    text, visible, place, segments = scanned.text, scanned.visible, scanned.place, scanned.segments
+    found, defined, problems = scanned.found, scanned.defined, scanned.problems
     words: set[str] = set()
     qualified: list[Name] = []
     seen: dict[tuple[Condition, ...], set[str]] = {}

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 import msgspec
 
@@ -19,6 +19,7 @@ from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.setup import SetupFile
+from ..facts.usage import Pattern, Place, places_of_use
 from .build import At, Build
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
@@ -130,6 +131,8 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
     # Watched names that the package's own files #define.
     defined: tuple[str, ...] = ()
+    # Watched uses, by their labels.
+    uses: tuple[NameUse, ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -164,12 +167,15 @@ def role_of_folder(path: str) -> str | None:
 
 class Watched(msgspec.Struct, frozen=True):
     """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
-    of the standard library the headers that offer them."""
+    of the standard library the headers that offer them. uses: labels and patterns of uses by a word that each has in
+    it, for C++; modules: the same for Python, by the package that is imported."""
 
     words: frozenset[str] = frozenset()
     qualified: frozenset[str] = frozenset()
     python: frozenset[str] = frozenset()
     headers_of: dict[str, tuple[str, ...]] = {}
+    uses: dict[str, list[tuple[str, Pattern]]] = {}
+    modules: dict[str, list[tuple[str, Pattern]]] = {}
     version: str = ""
 
 
@@ -245,6 +251,7 @@ class _Join:
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
+        uses = [*self.uses(roles), *self.python_uses(python)]
         return Digest(
             self.name,
             self.path,
@@ -277,6 +284,7 @@ class _Join:
             scripts=tuple(p for p, f in python.items() if f.interpreter),
             defined=tuple(sorted({n for f in self.cpp.values() for n in f.defined} & self.watched.words)),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
+            uses=tuple(uses),
         )
 
     # -- which file is compiled by what ------------------------------------------------------------------------------
@@ -403,6 +411,30 @@ class _Join:
                         needed.append(NeededHeader(word, at, role, tuple(sorted(reach)), conditions))
         return includes, names, needed
 
+    def uses(self, roles) -> Iterator[NameUse]:
+        """Every use that some table row is about, in files that something compiles."""
+        watched = self.watched.uses
+        for path, (role, public, targets, conditions) in roles.items():
+            facts = self.cpp.get(path)
+            if facts is None or not watched:
+                continue
+            spoken = set(facts.words.split(" "))
+            for name in facts.qualified:
+                spoken.update(name.text.split("::"))
+            for word in sorted(watched.keys() & spoken):
+                for label, pattern in watched[word]:
+                    for line, column, around in _first(places_of_use(self.read(path), pattern)):
+                        yield NameUse(label, At(path, line, column), role, public, "cpp", conditions + around, targets)
+
+    def python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
+        """The same in Python files that import the package which the row is about."""
+        for path, facts in files.items():
+            heads = {item.module.split(".")[0] for item in facts.imports}
+            for package in sorted(self.watched.modules.keys() & heads):
+                for label, pattern in self.watched.modules[package]:
+                    for line, column, _ in _first(places_of_use(self.read(path), pattern)):
+                        yield NameUse(label, At(path, line, column), self.python_role(path), False, "python")
+
     def bare(self, word, path, role, public, targets, conditions) -> NameUse:
         """Where a bare word stands first, outside comments, with the preprocessor conditions around it."""
         line, column, around = place_of_word(self.read(path), word)
@@ -504,6 +536,15 @@ class _Join:
         # catkin_python_setup() installs what setup.py names, which by custom lies in src/.
         inside = self.inside(path)
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
+
+
+def _first(places: Iterable[Place]) -> Iterator[Place]:
+    """The first place for every distinct set of conditions."""
+    seen = set()
+    for place in places:
+        if place[2] not in seen:
+            seen.add(place[2])
+            yield place
 
 
 def is_header(path: str) -> bool:

@@ -6,7 +6,9 @@ import hashlib
 import re
 from functools import cache
 
+from ..targets.uses import all_uses
 from ..targets.changes import TransitiveInclude, all_rows, transitive_includes
+from ..facts.usage import Pattern
 from .package import Watched
 
 _KINDS = frozenset({"api-removed", "api-renamed", "api-changed", "python-removed", "python-api"})
@@ -34,10 +36,17 @@ def watched() -> Watched:
                 (qualified if "::" in row.new else words).add(row.new)
     for include in transitive_includes():
         headers[include.name] = tuple(include.headers)
+    uses: dict[str, list[tuple[str, Pattern]]] = {}
+    modules: dict[str, list[tuple[str, Pattern]]] = {}
+    for row in all_uses():
+        if row.pattern.language == "python":
+            modules.setdefault(row.package, []).append((row.label, row.pattern))
+        else:
+            uses.setdefault(row.pattern.word, []).append((row.label, row.pattern))
     version = hashlib.sha1(
-        repr((sorted(words), sorted(qualified), sorted(python), sorted(headers.items()))).encode()
+        repr((sorted(words), sorted(qualified), sorted(python), sorted(headers.items()), uses, modules)).encode()
     ).hexdigest()
-    return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, version)
+    return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, uses, modules, version)
 
 
 __all__ = ["TransitiveInclude", "watched"]

@@ -162,9 +162,9 @@ def changes_in_force(target: Target, providers: Providers | None = None) -> tupl
     table = providers or default_providers()
     found = []
     for row in all_rows():
-        version = _version(row, target)
+        version = version_of(row.package, row.library, target)
         if not version:
-            if row.kind in ("package-removed", "package-renamed") and _reached(row.removed_in, "", target):
+            if row.kind in ("package-removed", "package-renamed") and reached(row.removed_in, "", target):
                 found.append(_change(row, "removed", ""))
             continue
         state = _state(row, version, target, table)
@@ -177,21 +177,22 @@ def _change(row: Row, state: str, version: str) -> Change:
     return Change(row.kind, row.package, row.old, row.new, state, version, row.new_since, row.source, row.library)
 
 
-def _version(row: Row, target: Target) -> str | None:
-    if not row.library:
-        return target.version(row.package)
-    if row.package == "python" and getattr(target, "python_major", 3) == 2:
+def version_of(package: str, library: bool, target: Target) -> str | None:
+    """Version of a released package, or of a platform library, on a target; None when it is not there or not known."""
+    if not library:
+        return target.version(package)
+    if package == "python" and getattr(target, "python_major", 3) == 2:
         return "2.7"
-    return target.library(row.package)
+    return target.library(package)
 
 
 def _state(row: Row, version: str, target: Target, table: Providers) -> State | None:
     if row.kind.startswith("package-"):
         # The package is there: at most on its way out.
-        return "deprecated" if _reached(row.deprecated_in, version, target) else None
-    if _reached(row.back_in, version, target):
+        return "deprecated" if reached(row.deprecated_in, version, target) else None
+    if reached(row.back_in, version, target):
         return None
-    gone = _reached(row.removed_in, version, target)
+    gone = reached(row.removed_in, version, target)
     new = None
     if row.kind.startswith("header-") and not row.library:
         old = table.has_header(row.package, row.old, target.distro, version)
@@ -211,7 +212,7 @@ def _state(row: Row, version: str, target: Target, table: Providers) -> State | 
         new = _new_by_table(row, version, target)
     if new is False:
         return "absent"
-    return "deprecated" if _reached(row.deprecated_in, version, target) else None
+    return "deprecated" if reached(row.deprecated_in, version, target) else None
 
 
 def _still(table: Providers, package: str, header: str, distro: str, version: str) -> bool:
@@ -251,10 +252,10 @@ def _new_by_table(row: Row, version: str, target: Target) -> bool | None:
     if target.distro in row.new_in:
         first = row.new_in[target.distro]
         return bool(first) and at_least(version, first)
-    return _reached(row.new_since, version, target) if row.new_since else None
+    return reached(row.new_since, version, target) if row.new_since else None
 
 
-def _reached(bound: str, version: str, target: Target) -> bool:
+def reached(bound: str, version: str, target: Target) -> bool:
     """Whether a target is at or past a bound: a version, a distro of its generation, or all of ROS 2."""
     if not bound:
         return False

@@ -591,8 +591,9 @@ class DistroTarget(Target):
     def changes(self) -> tuple[Change, ...]:
         if self._changes is None:
             from .changes import changes_in_force
+            from .uses import uses_in_force
 
-            found: tuple[Change, ...] = changes_in_force(self)
+            found: tuple[Change, ...] = (*changes_in_force(self), *uses_in_force(self))
             self._changes = found
             return found
         return self._changes

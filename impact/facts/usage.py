@@ -1,0 +1,217 @@
+"""Uses that a name alone does not tell: a call with so many arguments, of such a kind; an access to a member.
+
+The tables of known changes say how such a use looks. Here it is looked for in the text of a file whose comments and
+literals are blanked; nothing is resolved, so a pattern has to be particular enough to mean one thing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+
+import msgspec
+
+from .condition import Condition
+from .cpp import scan
+
+
+class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How one use looks. All expressions are regular expressions over text whose literals are blank inside.
+
+    word: an identifier that stands in the use. language: `cpp` or `python`. before: matches right up to the word.
+    template: matches all of the arguments in `<>` (empty: there must be none; unset: either). arguments: makes it a
+    call or an initialisation, with `2`, `1-3` or `2+` arguments. where: argument number, from 1 (from the end: -1), or
+    `any`, to what must be found in it: an expression, or `<float>`, `<text>` for an expression that shows itself to be
+    a floating point number or a string (a literal, or a variable that the file declares so). names: a variable may stand
+    between the type that `word` is and its arguments. after: matches right behind the use. file: must be found in the
+    file. unless: must not be found in it.
+    """
+
+    word: str
+    language: str = "cpp"
+    before: str = ""
+    template: str | None = None
+    arguments: str = ""
+    where: dict[str, str] = {}
+    names: bool = False
+    after: str = ""
+    file: str = ""
+    unless: str = ""
+
+
+Place = tuple[int, int, tuple[Condition, ...]]
+_FAR = 160
+_LONGEST = 4000
+_CLOSING = {"(": ")", "{": "}", "[": "]"}
+_SPACE = re.compile(r"\s*")
+_TYPES = re.compile(r"[\w:,\s*&]*(?:<[\w:,\s*&]*(?:<[\w:,\s*&<>]*>[\w:,\s*&]*)*>[\w:,\s*&]*)*>")
+_VARIABLE = re.compile(r"\s+[A-Za-z_]\w*\s*(?=[({])")
+_BEFORE_CALL = re.compile(r"(?:([A-Za-z_]\w*)|(>))\s+(?:[A-Za-z_]\w*\s*::\s*)*\Z")
+_NOT_A_TYPE = frozenset("return else throw new co_return co_await co_yield case and or not do in if elif while".split())
+_FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
+_TEXT = re.compile(r'"|\bstd::(?:to_)?string\s*[({]|\.str\(\)')
+_FLOAT_CAST = re.compile(r"static_cast\s*<\s*(?:double|float)\s*>")
+_INTEGER_CAST = re.compile(r"static_cast|\bint\s*\(|\(int\)|\(long\)|\b(?:round|floor|ceil|trunc)\b|[<>=!]=?|\?")
+_IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
+
+
+def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
+    """Line, column and preprocessor conditions of every use in a file that looks like the pattern. Never raises."""
+    if pattern.language == "python":
+        text = _python(data)
+        segments: list[tuple[int, int, tuple[Condition, ...]]] = [(0, len(text), ())]
+
+        def place(offset: int) -> tuple[int, int]:
+            line = text.count("\n", 0, offset) + 1
+            return line, offset - (text.rfind("\n", 0, offset) + 1) + 1
+    else:
+        scanned = _scanned(data)
+        text, place, segments = scanned.visible, scanned.place, scanned.segments
+    if (pattern.file and not _compiled(pattern.file).search(text)) or (
+        pattern.unless and _compiled(pattern.unless).search(text)
+    ):
+        return
+    word = _compiled(rf"(?<!\w){re.escape(pattern.word)}(?!\w)")
+    for start, end, conditions in segments:
+        for match in word.finditer(text, start, end):
+            if _fits(pattern, text, match.start(), match.end()):
+                yield (*place(match.start()), conditions)
+
+
+@lru_cache(maxsize=2)
+def _scanned(data: bytes):
+    return scan(data)
+
+
+@lru_cache(maxsize=4096)
+def _compiled(expression: str) -> re.Pattern[str]:
+    return re.compile(expression)
+
+
+def _fits(pattern: Pattern, text: str, start: int, end: int) -> bool:
+    ahead = text[max(0, start - _FAR) : start]
+    if pattern.before and not _compiled(rf"(?:{pattern.before})\Z").search(ahead):
+        return False
+    at = end
+    opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
+    if pattern.language == "cpp" and text.startswith("<", opened):
+        types = _TYPES.match(text, opened + 1)
+        if types is not None:
+            if pattern.template is not None and not _compiled(pattern.template).fullmatch(types.group()[:-1].strip()):
+                return False
+            if pattern.template == "":
+                return False
+            at = types.end()
+        elif pattern.template:
+            return False
+    elif pattern.template:
+        return False
+    if pattern.arguments:
+        variable = _VARIABLE.match(text, at) if pattern.names else None
+        at = variable.end() if variable else _SPACE.match(text, at).end()  # type: ignore[union-attr]
+        if text[at : at + 1] not in ("(", "{") or (text[at] == "{" and not pattern.names):
+            return False
+        if not pattern.names and _declares(ahead):
+            return False
+        found = _arguments(text, at)
+        if found is None:
+            return False
+        given, at = found
+        if not _as_many(pattern.arguments, len(given)):
+            return False
+        for which, wanted in pattern.where.items():
+            if which == "any":
+                chosen = given
+            else:
+                number = int(which)
+                index = number - 1 if number > 0 else number
+                if not -len(given) <= index < len(given):
+                    return False
+                chosen = [given[index]]
+            if not any(_is(argument, wanted, text) for argument in chosen):
+                return False
+    return not pattern.after or bool(_compiled(pattern.after).match(text, at))
+
+
+def _declares(ahead: str) -> bool:
+    """Whether a name behind this text is declared, not called: a type stands before it."""
+    match = _BEFORE_CALL.search(ahead)
+    return bool(match) and match.group(1) not in _NOT_A_TYPE
+
+
+def _arguments(text: str, at: int) -> tuple[list[str], int] | None:
+    """The arguments of the call whose bracket opens at an offset, and where it ends; None when it does not."""
+    given, depth, begins, last = [], [_CLOSING[text[at]]], at + 1, min(len(text), at + _LONGEST)
+    position = at + 1
+    while position < last:
+        character = text[position]
+        if character in _CLOSING:
+            depth.append(_CLOSING[character])
+        elif character in ")}]":
+            if character != depth.pop():
+                return None
+            if not depth:
+                final = text[begins:position].strip()
+                if final or given:
+                    given.append(final)
+                return given, position + 1
+        elif character == "<":
+            types = _TYPES.match(text, position + 1)
+            if types is not None and text[types.end() : types.end() + 1] in ("(", "{", ":", ",", ")", ">"):
+                position = types.end()
+                continue
+        elif character == "," and len(depth) == 1:
+            given.append(text[begins:position].strip())
+            begins = position + 1
+        position += 1
+    return None
+
+
+def _as_many(wanted: str, given: int) -> bool:
+    if wanted.endswith("+"):
+        return given >= int(wanted[:-1])
+    low, _, high = wanted.partition("-")
+    return int(low) <= given <= int(high or low)
+
+
+def _is(argument: str, wanted: str, text: str) -> bool:
+    if wanted == "<float>":
+        if _INTEGER_CAST.search(argument) and not _FLOAT_CAST.match(argument):
+            return False
+        return bool(_FLOAT_CAST.match(argument) or _FLOAT.search(argument)) or _declared(argument, "double|float", text)
+    if wanted == "<text>":
+        return bool(_TEXT.search(argument)) or _declared(argument, r"(?:std\s*::\s*)?string", text)
+    return bool(_compiled(wanted).search(argument))
+
+
+def _declared(argument: str, types: str, text: str) -> bool:
+    """Whether a variable of an arithmetic expression is declared with one of the types, and nowhere with another."""
+    for name in _IDENTIFIER.findall(argument):
+        declared = re.findall(rf"([\w:]+)\s*&?\s+{re.escape(name)}\s*(?:[;={{,)]|\()", text)
+        declared = [d for d in declared if d not in _NOT_A_TYPE]
+        if declared and all(re.fullmatch(types, d) for d in declared):
+            return True
+    return False
+
+
+_PYTHON_HIDDEN = re.compile(
+    r'"""(?:[^"\\]|\\.|"(?!""))*(?:"""|\Z)|\'\'\'(?:[^\'\\]|\\.|\'(?!\'\'))*(?:\'\'\'|\Z)'
+    r'|"(?:[^"\\\n]|\\.)*"?|\'(?:[^\'\\\n]|\\.)*\'?|#[^\n]*',
+    re.DOTALL,
+)
+_INSIDE = re.compile(r"[^\n]")
+
+
+@lru_cache(maxsize=2)
+def _python(data: bytes) -> str:
+    """The text of a Python file with comments and the insides of literals blanked, offsets kept."""
+    text = data.decode("utf-8-sig", "replace").replace("\r\n", "\n").replace("\r", "\n")
+
+    def blank(match: re.Match[str]) -> str:
+        hidden = match.group()
+        if hidden[0] == "#" or len(hidden) < 2:
+            return " " * len(hidden)
+        return '"' + _INSIDE.sub(" ", hidden[1:-1]) + ('"' if hidden[-1] != "\n" else "\n")
+
+    return _PYTHON_HIDDEN.sub(blank, text)

@@ -1,0 +1,94 @@
+"""Known changes of how something is used: calls and members that only some versions of a package or library take.
+
+The facts are in `data/uses*.json`, reviewed, each with its source. Names that are gone altogether are in changes.py.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import msgspec
+
+from ..facts.usage import Pattern
+from .changes import reached, version_of
+from .snapshot import DATA, SnapshotError
+from .target import Change, Target
+
+
+class _Use(Pattern, frozen=True, forbid_unknown_fields=True):
+    help: str = ""
+
+
+class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Rows of data/uses*.json that share all but the use: label, as a user reads it, to how it looks and what to write
+    where it is not taken."""
+
+    kind: str
+    package: str
+    source: str
+    uses: dict[str, _Use]
+    library: bool = False
+    removed_in: str = ""
+    back_in: str = ""
+    new_since: str = ""
+
+
+class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    uses: list[_Group]
+
+
+class Use(NamedTuple):
+    """A use that a package or platform library takes from new_since (empty: always) until before removed_in.
+
+    kind: `call-changed` for calls, overloads and types, `field-changed` for fields of messages. label: as a user reads
+    it, no other row has it. help: what to write instead. Bounds are as in changes.Row.
+    """
+
+    kind: str
+    package: str
+    label: str
+    pattern: Pattern
+    help: str
+    library: bool
+    removed_in: str
+    back_in: str
+    new_since: str
+    source: str
+
+
+@cache
+def all_uses() -> tuple[Use, ...]:
+    """Every row. Raises SnapshotError when a data file cannot be read, or two rows have one label."""
+    found: dict[str, Use] = {}
+    for path in sorted(DATA.glob("uses*.json")):
+        try:
+            groups = msgspec.json.decode(path.read_bytes(), type=_File).uses
+        except (OSError, msgspec.MsgspecError) as error:
+            raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+        for g in groups:
+            for label, use in g.uses.items():
+                row = Use(g.kind, g.package, label, use, use.help, g.library, g.removed_in, g.back_in, g.new_since,
+                          g.source)  # fmt: skip
+                if found.setdefault(label, row) is not row:
+                    raise SnapshotError(f"{path}: two rows are called `{label}`; install rosimpact again")
+    return tuple(found.values())
+
+
+def uses_in_force(target: Target) -> tuple[Change, ...]:
+    """Uses that a target does not take: state `removed` for no longer, `absent` for not yet."""
+    found = []
+    for row in all_uses():
+        version = version_of(row.package, row.library, target)
+        if not version:
+            continue
+        if row.removed_in and reached(row.removed_in, version, target) and not reached(row.back_in, version, target):
+            state = "removed"
+        elif row.new_since and not reached(row.new_since, version, target):
+            state = "absent"
+        else:
+            continue
+        found.append(
+            Change(row.kind, row.package, row.label, row.help, state, version, row.new_since, row.source, row.library)
+        )
+    return tuple(found)
