@@ -6,9 +6,9 @@ import hashlib
 import re
 from functools import cache
 
-from ..targets.uses import all_uses
-from ..targets.changes import TransitiveInclude, all_rows, transitive_includes
 from ..facts.usage import Pattern
+from ..targets.changes import TransitiveInclude, all_rows, transitive_includes
+from ..targets.uses import all_uses
 from .package import Watched
 
 _KINDS = frozenset({"api-removed", "api-renamed", "api-changed", "python-removed", "python-api"})

@@ -89,7 +89,7 @@ def capture(
     distro, packages, libraries, debian = from_dpkg((name, version) for name, version in rows)
     for prefix in _prefixes(root, environment):
         for manifest in sorted(prefix.glob("share/*/package.xml")):
-            name, version = _name_and_version(manifest)
+            name, version = name_and_version(manifest)
             if name:
                 packages[name] = version  # an overlay comes after what it covers
     tools = {}
@@ -209,7 +209,8 @@ def _only_distro(root: Path) -> str:
     return names[0] if len(names) == 1 else ""
 
 
-def _name_and_version(manifest: Path) -> tuple[str, str]:
+def name_and_version(manifest: Path) -> tuple[str, str]:
+    """Name and version that a package.xml gives, two empty texts where it cannot be read."""
     try:
         text = manifest.read_text(encoding="utf-8", errors="replace")
     except OSError:

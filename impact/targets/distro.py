@@ -12,7 +12,7 @@ import functools
 import operator
 import re
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -117,7 +117,8 @@ class DistroTarget(Target):
 
     distro: its name. date: ISO day, None for the newest day of the data. platform: `ubuntu jammy`, None for the
     distro's main one at that date. versions: versions that differ on this machine, by ROS package or platform library;
-    an empty text means "not installed". name: what to call the target, by default as it was asked for.
+    an empty text means "not installed". name: what to call the target, by default as it was asked for. rules: rosdep
+    rules of one's own by key, as in a rosdep file; they go over the public ones.
 
     Raises TargetError for an unknown distro or a malformed date. Further attributes: end_of_life (ISO day, empty when
     none is set), lts, python_major, data_date.
@@ -131,10 +132,12 @@ class DistroTarget(Target):
         versions: Mapping[str, str] | None = None,
         name: str | None = None,
         data: Snapshot | None = None,
+        rules: Mapping[str, Any] | None = None,
     ):
         self._data = data or snapshots.default()
         self._neighbours: list[DistroTarget] | None = None
         self._asked = (distro, date, platform, dict(versions or {}), name)
+        self._rules = dict(rules or {})
         row = self._data.row("SELECT id, ros, python FROM distro WHERE name = ?", (distro,))
         if row is None:
             raise TargetError(_unknown_distro(distro, self._data))
@@ -167,10 +170,11 @@ class DistroTarget(Target):
     def __reduce__(self):
         # A target travels to worker processes as its recipe; each opens the shared cache file itself.
         distro, date, platform, versions, name = self._asked
-        return DistroTarget, (distro, date, platform, versions, name)
+        return DistroTarget, (distro, date, platform, versions, name, None, self._rules)
 
     def identity(self) -> str:
-        return repr((self._asked, self.name, self.distro, self.date, self.platform, self._overrides, _data_stamp()))
+        return repr((self._asked, self.name, self.distro, self.date, self.platform, self._overrides, self._rules,
+                     _data_stamp()))  # fmt: skip
 
     def changed(
         self,
@@ -188,7 +192,14 @@ class DistroTarget(Target):
             {**old_versions, **(versions or {})},
             name or old_name,
             self._data,
+            self._rules,
         )
+
+    def surrounded(self, versions: Mapping[str, str], rules: Mapping[str, Any]) -> DistroTarget:
+        """This target with packages and rosdep rules that its machine has besides the public ones. A version that the
+        target itself gives for a package stays."""
+        distro, date, platform, own, name = self._asked
+        return DistroTarget(distro, date, platform, {**versions, **own}, name, self._data, {**rules, **self._rules})
 
     def _place_date(self, date: str | None, notes: list[str]) -> str:
         if date is None:
@@ -447,6 +458,9 @@ class DistroTarget(Target):
         return self._keys[key]
 
     def _resolve(self, key: str, os_name: str, release: str, ts: int) -> Resolution | None:
+        for system in (os_name, "*"):
+            if system in self._rules.get(key, ()):
+                return resolve_rule(self._rules[key][system], os_name, release)
         # Some keys stand for every operating system under the name `*`.
         for system in (os_name, "*"):
             row = self._data.row(
@@ -458,11 +472,11 @@ class DistroTarget(Target):
         return None
 
     def known_key(self, key: str) -> bool:
-        return key in self._data.names("rule", "key")
+        return key in self._rules or key in self._data.names("rule", "key")
 
     def key_names(self) -> frozenset[str]:
         """Every rosdep key that any platform has, or had."""
-        return self._data.names("rule", "key")
+        return self._data.names("rule", "key") | self._rules.keys()
 
     def last_distro(self, package: str) -> str:
         """The newest distro of the same generation that has released a package, empty when none has."""

@@ -316,8 +316,19 @@ def choose_targets(
     """The targets of a run, each with the reason for it.
 
     asked: texts given after `--target`. config: rosimpact.toml. workspace: its `ros` (1 or 2) tells the generation.
-    tree: where CI files are read. Raises TargetError.
+    tree: where CI files are read. Raises TargetError, and ConfigError for surroundings that cannot be read.
     """
+    chosen = _chosen(asked, config, workspace, tree, data)
+    if not (config.underlays or config.rosdep_sources or config.index):
+        return chosen
+    from .surroundings import surroundings
+
+    return tuple(Chosen(target.surrounded(*surroundings(config, target.distro)), reason) for target, reason in chosen)
+
+
+def _chosen(
+    asked: Sequence[str], config: Config, workspace: Any, tree: Tree, data: Snapshot | None
+) -> tuple[Chosen, ...]:
     if asked:
         return tuple(Chosen(parse_target(text, config, data=data), "asked for") for text in dict.fromkeys(asked))
     if config.default_targets:
