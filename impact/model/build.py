@@ -66,7 +66,8 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     custom (add_custom_target), generated (rosidl_generate_interfaces, generate_messages, generate_parameter_library,
     generate_dynamic_reconfigure_options ...), imported, alias, external (ExternalProject_Add, ament_vendor), fetched
     (FetchContent), unknown (something is given to it, but nothing that could be read makes it).
-    sources: paths relative to the workspace root when they can be told, else as written.
+    sources: paths relative to the workspace root when they can be told, else as written. guarded: of those, each that
+    stands under conditions besides the target's own, with these.
     """
 
     name: str
@@ -79,6 +80,7 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     output_name: str = ""
     alias_of: str = ""
     conditions: tuple[Condition, ...] = ()
+    guarded: tuple[tuple[str, tuple[Condition, ...]], ...] = ()
 
 
 class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -345,7 +345,8 @@ class _Join:
                     "BUILD_TESTING" in c.text or "ENABLE_TESTING" in c.text for c in target.conditions
                 ):
                     role = "test"
-                walk(source, role, False, (target.name,), target.conditions)
+                own = next((conditions for path, conditions in target.guarded if path == source), ())
+                walk(source, role, False, (target.name,), target.conditions + own)
         for header in self.installed_headers():
             walk(header, "build", True, (), ())
         return {p: (r[0], r[1], tuple(sorted(r[2])), tuple(r[3])) for p, r in reached.items()}

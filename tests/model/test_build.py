@@ -206,6 +206,32 @@ def test_targets(source, name, kind, sources):
     assert (made.kind, made.sources) == (kind, sources)
 
 
+GUARDED = [
+    (
+        "option(USE_X OFF)\nset(S a.cpp)\nif(USE_X)\nlist(APPEND S x.cpp)\nendif()\nadd_library(t ${S})",
+        {"x.cpp": "USE_X"},
+    ),
+    (
+        'if("$ENV{ROS_DISTRO}" STREQUAL "foxy")\nset(S "${S}" f.cpp)\nelse()\nset(S "${S}" g.cpp)\nendif()\n'
+        "add_library(t ${S})",
+        {"f.cpp": "$ENV{ROS_DISTRO} STREQUAL foxy", "g.cpp": "!$ENV{ROS_DISTRO} STREQUAL foxy"},
+    ),
+    ("if(A)\nset(S x.cpp)\nelseif(B)\nset(S x.cpp y.cpp)\nendif()\nadd_library(t ${S})", {"y.cpp": "!A & B"}),
+    ("add_library(t a.cpp)\nif(A)\ntarget_sources(t PRIVATE x.cpp)\nendif()", {"x.cpp": "A"}),
+    ("add_library(t a.cpp)\nif(A)\ntarget_sources(t PRIVATE a.cpp)\nendif()", {}),
+    ("if(A)\nadd_library(t a.cpp)\nendif()", {}),
+]
+
+
+@pytest.mark.parametrize(("source", "expected"), GUARDED)
+def test_a_source_stands_under_the_conditions_it_was_added_under(source, expected):
+    guarded = {
+        path.removeprefix("pkg/"): " & ".join(("!" if c.negated else "") + c.text for c in conditions)
+        for path, conditions in targets(source)["t"].guarded
+    }
+    assert guarded == expected
+
+
 LINKS = [
     ("target_link_libraries(x a PUBLIC b debug c)", ["link a", "link b PUBLIC", "link c PUBLIC"]),
     ("target_link_libraries(x ${catkin_LIBRARIES})", ["link ${catkin_LIBRARIES}"]),

@@ -297,7 +297,7 @@ def ament_auto_add_target(run: Interpreter, call: Call, args: list[Word]) -> Non
         hits = run.glob(posixpath.join(relative, "*"), True) if relative is not None else []
         for path in sorted(hits):
             if path.endswith(_CPP_SOURCES):
-                draft.sources[path] = None
+                draft.add_source(path, run.under(directory))
     if run.path_exists(run.resolve("include"), True):
         add_links(run, draft, [word("include", call.at)], "include", "PUBLIC")
     if kind in ("executable", "test") and "NO_TARGET_LINK_LIBRARIES" not in given:

@@ -28,7 +28,8 @@ class TargetDraft:
         self.kind = kind
         self.at = at
         self.conditions = conditions
-        self.sources: dict[str, None] = {}
+        # Path to the conditions under which it was added.
+        self.sources: dict[str, tuple[Condition, ...]] = {}
         self.links: dict[Link, None] = {}
         self.definitions: dict[str, None] = {}
         self.standard = 0
@@ -49,7 +50,17 @@ class TargetDraft:
             self.output_name,
             self.alias_of,
             self.conditions,
+            tuple(
+                (path, own)
+                for path, conditions in self.sources.items()
+                if (own := tuple(c for c in conditions if c not in self.conditions))
+            ),
         )
+
+    def add_source(self, path: str, conditions: tuple[Condition, ...]) -> None:
+        """Adds a source; one that is added twice stands under what both times have in common."""
+        before = self.sources.get(path)
+        self.sources[path] = conditions if before is None else tuple(c for c in before if c in conditions)
 
 
 class Targets:

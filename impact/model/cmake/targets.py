@@ -68,7 +68,7 @@ def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None
     for item in rejoin(items):
         for part in reduced(item):
             if part and not part.startswith("$<TARGET_OBJECTS"):
-                draft.sources[run.tree_path(part)] = None
+                draft.add_source(run.tree_path(part), run.under(part))
 
 
 @handles("target_sources")

@@ -83,7 +83,10 @@ def join(values: Iterable[Value | None]) -> Value | None:
     words: dict[str, Word] = {}
     for value in known:
         for item in value.words:
-            words.setdefault(item, item)
+            before = words.setdefault(item, item)
+            if before.conditions != item.conditions:
+                common = tuple(c for c in before.conditions if c in item.conditions)
+                words[item] = word(item, before.at, common, before.sure and item.sure)
     made = Value(tuple(words.values())[:MAX_WORDS], False)
     made.chosen = known[-1].chosen
     made.text = known[-1].text
