@@ -515,8 +515,10 @@ class View:
                     if self.target.version(spelling) is not None or spelling in self.workspace.packages:
                         found.append(Provider("ros", spelling))
                 found.extend(self._cmake_elsewhere(name))
-                if not found and self.target.ever_released(name):
-                    found.append(Provider("ros", name, "", False))
+                if not found:
+                    # `gz-sim8` is what gz_sim_vendor brings.
+                    vendor = re.sub(r"\d+$", "", name).replace("-", "_").lower() + "_vendor"
+                    found = [Provider("ros", n, "", False) for n in (name, vendor) if self.target.ever_released(n)]
             known = self._cmake[name] = tuple(found)
         return known
 

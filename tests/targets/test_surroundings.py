@@ -7,7 +7,7 @@ from rosimpact.impact.check import Options, check
 from rosimpact.impact.config import ConfigError
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
-<maintainer email="a@b.c">m</maintainer><license>MIT</license>{body}</package>
+<maintainer email="a@example.com">m</maintainer><license>MIT</license>{body}</package>
 """
 
 
