@@ -331,9 +331,9 @@ class _Join:
                 if known is None:
                     reached[at] = (role, public, set(names), list(conditions))
                 else:
-                    # built by several: it is as unconditional as the least conditional of them
+                    # built by several: it is as unconditional as the least conditional of them; installing builds nothing
                     merged = role if known[0] == role else "build"
-                    kept = [c for c in known[3] if c in conditions]
+                    kept = known[3] if public else [c for c in known[3] if c in conditions]
                     reached[at] = (merged, known[1] or public, known[2] | set(names), kept)
                 stack.extend(to for to, _ in self.resolved.get(at, ()) if to is not None)
 

@@ -228,6 +228,26 @@ SILENT = {
         ),
         ("CMakeLists.txt", "add_executable(run run.cpp)", "add_executable(run run.cpp old.cpp)"),
     ),
+    "an include of a file that is only compiled where a library happens to be": Silent(
+        "undeclared-package",
+        ("humble",),
+        ament(
+            "find_package(rclcpp REQUIRED)\npkg_check_modules(LTTNG lttng-ust)\nset(SOURCES run.cpp)\n"
+            "if(LTTNG_FOUND)\n  list(APPEND SOURCES trace.cpp)\nendif()\nadd_executable(run ${SOURCES})\n"
+            "target_link_libraries(run rclcpp::rclcpp)\ninstall(DIRECTORY include/ DESTINATION include)\n" + INSTALLED,
+            "rclcpp",
+            run_cpp=RCLCPP + MAIN,
+            trace_cpp="#include <sled/trace.h>\n",
+            include__sled__trace_h="#include <pcl_conversions/pcl_conversions.h>\n",
+        ),
+        ("CMakeLists.txt", "set(SOURCES run.cpp)", "set(SOURCES run.cpp trace.cpp)"),
+    ),
+    "the CMake name of what a declared vendor package brings": Silent(
+        "misspelt-cmake-name",
+        ("jazzy",),
+        ament("find_package(gz-sim REQUIRED)", "gz_sim_vendor", "ros_gz_sim"),
+        ("CMakeLists.txt", "gz-sim", "ros_gz_sin"),
+    ),
     "messages that another declared package brings": Silent(
         "undeclared-package",
         ("humble", "jazzy"),
