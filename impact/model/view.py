@@ -83,6 +83,7 @@ class View:
         self._cmake: dict[str, tuple[Provider, ...]] = {}
         self._modules: dict[str, tuple[Provider, ...]] = {}
         self._debian: dict[str, frozenset[str]] = {}
+        self._sealed: dict[str, list[str]] = {}
         self._held: dict[tuple[Condition, ...], bool | None] = {}
         self._reached: dict[int, tuple[object, frozenset[str], set[str]]] = {}
         self._standard: dict[str, bool] = {}
@@ -428,6 +429,17 @@ class View:
             if n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
             and target.dependencies(n) is None and target.similar_dependencies(n) is None
         ]  # fmt: skip
+
+    def sealed(self, package: Package) -> list[str]:
+        """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
+        platform has them (Gazebo comes from its own): they may bring any system library."""
+        if package.name not in self._sealed:
+            self._sealed[package.name] = [
+                n for n in self.closure(package)
+                if n not in self.workspace.packages and (libraries := [d for d in self.debian(n) if d.endswith("-dev")])
+                and not self.providers.knows_system([n, *libraries])
+            ]  # fmt: skip
+        return self._sealed[package.name]
 
     def debian(self, name: str) -> frozenset[str]:
         """What a rosdep key installs here."""

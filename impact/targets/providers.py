@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import sqlite3
 import threading
+from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -160,6 +161,14 @@ class Providers:
         if not where or any(not provider.name for provider in self._system("header", header)):
             return None
         return platform in where
+
+    def knows_system(self, packages: Iterable[str]) -> bool:
+        """True when the contents of one of these Debian packages, or rosdep keys, are in the table."""
+        return not self._system_names.isdisjoint(packages)
+
+    @cached_property
+    def _system_names(self) -> frozenset[str]:
+        return frozenset(name for (entries,) in self._rows("SELECT entries FROM provider") for name in entries.split())
 
     def cmake_platforms(self, name: str) -> tuple[str, ...]:
         """Platforms whose system packages bring a CMake configuration or find module of this name."""
