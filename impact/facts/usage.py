@@ -19,13 +19,14 @@ from .cpp import scan
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How one use looks. All expressions are regular expressions over text whose literals are blank inside.
 
-    word: an identifier that stands in the use. language: `cpp` or `python`. before: matches right up to the word.
+    word: an identifier that stands in the use; `std::optional`, without anything else, for that name. language: `cpp` or `python`. before: matches right up to the word.
     template: matches all of the arguments in `<>` (empty: there must be none; unset: either). arguments: makes it a
     call or an initialisation, with `2`, `1-3` or `2+` arguments. where: argument number, from 1 (from the end: -1), or
     `any`, to what must be found in it: an expression, or `<float>`, `<text>` for an expression that shows itself to be
     a floating point number or a string (a literal, or a variable that the file declares so). names: a variable may stand
-    between the type that `word` is and its arguments. after: matches right behind the use. file: must be found in the
-    file. unless: must not be found in it.
+    between the type that `word` is and its arguments. after: matches right behind the use. inside: `class` for what
+    stands right in the body of a class. file: must be found in the file. unless: must not be found in it; what begins
+    with `#include` is looked for among the includes, which are blank elsewhere.
     """
 
     word: str
@@ -36,6 +37,7 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     where: dict[str, str] = {}
     names: bool = False
     after: str = ""
+    inside: str = ""
     file: str = ""
     unless: str = ""
 
@@ -56,6 +58,16 @@ _INTEGER_CAST = re.compile(r"static_cast|\bint\s*\(|\(int\)|\(long\)|\b(?:round|
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
+def may_have(data: bytes, pattern: Pattern) -> bool:
+    """False when a use that is told by a keyword is surely not in a file; cheap, for words that every file has."""
+    return _in_bytes(pattern.before, pattern.word).search(data) is not None
+
+
+@lru_cache(maxsize=256)
+def _in_bytes(before: str, word: str) -> re.Pattern[bytes]:
+    return re.compile(rf"(?:{before}){re.escape(word)}\b".encode())
+
+
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     """Line, column and preprocessor conditions of every use in a file that looks like the pattern. Never raises."""
     if pattern.language == "python":
@@ -68,14 +80,17 @@ def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     else:
         scanned = _scanned(data)
         text, place, segments = scanned.visible, scanned.place, scanned.segments
-    if (pattern.file and not _compiled(pattern.file).search(text)) or (
-        pattern.unless and _compiled(pattern.unless).search(text)
+    whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
+    if (pattern.file and not _compiled(pattern.file).search(whole)) or (
+        pattern.unless and _compiled(pattern.unless).search(whole)
     ):
         return
     word = _compiled(rf"(?<!\w){re.escape(pattern.word)}(?!\w)")
     for start, end, conditions in segments:
         for match in word.finditer(text, start, end):
-            if _fits(pattern, text, match.start(), match.end()):
+            if _fits(pattern, text, match.start(), match.end()) and (
+                pattern.inside != "class" or _in_class(text, match.start())
+            ):
                 yield (*place(match.start()), conditions)
 
 
@@ -134,6 +149,26 @@ def _fits(pattern: Pattern, text: str, start: int, end: int) -> bool:
     return not pattern.after or bool(_compiled(pattern.after).match(text, at))
 
 
+_OPENING_CLASS = re.compile(r"\b(?:class|struct)\s[^;{}()=]*\Z")
+
+
+def _in_class(text: str, at: int) -> bool:
+    """Whether a place stands right in the body of a class, not in a function of it."""
+    depth, position = 0, at
+    while True:
+        opened, closed = text.rfind("{", 0, position), text.rfind("}", 0, position)
+        if opened == closed:
+            return False
+        position = max(opened, closed)
+        if closed > opened:
+            depth += 1
+        elif depth:
+            depth -= 1
+        else:
+            begins = max(text.rfind(end, 0, position) for end in ";{}") + 1
+            return bool(_OPENING_CLASS.search(text[begins:position]))
+
+
 def _declares(ahead: str) -> bool:
     """Whether a name behind this text is declared, not called: a type stands before it."""
     match = _BEFORE_CALL.search(ahead)
@@ -175,7 +210,21 @@ def _as_many(wanted: str, given: int) -> bool:
     return int(low) <= given <= int(high or low)
 
 
+_PASSED = re.compile(r"(?<=[\w>)])\s*(?:\((?:[^(){}]|\(\))*\)|\{(?:[^(){}]|\(\))*\})")
+
+
+def _without_passed(argument: str) -> str:
+    """An expression without what it passes to functions: that says nothing of its own type."""
+    while True:
+        shorter = _PASSED.sub("()", argument)
+        if shorter == argument:
+            return argument
+        argument = shorter
+
+
 def _is(argument: str, wanted: str, text: str) -> bool:
+    if wanted in ("<float>", "<text>"):
+        argument = _without_passed(argument)
     if wanted == "<float>":
         if _INTEGER_CAST.search(argument) and not _FLOAT_CAST.match(argument):
             return False

@@ -12,14 +12,14 @@ from collections.abc import Callable, Iterable, Iterator
 import msgspec
 
 from ..facts.condition import Condition
-from ..facts.cpp import CppFile, Include
+from ..facts.cpp import KEYWORDS, CppFile, Include
 from ..facts.interface import Interface
 from ..facts.launch import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, Place, places_of_use
+from ..facts.usage import Pattern, Place, may_have, places_of_use
 from .build import At, Build
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
@@ -420,9 +420,16 @@ class _Join:
                 continue
             spoken = set(facts.words.split(" "))
             for name in facts.qualified:
-                spoken.update(name.text.split("::"))
-            for word in sorted(watched.keys() & spoken):
+                parts = name.text.removeprefix("::").split("::")
+                spoken.update(parts)
+                # A row about a name as it stands needs no second look at the file.
+                for label, _ in watched.get("::".join(parts[:2]), ()):
+                    yield NameUse(label, At(path, name.line, name.column), role, public, "cpp",
+                                  conditions + name.conditions, targets)  # fmt: skip
+            for word in sorted(watched.keys() & (spoken | KEYWORDS)):
                 for label, pattern in watched[word]:
+                    if word in KEYWORDS and not may_have(self.read(path), pattern):
+                        continue
                     for line, column, around in _first(places_of_use(self.read(path), pattern)):
                         yield NameUse(label, At(path, line, column), role, public, "cpp", conditions + around, targets)
 
