@@ -42,7 +42,7 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     unless: str = ""
 
 
-Place = tuple[int, int, tuple[Condition, ...]]
+Place = tuple[int, int, tuple[Condition, ...], str]
 _FAR = 160
 _LONGEST = 4000
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
@@ -69,7 +69,8 @@ def _in_bytes(before: str, word: str) -> re.Pattern[bytes]:
 
 
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
-    """Line, column and preprocessor conditions of every use in a file that looks like the pattern. Never raises."""
+    """Line, column, preprocessor conditions and template arguments of every use that looks like the pattern. Never
+    raises."""
     if pattern.language == "python":
         text = _python(data)
         segments: list[tuple[int, int, tuple[Condition, ...]]] = [(0, len(text), ())]
@@ -88,10 +89,9 @@ def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     word = _compiled(rf"(?<!\w){re.escape(pattern.word)}(?!\w)")
     for start, end, conditions in segments:
         for match in word.finditer(text, start, end):
-            if _fits(pattern, text, match.start(), match.end()) and (
-                pattern.inside != "class" or _in_class(text, match.start())
-            ):
-                yield (*place(match.start()), conditions)
+            types = _fits(pattern, text, match.start(), match.end())
+            if types is not None and (pattern.inside != "class" or _in_class(text, match.start())):
+                yield (*place(match.start()), conditions, types)
 
 
 @lru_cache(maxsize=2)
@@ -104,37 +104,38 @@ def _compiled(expression: str) -> re.Pattern[str]:
     return re.compile(expression)
 
 
-def _fits(pattern: Pattern, text: str, start: int, end: int) -> bool:
+def _fits(pattern: Pattern, text: str, start: int, end: int) -> str | None:
+    """The template arguments of a use (empty: none), None where the text does not look like the pattern."""
     ahead = text[max(0, start - _FAR) : start]
     if pattern.before and not _compiled(rf"(?:{pattern.before})\Z").search(ahead):
-        return False
-    at = end
+        return None
+    at, shown = end, ""
     opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
     if pattern.language == "cpp" and text.startswith("<", opened):
         types = _TYPES.match(text, opened + 1)
         if types is not None:
             if pattern.template is not None and not _compiled(pattern.template).fullmatch(types.group()[:-1].strip()):
-                return False
+                return None
             if pattern.template == "":
-                return False
-            at = types.end()
+                return None
+            at, shown = types.end(), " ".join(types.group()[:-1].split())
         elif pattern.template:
-            return False
+            return None
     elif pattern.template:
-        return False
+        return None
     if pattern.arguments:
         variable = _VARIABLE.match(text, at) if pattern.names else None
         at = variable.end() if variable else _SPACE.match(text, at).end()  # type: ignore[union-attr]
         if text[at : at + 1] not in ("(", "{") or (text[at] == "{" and not pattern.names):
-            return False
+            return None
         if not pattern.names and _declares(ahead):
-            return False
+            return None
         found = _arguments(text, at)
         if found is None:
-            return False
+            return None
         given, at = found
         if not _as_many(pattern.arguments, len(given)):
-            return False
+            return None
         for which, wanted in pattern.where.items():
             if which == "any":
                 chosen = given
@@ -142,11 +143,11 @@ def _fits(pattern: Pattern, text: str, start: int, end: int) -> bool:
                 number = int(which)
                 index = number - 1 if number > 0 else number
                 if not -len(given) <= index < len(given):
-                    return False
+                    return None
                 chosen = [given[index]]
             if not any(_is(argument, wanted, text) for argument in chosen):
-                return False
-    return not pattern.after or bool(_compiled(pattern.after).match(text, at))
+                return None
+    return shown if not pattern.after or _compiled(pattern.after).match(text, at) else None
 
 
 _OPENING_CLASS = re.compile(r"\b(?:class|struct)\s[^;{}()=]*\Z")
@@ -210,21 +211,7 @@ def _as_many(wanted: str, given: int) -> bool:
     return int(low) <= given <= int(high or low)
 
 
-_PASSED = re.compile(r"(?<=[\w>)])\s*(?:\((?:[^(){}]|\(\))*\)|\{(?:[^(){}]|\(\))*\})")
-
-
-def _without_passed(argument: str) -> str:
-    """An expression without what it passes to functions: that says nothing of its own type."""
-    while True:
-        shorter = _PASSED.sub("()", argument)
-        if shorter == argument:
-            return argument
-        argument = shorter
-
-
 def _is(argument: str, wanted: str, text: str) -> bool:
-    if wanted in ("<float>", "<text>"):
-        argument = _without_passed(argument)
     if wanted == "<float>":
         if _INTEGER_CAST.search(argument) and not _FLOAT_CAST.match(argument):
             return False

@@ -27,6 +27,8 @@ ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutor
 TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration_tests", "benchmark", "benchmarks"})
 
 
+# `<urdf::...>` in the label of a use stands for the template arguments that are written.
+_OPEN_TYPES = re.compile(r"<[^<>]*\.\.\.>")
 _ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample)(?:_|\.|\d|$)")
 
 
@@ -62,7 +64,7 @@ class ReferenceUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class NameUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A use of a name that some rule watches. reach: everything the file includes, through files of the package."""
+    """A use of a name that some rule watches. shown: how to call it, where that says more."""
 
     text: str
     at: At
@@ -71,6 +73,7 @@ class NameUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     language: str
     conditions: tuple[Condition, ...] = ()
     targets: tuple[str, ...] = ()
+    shown: str = ""
 
 
 class NeededHeader(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -430,8 +433,9 @@ class _Join:
                 for label, pattern in watched[word]:
                     if word in KEYWORDS and not may_have(self.read(path), pattern):
                         continue
-                    for line, column, around in _first(places_of_use(self.read(path), pattern)):
-                        yield NameUse(label, At(path, line, column), role, public, "cpp", conditions + around, targets)
+                    for line, column, around, types in _first(places_of_use(self.read(path), pattern)):
+                        yield NameUse(label, At(path, line, column), role, public, "cpp", conditions + around, targets,
+                                      _OPEN_TYPES.sub(lambda _: f"<{types}>", label))  # fmt: skip
 
     def python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
         """The same in Python files that import the package which the row is about."""
@@ -439,7 +443,7 @@ class _Join:
             heads = {item.module.split(".")[0] for item in facts.imports}
             for package in sorted(self.watched.modules.keys() & heads):
                 for label, pattern in self.watched.modules[package]:
-                    for line, column, _ in _first(places_of_use(self.read(path), pattern)):
+                    for line, column, _, _ in _first(places_of_use(self.read(path), pattern)):
                         yield NameUse(label, At(path, line, column), self.python_role(path), False, "python")
 
     def bare(self, word, path, role, public, targets, conditions) -> NameUse:
@@ -546,11 +550,11 @@ class _Join:
 
 
 def _first(places: Iterable[Place]) -> Iterator[Place]:
-    """The first place for every distinct set of conditions."""
+    """The first place for every distinct set of conditions and template arguments."""
     seen = set()
     for place in places:
-        if place[2] not in seen:
-            seen.add(place[2])
+        if place[2:] not in seen:
+            seen.add(place[2:])
             yield place
 
 

@@ -45,12 +45,16 @@ def name_to_declare(view: View, need: Need) -> str | None:
     return None
 
 
+# What every C++ file is compiled with, whatever its package declares.
+_COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
+
+
 def uses_refused(view: View, kind: str) -> Iterator[Hit]:
     """Hits for watched uses of a kind (`call-changed`, `field-changed`) that a target takes no longer, or not yet, or
     that only the newest distro's libraries take no longer."""
     # What the workspace itself brings is as it brings it, whatever a release did.
     refused = {c.old: c for c in view.changes(kind) if c.package not in view.workspace.packages}
-    coming = {label: c for label, c in view.later.items() if c.kind == kind and c.package != "gcc"}
+    coming = {label: c for label, c in view.later.items() if c.kind == kind and c.package not in _COMPILER}
     if not refused and not coming:
         return
     for package in view:
@@ -62,13 +66,14 @@ def uses_refused(view: View, kind: str) -> Iterator[Hit]:
             if (
                 change is None
                 or not view.active(use.conditions)
-                or not (change.package == "gcc" or view.concerned(package, change, use.at.path))
+                or not (change.package in _COMPILER or view.concerned(package, change, use.at.path))
                 or (later is not None and not view.later_active(use.conditions))
             ):
                 continue
             where = _under_standard(view, package, use, change)
             if where is None:
                 continue
+            shown = use.shown or use.text
             certain = use.language == "cpp" and view.certain(use.conditions)
             if later is not None:
                 loud = certain and use.role == "build" and later.package not in warned
@@ -76,8 +81,8 @@ def uses_refused(view: View, kind: str) -> Iterator[Hit]:
                     warned.add(later.package)
                 yield Hit(
                     use.at,
-                    use.text,
-                    f"`{use.text}` is taken, and no longer by {later.package} {later.version} of {view.horizon}",
+                    shown,
+                    f"`{shown}` is taken, and no longer by {later.package} {later.version} of {view.horizon}",
                     later.new,
                     package.name,
                     severity="warning" if loud else "note",
@@ -87,8 +92,8 @@ def uses_refused(view: View, kind: str) -> Iterator[Hit]:
             how = "in" if kind == "field-changed" else "taken by"
             yield Hit(
                 use.at,
-                use.text,
-                f"`{use.text}` {when} {how} {change.package} {change.version}{where}",
+                shown,
+                f"`{shown}` {when} {how} {change.package} {change.version}{where}",
                 change.new,
                 package.name,
                 severity=_how_bad(use, certain),
