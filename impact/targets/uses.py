@@ -22,7 +22,7 @@ class _Use(Pattern, frozen=True, forbid_unknown_fields=True):
 
 class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Rows of data/uses*.json that share all but the use: label, as a user reads it, to how it looks and what to write
-    where it is not taken."""
+    where it is not taken. help: the same for all uses that say nothing of their own."""
 
     kind: str
     package: str
@@ -34,6 +34,7 @@ class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     new_since: str = ""
     refused_from: int = 0
     needs: int = 0
+    help: str = ""
 
 
 class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -73,8 +74,8 @@ def all_uses() -> tuple[Use, ...]:
             raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
         for g in groups:
             for label, use in g.uses.items():
-                row = Use(g.kind, g.package, label, use, use.help, g.library, g.removed_in, g.back_in, g.new_since,
-                          g.source, g.refused_from, g.needs)  # fmt: skip
+                row = Use(g.kind, g.package, label, use, use.help or g.help, g.library,
+                          g.removed_in, g.back_in, g.new_since, g.source, g.refused_from, g.needs)  # fmt: skip
                 if found.setdefault(label, row) is not row:
                     raise SnapshotError(f"{path}: two rows are called `{label}`; install rosimpact again")
     return tuple(found.values())
