@@ -76,7 +76,7 @@ def uses_refused(view: View, kind: str) -> Iterator[Hit]:
             shown = use.shown or use.text
             certain = use.language == "cpp" and view.certain(use.conditions)
             if later is not None:
-                loud = certain and use.role == "build" and later.package not in warned
+                loud = view.horizon_is_near and certain and use.role == "build" and later.package not in warned
                 if loud:
                     warned.add(later.package)
                 yield Hit(
