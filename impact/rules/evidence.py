@@ -10,6 +10,7 @@ from ..model.workspace import Package
 from ..targets.library import default_standard, standard_year
 from ..targets.target import Change
 from ..targets.uses import standards_of
+from ..targets.version import at_least
 from .rule import Hit
 
 _HOW = {"find_package": 0, "component": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5}
@@ -122,7 +123,8 @@ def _under_standard(view: View, package: Package, use: NameUse, change: Change) 
         return None  # a macro of another package may set it
     if refused_from:
         return f" in C++{have % 100:02d}" if have >= refused_from else None
-    # CMake raises the standard to what the exported targets of rclcpp and others ask for.
-    if have >= needs or view.target.ros == 2 or use.role != "build" or not view.certain(use.conditions):
+    # CMake raises the standard to what the exported targets of rclcpp and others ask for: 17 at most, until GCC 15.
+    raised = view.target.ros == 2 and (needs < 2020 or at_least(view.target.library("gcc") or "", "15"))
+    if have >= needs or raised or not use.targets or use.role != "build" or not view.certain(use.conditions):
         return None
     return f" in C++{have % 100:02d}"

@@ -252,6 +252,7 @@ _ROOTS = {
     "protobuf": ("google/protobuf/",),
     "vtk": ("vtk",),
     "python3": ("Python.h",),
+    "python": ("Python.h", "boost/python", "numpy/", "pybind11/"),
     "numpy": ("numpy/",),
     "bullet": ("bullet/", "btBullet", "LinearMath/"),
     "console-bridge": ("console_bridge/",),

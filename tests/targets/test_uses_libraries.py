@@ -55,6 +55,15 @@ SNIPPETS = [
         BOOST,
         "friend class boost::serialization::singleton<T>",
     ),
+    ("boost::asio::io_service& s; io_service_.post(f);", {"boost": "1.90.0"}, "boost::asio::io_context::post()"),
+    ("boost::asio::post(io_context_, f);", {"boost": "1.90.0"}, ""),
+    (
+        "asio::steady_timer t; t.expires_from_now(std::chrono::seconds(1));",
+        {"boost": "1.90.0"},
+        "boost::asio::basic_waitable_timer::expires_from_now()",
+    ),
+    ("void init() { import_array(); }", {"python": "3.8.2"}, "import_array() in a void function"),
+    ("void* init() { import_array(); return 0; }", {"python": "3.8.2"}, ""),
     ("cv::ORB orb(500);", {"opencv": "3.2.0"}, "cv::ORB()"),
     ("cv::ORB orb(500);", {"opencv": "2.4.8"}, ""),
     ("cv::Ptr<cv::ORB> orb = cv::ORB::create(500);", {"opencv": "3.2.0"}, ""),
@@ -145,3 +154,12 @@ def test_a_row_has_expressions_that_can_be_read(use):
     p = use.pattern
     for expression in (p.before, p.template or "", p.after, p.file, p.unless, *p.where.values()):
         re.compile(expression)
+
+
+LESS = "struct Less { bool operator()(int a, int b) const { return a < b; } };\nstd::set<int, Less> numbers;"
+
+
+def test_a_comparison_has_to_be_const():
+    assert refused(LESS, gcc="11.4.0") == set()
+    assert refused(LESS.replace(" const ", " "), gcc="11.4.0") == {"a comparison of std::set that is not const"}
+    assert refused(LESS.replace(" const ", " "), gcc="7.5.0") == set()
