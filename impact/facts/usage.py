@@ -64,13 +64,21 @@ _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
 def may_have(data: bytes, pattern: Pattern) -> bool:
-    """False when a use that is told by a keyword is surely not in a file; cheap, for words that every file has."""
-    return _in_bytes(pattern.before, pattern.word).search(data) is not None
+    """False when a use is surely not in a file; cheap, so that few files have to be looked at closely."""
+    if not pattern.before:
+        return True
+    word, before = pattern.word.encode(), _in_bytes(rf"(?:{pattern.before})\Z")
+    at = data.find(word)
+    while at >= 0:
+        if before.search(data, max(0, at - _FAR), at) is not None:
+            return True
+        at = data.find(word, at + len(word))
+    return False
 
 
-@lru_cache(maxsize=256)
-def _in_bytes(before: str, word: str) -> re.Pattern[bytes]:
-    return re.compile(rf"(?:{before}){re.escape(word)}\b".encode())
+@lru_cache(maxsize=4096)
+def _in_bytes(expression: str) -> re.Pattern[bytes]:
+    return re.compile(expression.encode())
 
 
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:

@@ -417,21 +417,24 @@ class _Join:
     def uses(self, roles) -> Iterator[NameUse]:
         """Every use that some table row is about, in files that something compiles."""
         watched = self.watched.uses
+        heads = {word.partition("::")[0] for word in watched if "::" in word}
         for path, (role, public, targets, conditions) in roles.items():
             facts = self.cpp.get(path)
             if facts is None or not watched:
                 continue
             spoken = set(facts.words.split(" "))
             for name in facts.qualified:
-                parts = name.text.removeprefix("::").split("::")
+                parts = name.text.split("::")
                 spoken.update(parts)
+                if parts[0] not in heads:
+                    continue
                 # A row about a name as it stands needs no second look at the file.
                 for label, _ in watched.get("::".join(parts[:2]), ()):
                     yield NameUse(label, At(path, name.line, name.column), role, public, "cpp",
                                   conditions + name.conditions, targets)  # fmt: skip
             for word in sorted(watched.keys() & (spoken | KEYWORDS)):
                 for label, pattern in watched[word]:
-                    if word in KEYWORDS and not may_have(self.read(path), pattern):
+                    if not may_have(self.read(path), pattern):
                         continue
                     for line, column, around, types in _first(places_of_use(self.read(path), pattern)):
                         yield NameUse(label, At(path, line, column), role, public, "cpp", conditions + around, targets,
