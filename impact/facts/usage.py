@@ -19,13 +19,15 @@ from .cpp import scan
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How one use looks. All expressions are regular expressions over text whose literals are blank inside.
 
-    word: an identifier that stands in the use. language: `cpp` or `python`. before: matches right up to the word.
-    template: matches all of the arguments in `<>` (empty: there must be none; unset: either). arguments: makes it a
+    word: an identifier that stands in the use; `std::optional`, without anything else, for that name. language: `cpp` or
+    `python`. before: matches right up to the word. template: matches all of the arguments in `<>` (empty: there must be none; unset: either). arguments: makes it a
     call or an initialisation, with `2`, `1-3` or `2+` arguments. where: argument number, from 1 (from the end: -1), or
     `any`, to what must be found in it: an expression, or `<float>`, `<text>` for an expression that shows itself to be
-    a floating point number or a string (a literal, or a variable that the file declares so). names: a variable may stand
-    between the type that `word` is and its arguments. after: matches right behind the use. file: must be found in the
-    file. unless: must not be found in it.
+    a floating point number or a string (a literal, or a variable that the file declares so), `<string>` for an object
+    of class string, `<shared>` for a shared pointer to what the file has just made. names: a variable may stand
+    between the type that `word` is and its arguments. after: matches right behind the use. inside: `class` for what
+    stands right in the body of a class. file: must be found in the file. unless: must not be found in it; what begins
+    with `#include` is looked for among the includes, which are blank elsewhere.
     """
 
     word: str
@@ -36,11 +38,12 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     where: dict[str, str] = {}
     names: bool = False
     after: str = ""
+    inside: str = ""
     file: str = ""
     unless: str = ""
 
 
-Place = tuple[int, int, tuple[Condition, ...]]
+Place = tuple[int, int, tuple[Condition, ...], str]
 _FAR = 160
 _LONGEST = 4000
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
@@ -51,13 +54,36 @@ _BEFORE_CALL = re.compile(r"(?:([A-Za-z_]\w*)|(>))\s+(?:[A-Za-z_]\w*\s*::\s*)*\Z
 _NOT_A_TYPE = frozenset("return else throw new co_return co_await co_yield case and or not do in if elif while".split())
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
 _TEXT = re.compile(r'"|\bstd::(?:to_)?string\s*[({]|\.str\(\)')
+_STRING = re.compile(r'\Astd::(?:to_)?string\s*[({]|\.str\(\)\Z|"\s*\+|\+\s*"')
+_NO_STRING = re.compile(r"\.(?:c_str|data)\(|\?")
+_CHRONO = re.compile(r"\d(?:h|min|s|ms|us|ns)\b|\bchrono\b")
+_PARAMETER = re.compile(r"(?:const\s+)?[A-Za-z_][\w:]*(?:\s*<[^()]*>)?(?:\s*&+\s*|\s+)[A-Za-z_]\w*")
 _FLOAT_CAST = re.compile(r"static_cast\s*<\s*(?:double|float)\s*>")
 _INTEGER_CAST = re.compile(r"static_cast|\bint\s*\(|\(int\)|\(long\)|\b(?:round|floor|ceil|trunc)\b|[<>=!]=?|\?")
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
+def may_have(data: bytes, pattern: Pattern) -> bool:
+    """False when a use is surely not in a file; cheap, so that few files have to be looked at closely."""
+    if not pattern.before:
+        return True
+    word, before = pattern.word.encode(), _in_bytes(rf"(?:{pattern.before})\Z")
+    at = data.find(word)
+    while at >= 0:
+        if before.search(data, max(0, at - _FAR), at) is not None:
+            return True
+        at = data.find(word, at + len(word))
+    return False
+
+
+@lru_cache(maxsize=4096)
+def _in_bytes(expression: str) -> re.Pattern[bytes]:
+    return re.compile(expression.encode())
+
+
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
-    """Line, column and preprocessor conditions of every use in a file that looks like the pattern. Never raises."""
+    """Line, column, preprocessor conditions and template arguments of every use that looks like the pattern. Never
+    raises."""
     if pattern.language == "python":
         text = _python(data)
         segments: list[tuple[int, int, tuple[Condition, ...]]] = [(0, len(text), ())]
@@ -68,15 +94,17 @@ def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     else:
         scanned = _scanned(data)
         text, place, segments = scanned.visible, scanned.place, scanned.segments
-    if (pattern.file and not _compiled(pattern.file).search(text)) or (
-        pattern.unless and _compiled(pattern.unless).search(text)
+    whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
+    if (pattern.file and not _compiled(pattern.file).search(whole)) or (
+        pattern.unless and _compiled(pattern.unless).search(whole)
     ):
         return
     word = _compiled(rf"(?<!\w){re.escape(pattern.word)}(?!\w)")
     for start, end, conditions in segments:
         for match in word.finditer(text, start, end):
-            if _fits(pattern, text, match.start(), match.end()):
-                yield (*place(match.start()), conditions)
+            types = _fits(pattern, text, match.start(), match.end())
+            if types is not None and (pattern.inside != "class" or _in_class(text, match.start())):
+                yield (*place(match.start()), conditions, types)
 
 
 @lru_cache(maxsize=2)
@@ -89,37 +117,38 @@ def _compiled(expression: str) -> re.Pattern[str]:
     return re.compile(expression)
 
 
-def _fits(pattern: Pattern, text: str, start: int, end: int) -> bool:
+def _fits(pattern: Pattern, text: str, start: int, end: int) -> str | None:
+    """The template arguments of a use (empty: none), None where the text does not look like the pattern."""
     ahead = text[max(0, start - _FAR) : start]
     if pattern.before and not _compiled(rf"(?:{pattern.before})\Z").search(ahead):
-        return False
-    at = end
+        return None
+    at, shown = end, ""
     opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
     if pattern.language == "cpp" and text.startswith("<", opened):
         types = _TYPES.match(text, opened + 1)
         if types is not None:
             if pattern.template is not None and not _compiled(pattern.template).fullmatch(types.group()[:-1].strip()):
-                return False
+                return None
             if pattern.template == "":
-                return False
-            at = types.end()
+                return None
+            at, shown = types.end(), " ".join(types.group()[:-1].split())
         elif pattern.template:
-            return False
+            return None
     elif pattern.template:
-        return False
+        return None
     if pattern.arguments:
         variable = _VARIABLE.match(text, at) if pattern.names else None
         at = variable.end() if variable else _SPACE.match(text, at).end()  # type: ignore[union-attr]
         if text[at : at + 1] not in ("(", "{") or (text[at] == "{" and not pattern.names):
-            return False
+            return None
         if not pattern.names and _declares(ahead):
-            return False
+            return None
         found = _arguments(text, at)
         if found is None:
-            return False
+            return None
         given, at = found
         if not _as_many(pattern.arguments, len(given)):
-            return False
+            return None
         for which, wanted in pattern.where.items():
             if which == "any":
                 chosen = given
@@ -127,11 +156,31 @@ def _fits(pattern: Pattern, text: str, start: int, end: int) -> bool:
                 number = int(which)
                 index = number - 1 if number > 0 else number
                 if not -len(given) <= index < len(given):
-                    return False
+                    return None
                 chosen = [given[index]]
             if not any(_is(argument, wanted, text) for argument in chosen):
-                return False
-    return not pattern.after or bool(_compiled(pattern.after).match(text, at))
+                return None
+    return shown if not pattern.after or _compiled(pattern.after).match(text, at) else None
+
+
+_OPENING_CLASS = re.compile(r"\b(?:class|struct)\s[^;{}()=]*\Z")
+
+
+def _in_class(text: str, at: int) -> bool:
+    """Whether a place stands right in the body of a class, not in a function of it."""
+    depth, position = 0, at
+    while True:
+        opened, closed = text.rfind("{", 0, position), text.rfind("}", 0, position)
+        if opened == closed:
+            return False
+        position = max(opened, closed)
+        if closed > opened:
+            depth += 1
+        elif depth:
+            depth -= 1
+        else:
+            begins = max(text.rfind(end, 0, position) for end in ";{}") + 1
+            return bool(_OPENING_CLASS.search(text[begins:position]))
 
 
 def _declares(ahead: str) -> bool:
@@ -176,23 +225,57 @@ def _as_many(wanted: str, given: int) -> bool:
 
 
 def _is(argument: str, wanted: str, text: str) -> bool:
+    if wanted.startswith("<") and _PARAMETER.fullmatch(argument):
+        return False  # what stands in the declaration of a function
     if wanted == "<float>":
         if _INTEGER_CAST.search(argument) and not _FLOAT_CAST.match(argument):
             return False
-        return bool(_FLOAT_CAST.match(argument) or _FLOAT.search(argument)) or _declared(argument, "double|float", text)
+        outer = _outer(argument)
+        if _CHRONO.search(outer):
+            return False
+        return bool(_FLOAT_CAST.match(argument) or _FLOAT.search(outer)) or _declared(outer, "double|float", text)
     if wanted == "<text>":
         return bool(_TEXT.search(argument)) or _declared(argument, r"(?:std\s*::\s*)?string", text)
+    if wanted == "<string>":
+        if _NO_STRING.search(argument):
+            return False
+        return bool(_STRING.search(_outer(argument))) or (
+            argument.isidentifier() and _declared(argument, r"(?:std\s*::\s*)?string", text)
+        )
+    if wanted == "<shared>":
+        return argument.isidentifier() and _made_shared(argument, text)
     return bool(_compiled(wanted).search(argument))
+
+
+_CALL = re.compile(r"(?<=[\w>])\s*[({][^(){}]*[)}]")
+
+
+def _outer(expression: str) -> str:
+    """An expression without what is handed to the functions that it calls."""
+    while True:
+        shorter = _CALL.sub("\x00\x01", expression)
+        if shorter == expression:
+            return expression.replace("\x00", "(").replace("\x01", ")")
+        expression = shorter
 
 
 def _declared(argument: str, types: str, text: str) -> bool:
     """Whether a variable of an arithmetic expression is declared with one of the types, and nowhere with another."""
     for name in _IDENTIFIER.findall(argument):
-        declared = re.findall(rf"([\w:]+)\s*&?\s+{re.escape(name)}\s*(?:[;={{,)]|\()", text)
+        declared = re.findall(rf"([\w:]+|char\s*\*)(?:\s*&\s*|\s+){re.escape(name)}\s*(?:[;={{,)]|\()", text)
         declared = [d for d in declared if d not in _NOT_A_TYPE]
         if declared and all(re.fullmatch(types, d) for d in declared):
             return True
     return False
+
+
+def _made_shared(name: str, text: str) -> bool:
+    """Whether a file declares a variable as a shared pointer that it makes, and nowhere declares it otherwise."""
+    declared = re.findall(rf"([\w:>]+)(\s*[&*]+\s*|\s+){re.escape(name)}\s*([;={{,)(][^;]{{0,60}})", text)
+    declared = [(d, between, ahead) for d, between, ahead in declared if d not in _NOT_A_TYPE]
+    return bool(declared) and all(
+        not between.strip() and ahead.startswith("=") and "make_shared" in ahead for _, between, ahead in declared
+    )
 
 
 _PYTHON_HIDDEN = re.compile(

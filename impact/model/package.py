@@ -12,14 +12,14 @@ from collections.abc import Callable, Iterable, Iterator
 import msgspec
 
 from ..facts.condition import Condition
-from ..facts.cpp import CppFile, Include
+from ..facts.cpp import KEYWORDS, CppFile, Include
 from ..facts.interface import Interface
 from ..facts.launch import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, Place, places_of_use
+from ..facts.usage import Pattern, Place, may_have, places_of_use
 from .build import At, Build
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
@@ -27,6 +27,8 @@ ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutor
 TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration_tests", "benchmark", "benchmarks"})
 
 
+# `<urdf::...>` in the label of a use stands for the template arguments that are written.
+_OPEN_TYPES = re.compile(r"<[^<>]*\.\.\.>")
 _ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample)(?:_|\.|\d|$)")
 
 
@@ -62,7 +64,7 @@ class ReferenceUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class NameUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A use of a name that some rule watches. reach: everything the file includes, through files of the package."""
+    """A use of a name that some rule watches. shown: how to call it, where that says more."""
 
     text: str
     at: At
@@ -71,6 +73,7 @@ class NameUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     language: str
     conditions: tuple[Condition, ...] = ()
     targets: tuple[str, ...] = ()
+    shown: str = ""
 
 
 class NeededHeader(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -415,17 +418,28 @@ class _Join:
     def uses(self, roles) -> Iterator[NameUse]:
         """Every use that some table row is about, in files that something compiles."""
         watched = self.watched.uses
+        heads = {word.partition("::")[0] for word in watched if "::" in word}
         for path, (role, public, targets, conditions) in roles.items():
             facts = self.cpp.get(path)
             if facts is None or not watched:
                 continue
             spoken = set(facts.words.split(" "))
             for name in facts.qualified:
-                spoken.update(name.text.split("::"))
-            for word in sorted(watched.keys() & spoken):
+                parts = name.text.split("::")
+                spoken.update(parts)
+                if parts[0] not in heads:
+                    continue
+                # A row about a name as it stands needs no second look at the file.
+                for label, _ in watched.get("::".join(parts[:2]), ()):
+                    yield NameUse(label, At(path, name.line, name.column), role, public, "cpp",
+                                  conditions + name.conditions, targets)  # fmt: skip
+            for word in sorted(watched.keys() & (spoken | KEYWORDS)):
                 for label, pattern in watched[word]:
-                    for line, column, around in _first(places_of_use(self.read(path), pattern)):
-                        yield NameUse(label, At(path, line, column), role, public, "cpp", conditions + around, targets)
+                    if not may_have(self.read(path), pattern):
+                        continue
+                    for line, column, around, types in _first(places_of_use(self.read(path), pattern)):
+                        yield NameUse(label, At(path, line, column), role, public, "cpp", conditions + around, targets,
+                                      _OPEN_TYPES.sub(lambda _: f"<{types}>", label))  # fmt: skip
 
     def python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
         """The same in Python files that import the package which the row is about."""
@@ -433,7 +447,7 @@ class _Join:
             heads = {item.module.split(".")[0] for item in facts.imports}
             for package in sorted(self.watched.modules.keys() & heads):
                 for label, pattern in self.watched.modules[package]:
-                    for line, column, _ in _first(places_of_use(self.read(path), pattern)):
+                    for line, column, _, _ in _first(places_of_use(self.read(path), pattern)):
                         yield NameUse(label, At(path, line, column), self.python_role(path), False, "python")
 
     def bare(self, word, path, role, public, targets, conditions) -> NameUse:
@@ -540,11 +554,11 @@ class _Join:
 
 
 def _first(places: Iterable[Place]) -> Iterator[Place]:
-    """The first place for every distinct set of conditions."""
+    """The first place for every distinct set of conditions and template arguments."""
     seen = set()
     for place in places:
-        if place[2] not in seen:
-            seen.add(place[2])
+        if place[2:] not in seen:
+            seen.add(place[2:])
             yield place
 
 

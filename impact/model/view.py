@@ -14,6 +14,7 @@ from typing import NamedTuple
 from ..config import Config
 from ..facts.condition import Condition
 from ..targets.changes import transitive_includes
+from ..targets.distro import known_distros
 from ..targets.library import include_roots
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
@@ -352,6 +353,13 @@ class View:
         """Name of the newest distro of this generation."""
         newest = self.target.newest()
         return newest.distro if newest is not None else ""
+
+    @cached_property
+    def horizon_is_near(self) -> bool:
+        """True when the newest distro is at most two long-term ones ahead."""
+        released = {known.name: known.released for known in known_distros()}
+        here = released.get(self.target.distro, "")
+        return sum(k.lts and k.ros == self.target.ros and k.released > here for k in known_distros()) <= 2
 
     def concerned(self, package: Package, change: Change, path: str) -> bool:
         """True when a file can mean the changed package by a name: the package declares or includes something of it."""

@@ -275,6 +275,16 @@ def excuses(change: Change) -> tuple[str, ...]:
     return _excuses().get((change.package, change.old), ())
 
 
+def removed_in(change: Change) -> str:
+    """The version from which on an old name is gone; empty when it is not known."""
+    return _bounds().get((change.kind, change.package, change.old), "")
+
+
+@cache
+def _bounds() -> dict[tuple[str, str, str], str]:
+    return {(row.kind, row.package, row.old): row.removed_in for row in all_rows()}
+
+
 @cache
 def _excuses() -> dict[tuple[str, str], tuple[str, ...]]:
     return {(row.package, row.old): row.unless for row in all_rows() if row.unless}

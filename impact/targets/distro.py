@@ -35,6 +35,7 @@ class DistroFacts(msgspec.Struct, frozen=True):
     lts: bool
     platform: str
     libraries_from: dict[str, str] = {}
+    libraries: dict[str, str] = {}
 
 
 class Known(NamedTuple):
@@ -565,6 +566,8 @@ class DistroTarget(Target):
         instead = self._facts.libraries_from.get(wanted) if self._facts else None
         if instead and (version := self.version(instead)):
             return version
+        if self._facts and wanted in self._facts.libraries:
+            return self._facts.libraries[wanted]
         cell = self._libraries().get(wanted)
         return cell.version if cell else None
 
@@ -579,7 +582,7 @@ class DistroTarget(Target):
     def library_names(self) -> frozenset[str]:
         """Platform libraries whose version is known here."""
         own = {name for name, value in self._own_libraries.items() if value and name in self._all_libraries()}
-        return frozenset(self._libraries()) | own
+        return frozenset(self._libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
 
     def library_since(self, name: str) -> tuple[str, str] | None:
         """(platform, version) of the oldest platform of the same system that has this library in the same version."""

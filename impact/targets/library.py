@@ -190,6 +190,11 @@ def default_standard(target: Target) -> int | None:
     return 2017 if at_least(gcc, "11") else 2014 if at_least(gcc, "6") else 1998
 
 
+def standard_year(number: int) -> int:
+    """The year of a C++ standard as flags and CMake write it: 98 and 3 come before 11."""
+    return 1998 if number in (98, 3) else 2000 + number % 100
+
+
 def _set_by(stem: str, *endings: str) -> frozenset[str]:
     return frozenset(f"{stem}_{ending}" for ending in (*endings, "FOUND", "VERSION"))
 
@@ -226,6 +231,10 @@ _ROOTS = {
     "pcl": ("pcl/", "pcl_"),
     "ffmpeg-libavcodec": ("libav", "libsws"),
     "ffmpeg": ("libav", "libsws"),
+    "libav": ("libav", "libsws"),
+    "libavcodec": ("libav", "libsws"),
+    "libavformat": ("libav", "libsws"),
+    "libavutil": ("libav", "libsws"),
     "yaml-cpp": ("yaml-cpp/",),
     "eigen3": ("Eigen/", "eigen3/", "unsupported/Eigen"),
     "gazebo": ("gazebo/",),
@@ -243,10 +252,12 @@ _ROOTS = {
     "protobuf": ("google/protobuf/",),
     "vtk": ("vtk",),
     "python3": ("Python.h",),
+    "python": ("Python.h", "boost/python", "numpy/", "pybind11/"),
     "numpy": ("numpy/",),
     "bullet": ("bullet/", "btBullet", "LinearMath/"),
     "console-bridge": ("console_bridge/",),
-    "urdfdom-headers": ("urdf_model", "urdf_"),
+    "urdfdom-headers": ("urdf_model", "urdf_", "urdf/"),
+    "openssl": ("openssl/",),
     "ompl": ("ompl/",),
     "tbb": ("tbb/",),
     "jsoncpp": ("json/", "jsoncpp/"),

@@ -22,7 +22,7 @@ class _Use(Pattern, frozen=True, forbid_unknown_fields=True):
 
 class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Rows of data/uses*.json that share all but the use: label, as a user reads it, to how it looks and what to write
-    where it is not taken."""
+    where it is not taken. help: the same for all uses that say nothing of their own."""
 
     kind: str
     package: str
@@ -32,6 +32,9 @@ class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     removed_in: str = ""
     back_in: str = ""
     new_since: str = ""
+    refused_from: int = 0
+    needs: int = 0
+    help: str = ""
 
 
 class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -42,7 +45,8 @@ class Use(NamedTuple):
     """A use that a package or platform library takes from new_since (empty: always) until before removed_in.
 
     kind: `call-changed` for calls, overloads and types, `field-changed` for fields of messages. label: as a user reads
-    it, no other row has it. help: what to write instead. Bounds are as in changes.Row.
+    it, no other row has it. help: what to write instead. Bounds are as in changes.Row. refused_from, needs: the year of
+    the C++ standard from which on, or before which, the compiler does not take it; 0: whatever the standard.
     """
 
     kind: str
@@ -55,6 +59,8 @@ class Use(NamedTuple):
     back_in: str
     new_since: str
     source: str
+    refused_from: int
+    needs: int
 
 
 @cache
@@ -68,11 +74,21 @@ def all_uses() -> tuple[Use, ...]:
             raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
         for g in groups:
             for label, use in g.uses.items():
-                row = Use(g.kind, g.package, label, use, use.help, g.library, g.removed_in, g.back_in, g.new_since,
-                          g.source)  # fmt: skip
+                row = Use(g.kind, g.package, label, use, use.help or g.help, g.library,
+                          g.removed_in, g.back_in, g.new_since, g.source, g.refused_from, g.needs)  # fmt: skip
                 if found.setdefault(label, row) is not row:
                     raise SnapshotError(f"{path}: two rows are called `{label}`; install rosimpact again")
     return tuple(found.values())
+
+
+def standards_of(label: str) -> tuple[int, int]:
+    """refused_from and needs of a use by its label."""
+    return _standards().get(label, (0, 0))
+
+
+@cache
+def _standards() -> dict[str, tuple[int, int]]:
+    return {row.label: (row.refused_from, row.needs) for row in all_uses() if row.refused_from or row.needs}
 
 
 def uses_in_force(target: Target) -> tuple[Change, ...]:

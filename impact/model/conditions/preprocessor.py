@@ -73,6 +73,9 @@ _WEIGHTS = {
     "OGRE_VERSION": (65536, 256, 1),
     "MOVEIT_FCL_VERSION": (65536, 256, 1),
     "OMPL_VERSION_VALUE": (1000000, 1000, 1),
+    "LIBAVCODEC_VERSION_INT": (65536, 256, 1),
+    "LIBAVFORMAT_VERSION_INT": (65536, 256, 1),
+    "LIBAVUTIL_VERSION_INT": (65536, 256, 1),
     "PY_VERSION_HEX": (1 << 24, 1 << 16, 1 << 8),
 }
 # Macros that make such a number from three.
@@ -82,6 +85,7 @@ _MAKERS = {
     "QT_VERSION_CHECK": (65536, 256, 1),
     "OGRE_VERSION_CHECK": (65536, 256, 1),
     "FCL_VERSION_CHECK": (65536, 256, 1),
+    "AV_VERSION_INT": (65536, 256, 1),
 }
 _AT_LEAST = re.compile(r"(\w+?)_(?:VERSION_(?:GTE|GE|AT_LEAST|MINIMUM)|MIN_VERSION)")
 _LESS_THAN = re.compile(r"(\w+?)_VERSION_(?:LT|LESS)")

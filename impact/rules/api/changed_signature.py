@@ -2,14 +2,17 @@
 
 What it does
     Reports calls with arguments, template arguments, or in a form that the known-changes table says the target's
-    version of a package or library takes no longer, or not yet.
+    version of a package or library takes no longer, or not yet; what the C++ standard that the package is compiled with
+    refuses or lacks; and what libraries of the newest distro take no longer.
 
 Why it breaks
     The compiler finds no matching function, or Python raises a TypeError or an AttributeError: the name is there, but
     not with these arguments.
 
 Severity
-    error for code that is built or run; warning in tests, and under conditions that are not known; note in examples.
+    error for code that is built or run; warning in tests, under CMake conditions that are not known, and for the first
+    call of a library that only the newest distro refuses, where that is at most two long-term distros ahead; note in
+    examples, under an `#if` that is not known, and for the rest.
 
 Example
     auto timeout = rclcpp::Duration(0.5);       // Humble's Duration takes no floating point number

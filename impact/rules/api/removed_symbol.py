@@ -10,7 +10,7 @@ Why it breaks
 
 Severity
     error for unguarded names in code that is built or run; warning in tests, under conditions that are not known, where
-    the name stays and changed its meaning, and for the first names of a library that only the newest distro lacks; note
+    the name stays and changed its meaning, and for the first name of a library that only the newest distro lacks; note
     in examples and for the rest of those.
 
 Example
@@ -24,11 +24,14 @@ Not reported
     (`cv_bridge` brings OpenCV's C constants); names that the package defines itself.
 """
 
-from ...model.package import is_header
+from collections.abc import Iterator
+
+from ...model.package import NameUse, is_header
 from ...model.view import View
-from ...targets.changes import excuses
+from ...targets.changes import excuses, removed_in
 from ...targets.library import include_roots
 from ...targets.target import Change
+from ...targets.version import parts
 from ..rule import Hit, rule
 
 _KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
@@ -60,7 +63,7 @@ def removed_symbol(view: View):
     own.update(name for package in view.workspace for name in package.digest.defined)
     for package in view:
         included = None
-        warned: dict[str, set[str]] = {}
+        coming: list[tuple[NameUse, Change, bool]] = []
         for use in package.digest.names:
             named = (python if use.language == "python" else cpp).get(use.text, ())
             if not named and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
@@ -104,26 +107,14 @@ def removed_symbol(view: View):
             if later is not None and not view.later_active(use.conditions):
                 continue
             if later is not None:
-                # Enough to see what is coming: the first place for each library loudly, the rest as notes.
-                names = warned.setdefault(later.package, set())
                 loud = (
                     use.language == "cpp"
                     and use.role == "build"
                     and view.certain(use.conditions)
                     and later.kind != "api-changed"
                     and later.package != "python"
-                    and not names
                 )
-                if loud:
-                    names.add(use.text)
-                yield Hit(
-                    use.at,
-                    use.text,
-                    f"`{use.text}` is there, and gone in {later.package} {later.version} of {view.horizon}",
-                    f"use `{later.new}`" if later.new else "",
-                    package.name,
-                    severity="warning" if loud else "note",
-                )
+                coming.append((use, later, loud))
                 continue
             verb = "changed" if change.kind == "api-changed" else "is gone"
             yield Hit(
@@ -134,6 +125,26 @@ def removed_symbol(view: View):
                 package.name,
                 severity="error" if sure else "note" if guarded else "warning",
             )
+        yield from _what_is_coming(view, package.name, coming)
+
+
+def _what_is_coming(view: View, package: str, coming: list[tuple[NameUse, Change, bool]]) -> Iterator[Hit]:
+    """Enough to see it: of each library the first place of what breaks first loudly, the rest as notes."""
+    first: dict[str, tuple] = {}
+    for use, later, loud in coming:
+        rank = (parts(removed_in(later)), use.at.path, use.at.line, use.at.column)
+        if loud and (later.package not in first or rank < first[later.package]):
+            first[later.package] = rank
+    for use, later, loud in coming:
+        rank = (parts(removed_in(later)), use.at.path, use.at.line, use.at.column)
+        yield Hit(
+            use.at,
+            use.text,
+            f"`{use.text}` is there, and gone in {later.package} {later.version} of {view.horizon}",
+            f"use `{later.new}`" if later.new else "",
+            package,
+            severity="warning" if loud and first.get(later.package) == rank else "note",
+        )
 
 
 _CMAKE_NAME = {"opencv": "OpenCV", "boost": "Boost", "pcl": "PCL"}

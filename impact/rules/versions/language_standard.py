@@ -22,7 +22,7 @@ Not reported
 """
 
 from ...model.view import View
-from ...targets.library import default_standard, needed_standard
+from ...targets.library import default_standard, needed_standard, standard_year
 from ..rule import Hit, rule
 
 
@@ -33,7 +33,7 @@ def language_standard(view: View):
         if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto") or not package.digest.includes:
             continue
         fixed = package.build.standard
-        have = _order(fixed[0]) if fixed else default
+        have = standard_year(fixed[0]) if fixed else default
         if not fixed and (
             any(u.kind == "command" for u in package.build.uses)
             or any(f.name in view.workspace.packages for f in package.build.found)
@@ -48,7 +48,7 @@ def language_standard(view: View):
             if include.role != "build" or not view.certain(include.conditions):
                 continue
             need = needed_standard(view.target, include.path)
-            if need is None or need.package in view.workspace.packages or _order(need.standard) <= have:
+            if need is None or need.package in view.workspace.packages or standard_year(need.standard) <= have:
                 continue
             at = fixed[1] if fixed else include.at
             written = (
@@ -65,8 +65,3 @@ def language_standard(view: View):
                 severity="error" if need.sure and fixed else "warning",
             )
             break
-
-
-def _order(standard: int) -> int:
-    """98 and 3 come before 11."""
-    return 1998 if standard in (98, 3) else 2000 + standard % 100

@@ -1,0 +1,115 @@
+"""How uses look: calls, initialisations, members and types, told from the text of a file alone."""
+
+import pytest
+from rosimpact.impact.facts.usage import Pattern, may_have, places_of_use
+
+CALL = Pattern("Duration", before=r"rclcpp\s*::\s*", arguments="1", names=True)
+MEMBER = Pattern("codec", before=r"\bstreams\s*\[[^\]\n]*\]\s*->\s*", after=r"\s*->")
+POINTER = Pattern("shared_ptr", before=r"\bboost\s*::\s*", template=r"(?:const\s+)?urdf\s*::\s*Link")
+BARE = Pattern("make_settings", template="", arguments="1-2")
+CONSTANT = Pattern("double", before=r"\bstatic\s+const\s+", after=r"\s+\w+\s*=", inside="class")
+BOTH = Pattern("shared_ptr", before=r"(?:[^\w.:>\s]|\breturn)\s*", template=".+", file=r"using\s+namespace\s+boost\s*;",
+               unless=r"#include\s*<boost/(?:shared|weak)_ptr\.hpp>")  # fmt: skip
+THROW = Pattern("throw", before=r"\)\s*(?:const\s*)?", arguments="1+", names=True, after=r"\s*[;{]")
+
+USES = (
+    (
+        CALL,
+        {
+            "auto a = rclcpp::Duration(5);": True,
+            "rclcpp::Duration a(5);": True,
+            "rclcpp::Duration a{5};": True,
+            "rclcpp :: Duration a(f<1, 2>(3));": True,
+            "auto a = rclcpp::Duration(5, 0);": False,
+            "auto a = other::Duration(5);": False,
+            "// rclcpp::Duration(5)": False,
+            'auto a = "rclcpp::Duration(5)";': False,
+            "rclcpp::Duration a;": False,
+            "rclcpp::Duration_(5);": False,
+        },
+    ),
+    (
+        MEMBER,
+        {
+            "x = format->streams[i]->codec->width;": True,
+            "x = format->streams[i]->codecpar->width;": False,
+            "x = context->codec->name;": False,
+        },
+    ),
+    (
+        POINTER,
+        {
+            "boost::shared_ptr<urdf::Link> a;": True,
+            "std::map<int, boost::shared_ptr< const urdf::Link > > a;": True,
+            "boost::shared_ptr<urdf::LinkPtr> a;": False,
+            "std::shared_ptr<urdf::Link> a;": False,
+            "boost::shared_ptr a;": False,
+        },
+    ),
+    (
+        BARE,
+        {
+            "write(a, make_settings(' ', 4));": True,
+            "write(a, make_settings<std::string>(' ', 4));": False,
+            "write(a, make_settings(' ', 4, 5));": False,
+        },
+    ),
+    (
+        CONSTANT,
+        {
+            "class A { static const double X = 1.0; };": True,
+            "template <class T> struct A : B<T> { int f() { return 1; } static const double X = 1.0; };": True,
+            "static const double X = 1.0;": False,
+            "namespace a { static const double X = 1.0; }": False,
+            "class A { void f() { static const double X = 1.0; } };": False,
+            "class A { static const double X; }; const double A::X = 1.0;": False,
+        },
+    ),
+    (
+        BOTH,
+        {
+            "using namespace boost; shared_ptr<int> a;": True,
+            "using namespace boost; std::shared_ptr<int> a;": False,
+            "shared_ptr<int> a;": False,
+            "#include <boost/shared_ptr.hpp>\nusing namespace boost; shared_ptr<int> a;": False,
+        },
+    ),
+    (
+        THROW,
+        {
+            "void f() throw(std::runtime_error);": True,
+            "int f() const throw (A, B) { return 1; }": True,
+            "void f() throw();": False,
+            "void f() { throw A(); }": False,
+        },
+    ),
+)
+
+
+def cases():
+    return [
+        pytest.param(pattern, text, seen, id=f"{pattern.word}: {text}")
+        for pattern, texts in USES
+        for text, seen in texts.items()
+    ]
+
+
+@pytest.mark.parametrize(("pattern", "text", "seen"), cases())
+def test_a_use_is_told_by_its_looks(pattern, text, seen):
+    assert bool(list(places_of_use(text.encode(), pattern))) is seen
+
+
+@pytest.mark.parametrize(("pattern", "text", "seen"), cases())
+def test_the_quick_look_misses_no_use(pattern, text, seen):
+    assert may_have(text.encode(), pattern) or not seen
+
+
+@pytest.mark.parametrize("text", ["", "\0", "rclcpp::Duration a(", "rclcpp::Duration(}", "class A { } } rclcpp::Duration("])
+def test_broken_files_have_no_uses(text):
+    assert list(places_of_use(text.encode(), CALL)) == []
+
+
+def test_a_place_has_line_column_conditions_and_template_arguments():
+    text = b"int a;\n#if OLD\n  boost::shared_ptr<const\n urdf::Link> b;\n#endif\n"
+    ((line, column, conditions, types),) = places_of_use(text, POINTER)
+    assert (line, column, [c.text for c in conditions], types) == (3, 10, ["OLD"], "const urdf::Link")
