@@ -23,7 +23,8 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     template: matches all of the arguments in `<>` (empty: there must be none; unset: either). arguments: makes it a
     call or an initialisation, with `2`, `1-3` or `2+` arguments. where: argument number, from 1 (from the end: -1), or
     `any`, to what must be found in it: an expression, or `<float>`, `<text>` for an expression that shows itself to be
-    a floating point number or a string (a literal, or a variable that the file declares so). names: a variable may stand
+    a floating point number or a string (a literal, or a variable that the file declares so), `<string>` for an object
+    of class string, `<shared>` for a shared pointer to what the file has just made. names: a variable may stand
     between the type that `word` is and its arguments. after: matches right behind the use. file: must be found in the
     file. unless: must not be found in it.
     """
@@ -51,6 +52,10 @@ _BEFORE_CALL = re.compile(r"(?:([A-Za-z_]\w*)|(>))\s+(?:[A-Za-z_]\w*\s*::\s*)*\Z
 _NOT_A_TYPE = frozenset("return else throw new co_return co_await co_yield case and or not do in if elif while".split())
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
 _TEXT = re.compile(r'"|\bstd::(?:to_)?string\s*[({]|\.str\(\)')
+_STRING = re.compile(r'\Astd::(?:to_)?string\s*[({]|\.str\(\)\Z|"\s*\+|\+\s*"')
+_NO_STRING = re.compile(r"\.(?:c_str|data)\(|\?")
+_CHRONO = re.compile(r"\d(?:h|min|s|ms|us|ns)\b|\bchrono\b")
+_PARAMETER = re.compile(r"(?:const\s+)?[A-Za-z_][\w:]*(?:\s*<[^()]*>)?(?:\s*&+\s*|\s+)[A-Za-z_]\w*")
 _FLOAT_CAST = re.compile(r"static_cast\s*<\s*(?:double|float)\s*>")
 _INTEGER_CAST = re.compile(r"static_cast|\bint\s*\(|\(int\)|\(long\)|\b(?:round|floor|ceil|trunc)\b|[<>=!]=?|\?")
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
@@ -176,23 +181,57 @@ def _as_many(wanted: str, given: int) -> bool:
 
 
 def _is(argument: str, wanted: str, text: str) -> bool:
+    if wanted.startswith("<") and _PARAMETER.fullmatch(argument):
+        return False  # what stands in the declaration of a function
     if wanted == "<float>":
         if _INTEGER_CAST.search(argument) and not _FLOAT_CAST.match(argument):
             return False
-        return bool(_FLOAT_CAST.match(argument) or _FLOAT.search(argument)) or _declared(argument, "double|float", text)
+        outer = _outer(argument)
+        if _CHRONO.search(outer):
+            return False
+        return bool(_FLOAT_CAST.match(argument) or _FLOAT.search(outer)) or _declared(outer, "double|float", text)
     if wanted == "<text>":
         return bool(_TEXT.search(argument)) or _declared(argument, r"(?:std\s*::\s*)?string", text)
+    if wanted == "<string>":
+        if _NO_STRING.search(argument):
+            return False
+        return bool(_STRING.search(_outer(argument))) or (
+            argument.isidentifier() and _declared(argument, r"(?:std\s*::\s*)?string", text)
+        )
+    if wanted == "<shared>":
+        return argument.isidentifier() and _made_shared(argument, text)
     return bool(_compiled(wanted).search(argument))
+
+
+_CALL = re.compile(r"(?<=[\w>])\s*[({][^(){}]*[)}]")
+
+
+def _outer(expression: str) -> str:
+    """An expression without what is handed to the functions that it calls."""
+    while True:
+        shorter = _CALL.sub("\x00\x01", expression)
+        if shorter == expression:
+            return expression.replace("\x00", "(").replace("\x01", ")")
+        expression = shorter
 
 
 def _declared(argument: str, types: str, text: str) -> bool:
     """Whether a variable of an arithmetic expression is declared with one of the types, and nowhere with another."""
     for name in _IDENTIFIER.findall(argument):
-        declared = re.findall(rf"([\w:]+)\s*&?\s+{re.escape(name)}\s*(?:[;={{,)]|\()", text)
+        declared = re.findall(rf"([\w:]+|char\s*\*)(?:\s*&\s*|\s+){re.escape(name)}\s*(?:[;={{,)]|\()", text)
         declared = [d for d in declared if d not in _NOT_A_TYPE]
         if declared and all(re.fullmatch(types, d) for d in declared):
             return True
     return False
+
+
+def _made_shared(name: str, text: str) -> bool:
+    """Whether a file declares a variable as a shared pointer that it makes, and nowhere declares it otherwise."""
+    declared = re.findall(rf"([\w:>]+)(\s*[&*]+\s*|\s+){re.escape(name)}\s*([;={{,)(][^;]{{0,60}})", text)
+    declared = [(d, between, ahead) for d, between, ahead in declared if d not in _NOT_A_TYPE]
+    return bool(declared) and all(
+        not between.strip() and ahead.startswith("=") and "make_shared" in ahead for _, between, ahead in declared
+    )
 
 
 _PYTHON_HIDDEN = re.compile(

@@ -22,7 +22,7 @@ class _Use(Pattern, frozen=True, forbid_unknown_fields=True):
 
 class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Rows of data/uses*.json that share all but the use: label, as a user reads it, to how it looks and what to write
-    where it is not taken."""
+    where it is not taken. help: the same for all uses that say nothing of their own."""
 
     kind: str
     package: str
@@ -32,6 +32,7 @@ class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     removed_in: str = ""
     back_in: str = ""
     new_since: str = ""
+    help: str = ""
 
 
 class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -68,8 +69,8 @@ def all_uses() -> tuple[Use, ...]:
             raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
         for g in groups:
             for label, use in g.uses.items():
-                row = Use(g.kind, g.package, label, use, use.help, g.library, g.removed_in, g.back_in, g.new_since,
-                          g.source)  # fmt: skip
+                row = Use(g.kind, g.package, label, use, use.help or g.help, g.library,
+                          g.removed_in, g.back_in, g.new_since, g.source)  # fmt: skip
                 if found.setdefault(label, row) is not row:
                     raise SnapshotError(f"{path}: two rows are called `{label}`; install rosimpact again")
     return tuple(found.values())
