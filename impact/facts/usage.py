@@ -59,7 +59,7 @@ _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     """Line, column and preprocessor conditions of every use in a file that looks like the pattern. Never raises."""
     if pattern.language == "python":
-        text = _python(data)
+        text = python_text(data)
         segments: list[tuple[int, int, tuple[Condition, ...]]] = [(0, len(text), ())]
 
         def place(offset: int) -> tuple[int, int]:
@@ -204,7 +204,7 @@ _INSIDE = re.compile(r"[^\n]")
 
 
 @lru_cache(maxsize=2)
-def _python(data: bytes) -> str:
+def python_text(data: bytes) -> str:
     """The text of a Python file with comments and the insides of literals blanked, offsets kept."""
     text = data.decode("utf-8-sig", "replace").replace("\r\n", "\n").replace("\r", "\n")
 

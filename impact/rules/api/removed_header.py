@@ -101,7 +101,7 @@ def removed_header(view: View):
             if lost is not None:
                 yield Hit(include.at, path, lost.message, lost.help, package.name, severity=severity)
                 continue
-            wrong = view.misnamed_interface(path)
+            wrong = view.misnamed_interface(path) or view.lost_interface(path)
             if wrong is None and path not in gone and path not in early and path not in view.later:
                 quiet.add(path)
             if wrong and not dual:
