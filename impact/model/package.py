@@ -22,7 +22,10 @@ from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Place, places_of_use, python_text
 from ..targets.fields import Fields
 from .build import At, Build
-from .members import CppUses, PythonUses, Scope, interfaces_imported, interfaces_included
+from .members import Interface as Meant
+from .members import Scope, interface_named, interfaces_imported, interfaces_included
+from .members_cpp import CppUses
+from .members_python import PythonUses
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
 ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutorial", "tutorials", "sample", "samples"})
@@ -104,11 +107,13 @@ class SyntaxUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class MemberUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A use of a field or constant of another package's interface that some version lacks. interface: `kind/Name`.
+    """A use of a field or constant of another package's interface that some version lacks. ros: the generation whose
+    interface it is. interface: `kind/Name`.
     sure: the receiver's type shows in the file; else only the name speaks, and no interface that is known to reach the
     file has it besides. role, language and conditions as in NameUse."""
 
     package: str
+    ros: int
     interface: str
     section: str
     member: str
@@ -458,15 +463,19 @@ class _Join:
                         yield NameUse(label, At(path, line, column), self.python_role(path), False, "python")
 
     def members(self, roles) -> Iterator[MemberUse]:
-        """Uses of fields and constants that only some versions of an interface have, in files that something compiles."""
+        """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
         table = self.watched.fields
         if table is None:
             return
         paths = {include.path for resolved in self.resolved.values() for to, include in resolved if to is None}
-        changing = Scope(interfaces_included(paths, table)[0], table).changing
+        # Interfaces that come along with other headers are told by their names.
+        kinds = {name.text: None for facts in self.cpp.values() for name in facts.qualified}
+        meant = {text: interface for text in kinds if (interface := interface_named(text, table)) is not None}
+        changing = Scope((*interfaces_included(paths, table)[0], *meant.values()), table).changing
         if not changing:
             return
         short = {name for name in changing if len(name) < 4}
+        scopes: dict[frozenset[Meant], Scope] = {}
         for path, (role, _, _, conditions) in roles.items():
             facts = self.cpp.get(path)
             if facts is None:
@@ -477,7 +486,11 @@ class _Join:
             if not changing & spoken:
                 continue
             included, unknown = interfaces_included(sorted(self.reach(path)), table)
-            scope = Scope(included, table)
+            named = [meant[name.text] for name in facts.qualified if name.text in meant]
+            key = frozenset((*included, *named))
+            scope = scopes.get(key)
+            if scope is None:
+                scope = scopes[key] = Scope(key, table)
             if not scope.changing & spoken:
                 continue
             scanned = scan(self.read(path))
@@ -490,8 +503,9 @@ class _Join:
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
-                    yield MemberUse(found.interface.package, found.interface.name, found.section, found.member,
-                                    At(path, line, column), role, "cpp", found.sure, conditions + around)  # fmt: skip
+                    yield MemberUse(found.interface.package, found.interface.ros, found.interface.name, found.section,
+                                    found.member, At(path, line, column), role, "cpp", found.sure,
+                                    conditions + around)  # fmt: skip
 
     def reached_files(self, path: str) -> set[str]:
         """The package's own files that a file includes, directly or through each other."""
@@ -510,22 +524,23 @@ class _Join:
         if table is None:
             return
         for path, facts in files.items():
-            included = interfaces_imported(
-                ((item.module, item.names) for item in facts.imports if not item.level), table
-            )
-            scope = Scope(included, table) if included else None
-            if scope is None or not scope.changing:
-                continue
-            text = python_text(self.read(path))
+            imported = interfaces_imported(((i.module, i.names) for i in facts.imports if not i.level), table)
             seen = set()
-            for found in PythonUses(text, scope).found():
-                key = (found.interface, found.section, found.member)
-                if key not in seen:
-                    seen.add(key)
-                    line = text.count("\n", 0, found.offset) + 1
-                    column = found.offset - (text.rfind("\n", 0, found.offset) + 1) + 1
-                    yield MemberUse(found.interface.package, found.interface.name, found.section, found.member,
-                                    At(path, line, column), self.python_role(path), "python", found.sure)  # fmt: skip
+            # Both generations import an interface alike: each is followed for itself.
+            for ros in sorted({interface.ros for interface in imported}):
+                scope = Scope((interface for interface in imported if interface.ros == ros), table)
+                if not scope.changing:
+                    continue
+                text = python_text(self.read(path))
+                for found in PythonUses(text, scope).found():
+                    key = (found.interface, found.section, found.member)
+                    if key not in seen:
+                        seen.add(key)
+                        line = text.count("\n", 0, found.offset) + 1
+                        column = found.offset - (text.rfind("\n", 0, found.offset) + 1) + 1
+                        yield MemberUse(found.interface.package, found.interface.ros, found.interface.name,
+                                        found.section, found.member, At(path, line, column),
+                                        self.python_role(path), "python", found.sure)  # fmt: skip
 
     def bare(self, word, path, role, public, targets, conditions) -> NameUse:
         """Where a bare word stands first, outside comments, with the preprocessor conditions around it."""

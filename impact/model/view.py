@@ -271,18 +271,56 @@ class View:
 
     # -- interfaces of released packages -------------------------------------------------------------------------------
 
-    def _interfaces_of(self, package: str) -> tuple[History, int, str] | None:
-        """All versions of a released package's interfaces, the state that holds here, and the version."""
+    def _interfaces_of(self, package: str, target: Target | None = None) -> tuple[History, int, str] | None:
+        """All versions of a released package's interfaces, the state that holds here (or there), and the version."""
         if package in self.workspace.packages:
             return None
-        version = self.target.version(package)
+        version = (target or self.target).version(package)
         history = default_fields().history(package, self.target.ros) if version else None
         state = history.state(version) if history is not None and version else None
         return None if history is None or state is None or not version else (history, state, version)
 
+    @cached_property
+    def _updated(self) -> Target | None:
+        return self.target.updated()
+
+    def coming_member(self, use: MemberUse) -> Misnamed | None:
+        """What is wrong when the interface has a member here, and lacks it once this distro is updated."""
+        now, later = self._interfaces_of(use.package), self._updated and self._interfaces_of(use.package, self._updated)
+        if use.ros != self.target.ros or not now or not later or now[1] >= later[1]:
+            return None
+        definition = now[0].definition(use.interface)
+        if definition is None or not there(definition.spans, later[1]):
+            return None
+        rows = definition.members(use.section, use.member)
+        if any(there(row.spans, later[1]) for row in rows) or not any(there(row.spans, now[1]) for row in rows):
+            return None
+        return Misnamed(f"`{use.member}` of `{use.package}/{use.interface}` is there, and gone in {use.package} "
+                        f"{later[2]} of {self.target.distro}", "")  # fmt: skip
+
+    def coming_interface(self, path: str) -> Misnamed | None:
+        """The same for the interface of a generated header."""
+        head, _, _, name = self._generated(path)
+        now, later = self._interfaces_of(head), self._updated and self._interfaces_of(head, self._updated)
+        if not name or not now or not later or now[1] >= later[1]:
+            return None
+        spans = now[0].spans(name)
+        if spans is None or not there(spans, now[1]) or there(spans, later[1]):
+            return None
+        return Misnamed(f"`{path}` is there, and gone in {head} {later[2]} of {self.target.distro}", "")
+
+    def _generated(self, path: str) -> tuple[str, str, str, str]:
+        """Package, rest, stem and interface (empty: none known) of the include path of a generated header."""
+        head, _, rest = path.partition("/")
+        stem, _, ending = rest.rpartition(".")
+        if not stem or ending != ("hpp" if "/" in stem else "h") or ("/" in stem) != (self.target.ros == 2):
+            return head, rest, stem, ""
+        history = default_fields().history(head, self.target.ros)
+        return head, rest, stem, (history.by_header.get(stem, "") if history is not None else "")
+
     def lacking_member(self, use: MemberUse) -> Misnamed | None:
         """What is wrong when the target's version of an interface lacks a member that another version has."""
-        known = self._interfaces_of(use.package)
+        known = self._interfaces_of(use.package) if use.ros == self.target.ros else None
         definition = known and known[0].definition(use.interface)
         if not known or not definition or not there(definition.spans, known[1]):
             return None
@@ -318,15 +356,24 @@ class View:
 
     def lost_interface(self, path: str) -> Misnamed | None:
         """What is wrong with the include of a generated header whose interface the target's version lacks."""
-        head, _, rest = path.partition("/")
-        stem, _, ending = rest.rpartition(".")
-        if not stem or ending != ("hpp" if "/" in stem else "h"):
-            return None
+        head, rest, stem, name = self._generated(path)
+        if head in self.workspace.packages:
+            return self._moved_interface(head, rest, stem, bool(name))
         known = self._interfaces_of(head)
-        name = known and known[0].by_header.get(stem)
-        if not known or not name or ("/" in stem) != (self.target.ros == 2):
+        return self._lost_interface_named(head, name, known) if known and name else None
+
+    def _moved_interface(self, head: str, rest: str, stem: str, once: bool) -> Misnamed | None:
+        """The same where the package is in the workspace: another one there defines the interface. once: some release
+        of the package had it."""
+        if ("/" in stem) != (self.target.ros == 2) or not (once or _CAMEL.match(stem)):
             return None
-        return self._lost_interface_named(head, name, known)
+        makers = [
+            name for name in self.workspace.interface_names
+            if name != head and self.workspace.is_interface_header(name, rest)
+        ]  # fmt: skip
+        if len(makers) != 1:
+            return None
+        return Misnamed(f"`{head}` generates no `{head}/{rest}`", f"include `{makers[0]}/{rest}`")
 
     def lost_interface_module(self, module: str, name: str) -> Misnamed | None:
         """What is wrong with `from package.kind import Name` when the target's version lacks the interface."""

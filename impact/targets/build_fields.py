@@ -14,6 +14,7 @@ import argparse
 import re
 import sys
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -105,7 +106,7 @@ class Reader:
             ros = tuple(g for g, there in ((1, b"catkin" in tools), (2, bool(tools - {b"catkin"}))) if there)
             if definitions is None:
                 definitions = self._definitions(tree, name.group(1).decode())
-            if definitions and ros:
+            if definitions and ros and not _takes_files_of_others(entries.get("CMakeLists.txt")):
                 yield Released(name.group(1).decode(), ros, version.group(1).decode(), definitions)
 
     def _definitions(self, tree, package: str) -> Definitions:
@@ -118,6 +119,18 @@ class Reader:
                     self._parsed[key] = _members(extract(entry.data, kind), package)
                 found.setdefault(f"{kind}/{name}", self._parsed[key])
         return found
+
+
+_FILES_OF = re.compile(rb"\$\{(\w+)_(?:MSG|SRV|ACTION|IDL)_FILES\}")
+
+
+def _takes_files_of_others(cmake) -> bool:
+    """True when a CMakeLists.txt generates interfaces whose files another package's configuration lists."""
+    text = cmake.data if cmake is not None and cmake.type_str == "blob" else b""
+    return any(
+        not re.search(rb"(?:set|list|file|glob)\s*\([^)]*\b" + match.group(1) + rb"_", text, re.IGNORECASE)
+        for match in _FILES_OF.finditer(text)
+    )
 
 
 def _walk(tree, prefix: str):
@@ -228,7 +241,7 @@ def _successors(name: str, definitions: list[Definitions]) -> dict[tuple[str, st
         for section, member, _, _ in definition.get(name, ()):
             last[section, member] = place
     found: dict[tuple[str, str], str] = {}
-    for place, (before, after) in enumerate(zip(definitions, definitions[1:], strict=False)):
+    for place, (before, after) in enumerate(pairwise(definitions)):
         old, new = before.get(name), after.get(name)
         if old is None or new is None or old == new:
             continue
