@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from .members import FAR, Found, Interface, Scope, Type, any_of, section_of
+from .members import FAR, Found, Interface, Scope, Type, section_of
 
 _POINTERS = frozenset(
     [
@@ -33,6 +33,8 @@ _WRAPPER_BACK = re.compile(r"(\w+)\s*<\s*(?:const\s+)?\Z")
 _ASSIGNED_BACK = re.compile(r"(?<![\w.>])(\w+)\s*=\s*(?:(?:std|boost)\s*::\s*)?\Z")
 _TAIL = re.compile(r"((?:\s*::\s*\w+)*)")
 _DECLARED = re.compile(r"[\s&*]*(?:const\b[\s&*]*)?([A-Za-z_]\w*)\s*(?=[;=,){(\[:])(?!::)")
+_USE = re.compile(r"(?:\.|->|::)\s*([A-Za-z_]\w*)(?!\w|\s*\(|\s*::)")
+_NAME = re.compile(r"[A-Za-z_]\w*")
 _BRACES = re.compile(r"[{}]")
 _KEYWORDS = frozenset(
     [
@@ -68,6 +70,11 @@ _TYPE_BACK = re.compile(
 )
 
 
+def mentions(text: str, scope: Scope) -> bool:
+    """Whether a text has anything of the form of a use of a member that some version lacks."""
+    return any(match.group(1) in scope.changing for match in _USE.finditer(text))
+
+
 class CppUses:
     """Uses in one C++ file. texts: visible texts (comments and literals blank) of the file and, behind it, the
     package's headers that reach it. package: for aliases and handwritten members, the package's other texts."""
@@ -81,35 +88,41 @@ class CppUses:
 
     def found(self) -> Iterator[Found]:
         """Every use of a member that some version lacks."""
-        if not self.scope.changing:
-            return
-        constants = re.compile(rf"::\s*({any_of(self.scope.changing)})(?!\w|\s*::|\s*\()")
-        for match in constants.finditer(self.text):
-            use = self._constant(match.group(1), match.start(), match.start(1))
-            if use is not None:
-                yield use
-        members = re.compile(rf"(?:\.|->)\s*({any_of(self.scope.changing)})(?!\w|\s*\()")
-        for match in members.finditer(self.text):
+        for match in _USE.finditer(self.text):
             name = match.group(1)
+            if name not in self.scope.changing:
+                continue
+            if self.text[match.start()] == ":":
+                use = self._constant(name, match.start(), match.start(1))
+                if use is not None:
+                    yield use
+                continue
             type_ = self._type_before(match.start(), match.start())
-            if type_ is not None:
-                section = self.scope.changes(type_, name)
-                if section is not None:
-                    yield Found(type_.interface, section, name, match.start(1), True)
+            section = self.scope.changes(type_, name) if type_ is not None else None
+            if type_ is not None and section is not None:
+                yield Found(type_.interface, section, name, match.start(1), True)
 
     def untold(self) -> Iterator[Found]:
         """Accesses to such members through something whose type does not show, of names that only one interface has."""
-        telling = {}
-        for name in self.scope.changing:
-            meant = [(i, s) for i, d in self.scope.definitions.items() for s in d.sections if name in d.sections[s]]
-            if "_" in name and len(meant) == 1 and not any(
-                any(_declarations_of(name, text)) for text in (self.text, *self.headers)
-            ):  # fmt: skip
-                telling[name] = meant[0]
-        members = re.compile(rf"(?:\.|->)\s*({any_of(telling)})(?!\w|\s*\()")
-        for match in members.finditer(self.text) if telling else ():
-            if self._type_before(match.start(), match.start()) is None and not self._told(match.start()):
-                yield Found(*telling[match.group(1)], match.group(1), match.start(1), False)
+        telling: dict[str, tuple[Interface, str] | None] = {}
+        for match in _USE.finditer(self.text):
+            name = match.group(1)
+            if "_" not in name or name not in self.scope.changing or self.text[match.start()] == ":":
+                continue
+            if self._type_before(match.start(), match.start()) is not None or self._told(match.start()):
+                continue
+            if name not in telling:
+                telling[name] = self._only(name)
+            meant = telling[name]
+            if meant is not None:
+                yield Found(*meant, name, match.start(1), False)
+
+    def _only(self, name: str) -> tuple[Interface, str] | None:
+        """The one interface and section that has a member; None when others do, or the package's files declare it."""
+        meant = [(i, s) for i, d in self.scope.definitions.items() for s in d.sections if name in d.sections[s]]
+        if len(meant) != 1 or any(any(_declarations_of(name, text)) for text in (self.text, *self.headers)):
+            return None
+        return meant[0]
 
     # -- types ---------------------------------------------------------------------------------------------------------
 
@@ -153,7 +166,9 @@ class CppUses:
             start -= len(qualified.group(1))
         elif text[start - 1 : start] in (".", ">"):
             return None
-        name = match.group(1)
+        name = self._names_type(match.group())
+        if name is None:
+            return None
         outer = [part.strip() for part in qualified.group(1).split("::")] if qualified else []
         told = self._interface([*outer, name])
         suffix = _TAIL.match(text, match.end())
@@ -163,16 +178,22 @@ class CppUses:
         section = section_of(told, [w for w in words if not _POINTED.fullmatch(w)])
         return None if section is None else (Type(told[0], section), start, suffix.end() if suffix else match.end())
 
+    def _names_type(self, word: str) -> str | None:
+        """The interface's or alias's name in a word that may end with ROS 1's `Ptr` and `ConstPtr`."""
+        for name in (word, word.removesuffix("Ptr"), word.removesuffix("ConstPtr")):
+            if name in self.scope.by_name or name in self._aliases:
+                return name
+        return None
+
     def _declarations(self, which: int) -> dict[str, list[tuple[int, Type]]]:
         """Variables of interfaces' types in the file (0) or one of its headers, by name: offsets and types."""
         known = self._declared.get(which)
         if known is None:
             known = self._declared[which] = {}
             text = (self.text, *self.headers)[which]
-            names = re.compile(
-                rf"(?<!\w)({any_of([*self.scope.by_name, *self._aliases])})(?:(?:Const)?Ptr)?(?!\w)"
-            )  # fmt: skip
-            for match in names.finditer(text):
+            for match in _NAME.finditer(text):
+                if self._names_type(match.group()) is None:
+                    continue
                 for name, offset, type_ in self._declared_by(text, match):
                     known.setdefault(name, []).append((offset, type_))
         return known

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import cached_property
 
 from .members import FAR, Found, Interface, Scope, Type, any_of, section_of
 
@@ -15,6 +16,8 @@ _IMPORTED = re.compile(r"^[ \t]*from[ \t]+(\w+)\.(msg|srv|action)[ \t]+import[ \
 _AS = re.compile(r"(\w+)(?:\s+as\s+(\w+))?")
 _DEF = re.compile(r"^([ \t]*)(?:async[ \t]+)?def[ \t]+(\w+)[ \t]*\(", re.MULTILINE)
 _NEXT_DEF = re.compile(r"^([ \t]*)(?:async[ \t]+def|def|class)\b", re.MULTILINE)
+_ACCESS = re.compile(r"\.(\w+)(?!\w|\s*\()")
+_KEYWORD = re.compile(r"(?<![\w.])(\w+)\s*=(?!=)")
 _PYTHON_NAME = r"(?<![\w.])(?:self\.)?[A-Za-z_]\w*"
 
 
@@ -24,18 +27,27 @@ class PythonUses:
     def __init__(self, text: str, scope: Scope):
         self.text, self.scope = text, scope
         self._names = self._imported()
-        self._variables = self._bound()
+
+    @cached_property
+    def _variables(self) -> dict[str, list[tuple[int, int, Type]]]:
+        """Variables by name: where they are bound, how far that reaches, and the type."""
+        return self._bound()
 
     def found(self) -> Iterator[Found]:
         """Every use of a member that some version lacks, in constructors and on variables whose type shows."""
-        if not self._names or not self.scope.changing:
+        if not self._names:
             return
-        changing = any_of(self.scope.changing)
-        for match in re.finditer(rf"(?<=\.)({changing})(?!\w|\s*\()", self.text):
-            type_ = self._type_before(match.start() - 1, match.start())
-            section = self.scope.changes(type_, match.group(1)) if type_ is not None else None
+        changing = self.scope.changing
+        for match in _ACCESS.finditer(self.text):
+            name = match.group(1)
+            if name not in changing:
+                continue
+            type_ = self._type_before(match.start(), match.start())
+            section = self.scope.changes(type_, name) if type_ is not None else None
             if type_ is not None and section is not None:
-                yield Found(type_.interface, section, match.group(1), match.start(1), True)
+                yield Found(type_.interface, section, name, match.start(1), True)
+        if not any(match.group(1) in changing for match in _KEYWORD.finditer(self.text)):
+            return
         for match in self._constructions():
             type_ = self._class(match.group(1))
             if type_ is None:
@@ -69,7 +81,6 @@ class PythonUses:
         return Type(told[0], section) if told is not None and section is not None else None
 
     def _bound(self) -> dict[str, list[tuple[int, int, Type]]]:
-        """Variables by name: where they are bound, how far that reaches, and the type."""
         found: dict[str, list[tuple[int, int, Type]]] = {}
         if not self._names:
             return found

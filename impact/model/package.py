@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 import msgspec
 
 from ..facts.condition import Condition
-from ..facts.cpp import CppFile, Include, scan
+from ..facts.cpp import CppFile, Include, Scan, scan
 from ..facts.interface import Interface
 from ..facts.launch import PluginClass
 from ..facts.manifest import Manifest
@@ -24,7 +24,7 @@ from ..targets.fields import Fields
 from .build import At, Build
 from .members import Interface as Meant
 from .members import Scope, interface_named, interfaces_imported, interfaces_included
-from .members_cpp import CppUses
+from .members_cpp import CppUses, mentions
 from .members_python import PythonUses
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
@@ -234,6 +234,7 @@ class _Join:
         self.cpp: dict[str, CppFile] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
+        self._scanned: dict[str, Scan] = {}
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
 
     def inside(self, path: str) -> str:
@@ -493,8 +494,10 @@ class _Join:
                 scope = scopes[key] = Scope(key, table)
             if not scope.changing & spoken:
                 continue
-            scanned = scan(self.read(path))
-            headers = [scan(self.read(to)).visible for to in sorted(self.reached_files(path))]
+            scanned = self.scanned(path)
+            if not mentions(scanned.visible, scope):
+                continue
+            headers = [self.scanned(to).visible for to in sorted(self.reached_files(path))]
             uses = CppUses(scanned.visible, headers, scope)
             seen = set()
             for found in (*uses.found(), *(() if unknown else uses.untold())):
@@ -506,6 +509,12 @@ class _Join:
                     yield MemberUse(found.interface.package, found.interface.ros, found.interface.name, found.section,
                                     found.member, At(path, line, column), role, "cpp", found.sure,
                                     conditions + around)  # fmt: skip
+
+    def scanned(self, path: str) -> Scan:
+        known = self._scanned.get(path)
+        if known is None:
+            known = self._scanned[path] = scan(self.read(path))
+        return known
 
     def reached_files(self, path: str) -> set[str]:
         """The package's own files that a file includes, directly or through each other."""

@@ -104,12 +104,12 @@ def removed_header(view: View):
                 yield Hit(include.at, path, lost.message, lost.help, package.name, severity=severity)
                 continue
             wrong = view.misnamed_interface(path) or view.lost_interface(path)
-            if wrong is None and (coming := view.coming_interface(path)) is not None:
+            if wrong is None and (soon := view.coming_interface(path)) is not None:
                 yield Hit(
                     include.at,
                     path,
-                    coming.message,
-                    coming.help,
+                    soon.message,
+                    soon.help,
                     package.name,
                     severity="warning" if severity == "error" else "note",
                 )
