@@ -269,15 +269,14 @@ class CppUses:
             return type_
         if others:
             return self._inferred(name, max(others), depth)
-        types = {
-            type_
-            for which in range(1, len(self.headers) + 1)
-            for _, type_ in self._declarations(which).get(name, ())
-        }  # fmt: skip
-        if len(types) != 1 or any(
-            len(list(_declarations_of(name, header))) > len(self._declarations(which).get(name, ()))
-            for which, header in enumerate(self.headers, 1)
-        ):
+        types = set()
+        for which, header in enumerate(self.headers, 1):
+            written = len(list(_declarations_of(name, header))) if name in header else 0
+            known = [type_ for _, type_ in self._declarations(which).get(name, ())] if written else []
+            if written > len(known):
+                return None
+            types.update(known)
+        if len(types) != 1:
             return None
         return next(iter(types))
 

@@ -7,6 +7,7 @@ callback takes it.
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Iterator
 from functools import cached_property
 
@@ -14,8 +15,7 @@ from .members import FAR, Found, Interface, Scope, Type, any_of, section_of
 
 _IMPORTED = re.compile(r"^[ \t]*from[ \t]+(\w+)\.(msg|srv|action)[ \t]+import[ \t]*(\([^)]*\)|[^\n]*)", re.MULTILINE)
 _AS = re.compile(r"(\w+)(?:\s+as\s+(\w+))?")
-_DEF = re.compile(r"^([ \t]*)(?:async[ \t]+)?def[ \t]+(\w+)[ \t]*\(", re.MULTILINE)
-_NEXT_DEF = re.compile(r"^([ \t]*)(?:async[ \t]+def|def|class)\b", re.MULTILINE)
+_HEAD = re.compile(r"^([ \t]*)(async[ \t]+def|def|class)\b", re.MULTILINE)
 _ACCESS = re.compile(r"\.(\w+)(?!\w|\s*\()")
 _KEYWORD = re.compile(r"(?<![\w.])(\w+)\s*=(?!=)")
 _PYTHON_NAME = r"(?<![\w.])(?:self\.)?[A-Za-z_]\w*"
@@ -116,16 +116,25 @@ class PythonUses:
                                 found.setdefault(name, []).append((definition.start(), end, Type(told[0], part)))
         return found
 
+    @cached_property
+    def _heads(self) -> list[tuple[int, int, bool]]:
+        """Offset and indentation of every `def` and `class`, and whether it is a function."""
+        return [
+            (match.start(), len(match.group(1)), match.group(2) != "class")
+            for match in _HEAD.finditer(self.text)
+        ]  # fmt: skip
+
     def _end_of_block(self, at: int) -> int:
         """Where the function ends in which an offset lies, or that is defined there."""
-        heads = [match for match in _DEF.finditer(self.text, 0, self.text.find("\n", at) + 1 or len(self.text))]
-        if not heads:
+        line = self.text.find("\n", at) + 1 or len(self.text)
+        place = bisect_right(self._heads, (line, -1, False)) - 1
+        while place >= 0 and not self._heads[place][2]:
+            place -= 1
+        if place < 0:
             return len(self.text)
-        head = heads[-1]
-        for match in _NEXT_DEF.finditer(self.text, self.text.find("\n", head.start() + 1) + 1):
-            if len(match.group(1)) <= len(head.group(1)):
-                return match.start()
-        return len(self.text)
+        return next(
+            (start for start, indent, _ in self._heads[place + 1 :] if indent <= self._heads[place][1]), len(self.text)
+        )
 
     def _type_before(self, end: int, used: int) -> Type | None:
         chain = re.search(

@@ -26,6 +26,7 @@ Not reported
     workspace itself brings.
 """
 
+from ...model.package import MemberUse
 from ...model.view import View
 from ..evidence import uses_refused
 from ..rule import Hit, rule
@@ -41,9 +42,15 @@ def unknown_field(view: View):
         for section in interface.definition.sections
         for member in (*section.fields, *section.constants)
     }
+    # What the tables of names tell already is removed-symbol's.
+    named = {
+        c.old
+        for c in view.changes("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
+        if c.state == "removed"
+    }
     for package in view:
         for use in package.digest.members:
-            if not use.sure and use.member in own:
+            if (not use.sure and use.member in own) or not named.isdisjoint(_spellings(use)):
                 continue
             # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
             if not view.active(use.conditions) or not view.certain(c for c in use.conditions if c.language == "cpp"):
@@ -67,7 +74,7 @@ def unknown_field(view: View):
         for imported in package.digest.imports:
             for name in imported.names:
                 lost = view.lost_interface_module(imported.module, name)
-                if lost is None or not view.active(imported.conditions):
+                if lost is None or f"{imported.module}.{name}" in named or not view.active(imported.conditions):
                     continue
                 yield Hit(
                     imported.at,
@@ -77,3 +84,11 @@ def unknown_field(view: View):
                     package.name,
                     severity="note" if imported.role == "aside" or imported.conditions else "warning",
                 )
+
+
+def _spellings(use: MemberUse) -> tuple[str, ...]:
+    """A constant as the tables of names have it."""
+    kind, _, name = use.interface.partition("/")
+    part = "" if use.section == "message" else use.section.capitalize()
+    parts = (use.package, kind, name, *((part,) if part else ()), use.member)
+    return ("::".join(parts), ".".join(parts), f"{use.package}::{name}{part}::{use.member}")
