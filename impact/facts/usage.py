@@ -51,7 +51,7 @@ _SPACE = re.compile(r"\s*")
 _TYPES = re.compile(r"[\w:,\s*&]*(?:<[\w:,\s*&]*(?:<[\w:,\s*&<>]*>[\w:,\s*&]*)*>[\w:,\s*&]*)*>")
 _VARIABLE = re.compile(r"\s+[A-Za-z_]\w*\s*(?=[({])")
 _BEFORE_CALL = re.compile(r"(?:([A-Za-z_]\w*)|(>))\s+(?:[A-Za-z_]\w*\s*::\s*)*\Z")
-_NOT_A_TYPE = frozenset("return else throw new co_return co_await co_yield case and or not do in if elif while".split())
+_NOT_A_TYPE = frozenset(["return", "else", "throw", "new", "co_return", "co_await", "co_yield", "case", "and", "or", "not", "do", "in", "if", "elif", "while"])
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
 _TEXT = re.compile(r'"|\bstd::(?:to_)?string\s*[({]|\.str\(\)')
 _STRING = re.compile(r'\Astd::(?:to_)?string\s*[({]|\.str\(\)\Z|"\s*\+|\+\s*"')
@@ -85,7 +85,7 @@ def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     """Line, column, preprocessor conditions and template arguments of every use that looks like the pattern. Never
     raises."""
     if pattern.language == "python":
-        text = _python(data)
+        text = python_text(data)
         segments: list[tuple[int, int, tuple[Condition, ...]]] = [(0, len(text), ())]
 
         def place(offset: int) -> tuple[int, int]:
@@ -287,7 +287,7 @@ _INSIDE = re.compile(r"[^\n]")
 
 
 @lru_cache(maxsize=2)
-def _python(data: bytes) -> str:
+def python_text(data: bytes) -> str:
     """The text of a Python file with comments and the insides of literals blanked, offsets kept."""
     text = data.decode("utf-8-sig", "replace").replace("\r\n", "\n").replace("\r", "\n")
 

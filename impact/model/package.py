@@ -12,15 +12,20 @@ from collections.abc import Callable, Iterable, Iterator
 import msgspec
 
 from ..facts.condition import Condition
-from ..facts.cpp import KEYWORDS, CppFile, Include
+from ..facts.cpp import KEYWORDS, CppFile, Include, Scan, scan
 from ..facts.interface import Interface
 from ..facts.launch import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, Place, may_have, places_of_use
+from ..facts.usage import Pattern, Place, may_have, places_of_use, python_text
+from ..targets.fields import Fields
 from .build import At, Build
+from .members import Interface as Meant
+from .members import Scope, interface_named, interfaces_imported, interfaces_included
+from .members_cpp import CppUses, mentions
+from .members_python import PythonUses
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
 ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutorial", "tutorials", "sample", "samples"})
@@ -104,6 +109,24 @@ class SyntaxUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     role: str
 
 
+class MemberUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A use of a field or constant of another package's interface that some version lacks. ros: the generation whose
+    interface it is. interface: `kind/Name`.
+    sure: the receiver's type shows in the file; else only the name speaks, and no interface that is known to reach the
+    file has it besides. role, language and conditions as in NameUse."""
+
+    package: str
+    ros: int
+    interface: str
+    section: str
+    member: str
+    at: At
+    role: str
+    language: str
+    sure: bool
+    conditions: tuple[Condition, ...] = ()
+
+
 class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """All that rules ask of one package."""
 
@@ -136,6 +159,8 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     defined: tuple[str, ...] = ()
     # Watched uses, by their labels.
     uses: tuple[NameUse, ...] = ()
+    # Fields and constants of other packages' interfaces that only some versions have.
+    members: tuple[MemberUse, ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -171,7 +196,7 @@ def role_of_folder(path: str) -> str | None:
 class Watched(msgspec.Struct, frozen=True):
     """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
     of the standard library the headers that offer them. uses: labels and patterns of uses by a word that each has in
-    it, for C++; modules: the same for Python, by the package that is imported."""
+    it, for C++; modules: the same for Python, by the package that is imported. fields: the table of interfaces."""
 
     words: frozenset[str] = frozenset()
     qualified: frozenset[str] = frozenset()
@@ -180,6 +205,7 @@ class Watched(msgspec.Struct, frozen=True):
     uses: dict[str, list[tuple[str, Pattern]]] = {}
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     version: str = ""
+    fields: Fields | None = None
 
 
 def digest_of(
@@ -211,6 +237,7 @@ class _Join:
         self.cpp: dict[str, CppFile] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
+        self._scanned: dict[str, Scan] = {}
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
 
     def inside(self, path: str) -> str:
@@ -288,6 +315,7 @@ class _Join:
             defined=tuple(sorted({n for f in self.cpp.values() for n in f.defined} & self.watched.words)),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
             uses=tuple(uses),
+            members=(*self.members(roles), *self.python_members(python)),
         )
 
     # -- which file is compiled by what ------------------------------------------------------------------------------
@@ -449,6 +477,94 @@ class _Join:
                 for label, pattern in self.watched.modules[package]:
                     for line, column, _, _ in _first(places_of_use(self.read(path), pattern)):
                         yield NameUse(label, At(path, line, column), self.python_role(path), False, "python")
+
+    def members(self, roles) -> Iterator[MemberUse]:
+        """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
+        table = self.watched.fields
+        if table is None:
+            return
+        paths = {include.path for resolved in self.resolved.values() for to, include in resolved if to is None}
+        # Interfaces that come along with other headers are told by their names.
+        kinds = {name.text: None for facts in self.cpp.values() for name in facts.qualified}
+        meant = {text: interface for text in kinds if (interface := interface_named(text, table)) is not None}
+        changing = Scope((*interfaces_included(paths, table)[0], *meant.values()), table).changing
+        if not changing:
+            return
+        short = {name for name in changing if len(name) < 4}
+        scopes: dict[frozenset[Meant], Scope] = {}
+        for path, (role, _, _, conditions) in roles.items():
+            facts = self.cpp.get(path)
+            if facts is None:
+                continue
+            spoken = set(facts.words.split(" "))
+            spoken.update(name.text.rpartition("::")[2] for name in facts.qualified)
+            spoken.update(short)  # words of a file are at least four characters long
+            if not changing & spoken:
+                continue
+            included, unknown = interfaces_included(sorted(self.reach(path)), table)
+            named = [meant[name.text] for name in facts.qualified if name.text in meant]
+            key = frozenset((*included, *named))
+            scope = scopes.get(key)
+            if scope is None:
+                scope = scopes[key] = Scope(key, table)
+            if not scope.changing & spoken:
+                continue
+            scanned = self.scanned(path)
+            if not mentions(scanned.visible, scope):
+                continue
+            headers = [self.scanned(to).visible for to in sorted(self.reached_files(path))]
+            uses = CppUses(scanned.visible, headers, scope)
+            seen = set()
+            for found in (*uses.found(), *(() if unknown else uses.untold())):
+                line, column = scanned.place(found.offset)
+                around = next((c for start, end, c in scanned.segments if start <= found.offset < end), ())
+                key = (found.interface, found.section, found.member, around)
+                if key not in seen:
+                    seen.add(key)
+                    yield MemberUse(found.interface.package, found.interface.ros, found.interface.name, found.section,
+                                    found.member, At(path, line, column), role, "cpp", found.sure,
+                                    conditions + around)  # fmt: skip
+
+    def scanned(self, path: str) -> Scan:
+        known = self._scanned.get(path)
+        if known is None:
+            known = self._scanned[path] = scan(self.read(path))
+        return known
+
+    def reached_files(self, path: str) -> set[str]:
+        """The package's own files that a file includes, directly or through each other."""
+        found: set[str] = set()
+        stack = [path]
+        while stack:
+            for to, _ in self.resolved.get(stack.pop(), ()):
+                if to is not None and to not in found:
+                    found.add(to)
+                    stack.append(to)
+        return found - {path}
+
+    def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
+        """The same in Python files."""
+        table = self.watched.fields
+        if table is None:
+            return
+        for path, facts in files.items():
+            imported = interfaces_imported(((i.module, i.names) for i in facts.imports if not i.level), table)
+            seen = set()
+            # Both generations import an interface alike: each is followed for itself.
+            for ros in sorted({interface.ros for interface in imported}):
+                scope = Scope((interface for interface in imported if interface.ros == ros), table)
+                if not scope.changing:
+                    continue
+                text = python_text(self.read(path))
+                for found in PythonUses(text, scope).found():
+                    key = (found.interface, found.section, found.member)
+                    if key not in seen:
+                        seen.add(key)
+                        line = text.count("\n", 0, found.offset) + 1
+                        column = found.offset - (text.rfind("\n", 0, found.offset) + 1) + 1
+                        yield MemberUse(found.interface.package, found.interface.ros, found.interface.name,
+                                        found.section, found.member, At(path, line, column),
+                                        self.python_role(path), "python", found.sure)  # fmt: skip
 
     def bare(self, word, path, role, public, targets, conditions) -> NameUse:
         """Where a bare word stands first, outside comments, with the preprocessor conditions around it."""

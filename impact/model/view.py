@@ -15,12 +15,13 @@ from ..config import Config
 from ..facts.condition import Condition
 from ..targets.changes import transitive_includes
 from ..targets.distro import known_distros
+from ..targets.fields import History, before, default_fields, there
 from ..targets.library import include_roots
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
 from .build import At
 from .conditions import Environment, all_hold
-from .package import role_of_folder
+from .package import MemberUse, role_of_folder
 from .spelling import Names
 from .workspace import Package, Workspace, snake
 
@@ -269,6 +270,133 @@ class View:
             if other != path and self.providers.has_header(name, other, self.target.distro, version):
                 return other
         return ""
+
+    # -- interfaces of released packages -------------------------------------------------------------------------------
+
+    def _interfaces_of(self, package: str, target: Target | None = None) -> tuple[History, int, str] | None:
+        """All versions of a released package's interfaces, the state that holds here (or there), and the version."""
+        if package in self.workspace.packages:
+            return None
+        version = (target or self.target).version(package)
+        history = default_fields().history(package, self.target.ros) if version else None
+        state = history.state(version) if history is not None and version else None
+        return None if history is None or state is None or not version else (history, state, version)
+
+    @cached_property
+    def _updated(self) -> Target | None:
+        return self.target.updated()
+
+    def coming_member(self, use: MemberUse) -> Misnamed | None:
+        """What is wrong when the interface has a member here, and lacks it once this distro is updated."""
+        now, later = self._interfaces_of(use.package), self._updated and self._interfaces_of(use.package, self._updated)
+        if use.ros != self.target.ros or not now or not later or now[1] >= later[1]:
+            return None
+        definition = now[0].definition(use.interface)
+        if definition is None or not there(definition.spans, later[1]):
+            return None
+        rows = definition.members(use.section, use.member)
+        if any(there(row.spans, later[1]) for row in rows) or not any(there(row.spans, now[1]) for row in rows):
+            return None
+        return Misnamed(f"`{use.member}` of `{use.package}/{use.interface}` is there, and gone in {use.package} "
+                        f"{later[2]} of {self.target.distro}", "")  # fmt: skip
+
+    def coming_interface(self, path: str) -> Misnamed | None:
+        """The same for the interface of a generated header."""
+        head, _, _, name = self._generated(path)
+        now, later = self._interfaces_of(head), self._updated and self._interfaces_of(head, self._updated)
+        if not name or not now or not later or now[1] >= later[1]:
+            return None
+        spans = now[0].spans(name)
+        if spans is None or not there(spans, now[1]) or there(spans, later[1]):
+            return None
+        return Misnamed(f"`{path}` is there, and gone in {head} {later[2]} of {self.target.distro}", "")
+
+    def _generated(self, path: str) -> tuple[str, str, str, str]:
+        """Package, rest, stem and interface (empty: none known) of the include path of a generated header."""
+        head, _, rest = path.partition("/")
+        stem, _, ending = rest.rpartition(".")
+        if not stem or ending != ("hpp" if "/" in stem else "h") or ("/" in stem) != (self.target.ros == 2):
+            return head, rest, stem, ""
+        history = default_fields().history(head, self.target.ros)
+        return head, rest, stem, (history.by_header.get(stem, "") if history is not None else "")
+
+    def lacking_member(self, use: MemberUse) -> Misnamed | None:
+        """What is wrong when the target's version of an interface lacks a member that another version has."""
+        known = self._interfaces_of(use.package) if use.ros == self.target.ros else None
+        definition = known and known[0].definition(use.interface)
+        if not known or not definition or not there(definition.spans, known[1]):
+            return None
+        history, state, version = known
+        rows = definition.members(use.section, use.member)
+        if not rows or any(there(row.spans, state) for row in rows):
+            return None
+        name = f"{use.package}/{use.interface}"
+        if any(before(row.spans, state) for row in rows):
+            reviewed = self._successors.get((use.package, _told(use)))
+            if reviewed:
+                return Misnamed(f"`{use.member}` is no longer in `{name}` of {use.package} {version}",
+                                f"use `{reviewed}`")  # fmt: skip
+            successor = next((row.successor for row in rows if row.successor), "")
+            if successor and not any(there(r.spans, state) for r in definition.members(use.section, successor)):
+                successor = ""
+            return Misnamed(f"`{use.member}` is no longer in `{name}` of {use.package} {version}",
+                            f"perhaps `{successor}` stands for it" if successor else "")  # fmt: skip
+        if not history.read_up_to(version):
+            return None
+        since = history.starts[min(first for row in rows for first, _ in row.spans)]
+        return Misnamed(f"`{use.member}` is not yet in `{name}` of {use.package} {version}",
+                        f"it is there since {use.package} {since}")  # fmt: skip
+
+    @cached_property
+    def _successors(self) -> dict[tuple[str, str], str]:
+        """What the reviewed table says stands for a field: by package and `Name.field` or `Name_Part.field`."""
+        return {
+            (c.package, c.old.partition("/")[2]): c.new.rpartition(".")[2]
+            for c in self.changes("msg-field")
+            if c.new and c.state == "removed"
+        }
+
+    def lost_interface(self, path: str) -> Misnamed | None:
+        """What is wrong with the include of a generated header whose interface the target's version lacks."""
+        head, rest, stem, name = self._generated(path)
+        if head in self.workspace.packages:
+            return self._moved_interface(head, rest, stem, bool(name))
+        known = self._interfaces_of(head)
+        return self._lost_interface_named(head, name, known) if known and name else None
+
+    def _moved_interface(self, head: str, rest: str, stem: str, once: bool) -> Misnamed | None:
+        """The same where the package is in the workspace: another one there defines the interface. once: some release
+        of the package had it."""
+        if ("/" in stem) != (self.target.ros == 2) or not (once or _CAMEL.match(stem)):
+            return None
+        makers = [
+            name for name in self.workspace.interface_names
+            if name != head and self.workspace.is_interface_header(name, rest)
+        ]  # fmt: skip
+        if len(makers) != 1:
+            return None
+        return Misnamed(f"`{head}` generates no `{head}/{rest}`", f"include `{makers[0]}/{rest}`")
+
+    def lost_interface_module(self, module: str, name: str) -> Misnamed | None:
+        """What is wrong with `from package.kind import Name` when the target's version lacks the interface."""
+        head, _, kind = module.partition(".")
+        if kind not in ("msg", "srv", "action"):
+            return None
+        known = self._interfaces_of(head)
+        full = f"{kind}/{name}"
+        return self._lost_interface_named(head, full, known) if known and known[0].spans(full) is not None else None
+
+    def _lost_interface_named(self, package: str, name: str, known: tuple[History, int, str]) -> Misnamed | None:
+        history, state, version = known
+        spans = history.spans(name)
+        if spans is None or there(spans, state):
+            return None
+        if before(spans, state):
+            return Misnamed(f"`{package}/{name}` is no longer in {package} {version}", "")
+        if not history.read_up_to(version):
+            return None
+        return Misnamed(f"`{package}/{name}` is not yet in {package} {version}",
+                        f"it is there since {package} {history.starts[min(first for first, _ in spans)]}")  # fmt: skip
 
     def misnamed_interface(self, path: str) -> Misnamed | None:
         """What is wrong with the spelling of a generated header on this target's generation, None when nothing is."""
@@ -653,6 +781,11 @@ class View:
                 not reference.conditional,
                 not reference.conditional,
             )
+
+
+def _told(use: MemberUse) -> str:
+    name = use.interface.rpartition("/")[2]
+    return f"{name}{'' if use.section == 'message' else '_' + use.section.capitalize()}.{use.member}"
 
 
 @lru_cache(maxsize=10000)

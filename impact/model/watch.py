@@ -8,6 +8,7 @@ from functools import cache
 
 from ..facts.usage import Pattern
 from ..targets.changes import TransitiveInclude, all_rows, transitive_includes
+from ..targets.fields import default_fields
 from ..targets.uses import all_uses
 from .package import Watched
 
@@ -43,10 +44,13 @@ def watched() -> Watched:
             modules.setdefault(row.package, []).append((row.label, row.pattern))
         else:
             uses.setdefault(row.pattern.word, []).append((row.label, row.pattern))
+    fields = default_fields()
     version = hashlib.sha1(
-        repr((sorted(words), sorted(qualified), sorted(python), sorted(headers.items()), uses, modules)).encode()
+        repr(
+            (sorted(words), sorted(qualified), sorted(python), sorted(headers.items()), uses, modules, fields.version)
+        ).encode()
     ).hexdigest()
-    return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, uses, modules, version)
+    return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, uses, modules, version, fields)
 
 
 __all__ = ["TransitiveInclude", "watched"]

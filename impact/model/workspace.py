@@ -10,13 +10,14 @@ import hashlib
 import posixpath
 import re
 from collections.abc import Callable, Iterable
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import msgspec
 
 from ..facts.kinds import EXTRACTORS
 from ..facts.manifest import Manifest
 from ..gather import Gathered
+from ..targets.fields import snake
 from .build import Build, extras_of, interpret
 from .discovery import Discovered, discover
 from .package import Digest, Watched, build_type_of, digest_of
@@ -297,15 +298,6 @@ def importable(package: Package) -> set[str]:
 _ROS1_SUFFIXES = (
     "ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback", "Request", "Response", "",
 )  # fmt: skip
-
-
-@lru_cache(maxsize=20000)
-def snake(name: str) -> str:
-    """A message name as rosidl spells it in header names (`TransformStamped` gives `transform_stamped`).
-
-    Source: rosidl_cmake's string_camel_case_to_lower_case_underscore."""
-    name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
-    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
 
 def _stems(names: Iterable[str]) -> tuple[frozenset[str], frozenset[str]]:

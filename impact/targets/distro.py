@@ -401,6 +401,12 @@ class DistroTarget(Target):
         """The newest long-term distro of this generation, None when this distro is it or newer."""
         return _newest(self.distro, self._data)
 
+    def updated(self) -> DistroTarget | None:
+        """The same distro as of the data's newest day, None when this is it."""
+        if self.date >= self.data_date and not self._overrides:
+            return None
+        return DistroTarget(self.distro, data=self._data)
+
     def similar_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         """What the package declares in the nearest distro of the same generation whose manifest of it is known.
 

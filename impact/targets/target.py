@@ -125,6 +125,10 @@ class Target(Protocol):
         """The newest long-term distro of this generation as of the data's day, None when this is it or a newer one."""
         ...
 
+    def updated(self) -> Target | None:
+        """The same distro as of the data's newest day, None when this is it."""
+        ...
+
     def library_names(self) -> frozenset[str]:
         """Platform libraries whose version is known here."""
         ...

@@ -2,15 +2,17 @@
 
 What it does
     Reports `#include` lines whose header the target's version of the providing package does not install: removed,
-    renamed, or only added in a later version; headers of platform libraries that the newest distro no longer has; and
-    spellings of generated headers that belong to the other ROS generation.
+    renamed, or only added in a later version; headers of platform libraries that the newest distro no longer has;
+    generated headers whose interface the version lacks, or another package of the workspace has; and spellings of
+    generated headers that belong to the other ROS generation.
 
 Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
-    error for compiled code that is not guarded; warning for tests, and for what only the newest distro lacks; note for
-    examples, for installed headers that the package does not compile itself, and under conditions that are not known.
+    error for compiled code that is not guarded; warning for tests, for what only the newest distro lacks, and for
+    interfaces that go when a dated target's distro is updated; note for examples, for installed headers that the
+    package does not compile itself, and under conditions that are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -101,7 +103,17 @@ def removed_header(view: View):
             if lost is not None:
                 yield Hit(include.at, path, lost.message, lost.help, package.name, severity=severity)
                 continue
-            wrong = view.misnamed_interface(path)
+            wrong = view.misnamed_interface(path) or view.lost_interface(path)
+            if wrong is None and (soon := view.coming_interface(path)) is not None:
+                yield Hit(
+                    include.at,
+                    path,
+                    soon.message,
+                    soon.help,
+                    package.name,
+                    severity="warning" if severity == "error" else "note",
+                )
+                continue
             if wrong is None and path not in gone and path not in early and path not in view.later:
                 quiet.add(path)
             if wrong and not dual:

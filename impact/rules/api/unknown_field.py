@@ -1,16 +1,18 @@
 """unknown-field: a field of a message is used that the target's definition of the message lacks.
 
 What it does
-    Reports fields of messages, services and actions of other packages that the target's release of the package has no
-    longer, or not yet, in files that include or import the message.
+    Reports fields and constants of messages, services and actions of other packages that the target's release of the
+    package has no longer, or not yet; the same for interfaces that Python imports. Whose field it is, is told by the
+    declared type of the variable, followed through nested messages. Says as well what goes when a dated target's
+    distro is updated.
 
 Why it breaks
     The compiler stops with "has no member named"; Python raises an AttributeError when the line is reached, on the
-    robot.
+    robot, or an ImportError.
 
 Severity
-    error for C++ that is built; warning in tests, for Python, and under conditions that are not known; note in
-    examples.
+    error for C++ that is built; warning in tests, for Python, for what only goes with an update, and where a telling
+    name is used on something whose type does not show; note in examples.
 
 Example
     request->start_controllers = {"arm"};       // controller_manager_msgs of Iron has activate_controllers
@@ -19,15 +21,74 @@ Use instead
     request->activate_controllers = {"arm"};
 
 Not reported
-    Code that a version test excludes on the target; fields whose names the message's newer definition, or another
-    message that the file uses, has too.
+    Code that a version test excludes on the target, or that stands under a test which cannot be told; variables whose
+    type does not show, unless only one interface of those that the file uses has such a name; interfaces that the
+    workspace itself brings.
 """
 
+from ...model.package import MemberUse
 from ...model.view import View
 from ..evidence import uses_refused
-from ..rule import rule
+from ..rule import Hit, rule
 
 
 @rule(severity="error")
 def unknown_field(view: View):
     yield from uses_refused(view, "field-changed")
+    own = {
+        member.name
+        for package in view.workspace
+        for interface in package.digest.interfaces
+        for section in interface.definition.sections
+        for member in (*section.fields, *section.constants)
+    }
+    # What the tables of names tell already is removed-symbol's.
+    named = {
+        c.old
+        for c in view.changes("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
+        if c.state == "removed"
+    }
+    for package in view:
+        for use in package.digest.members:
+            if (not use.sure and use.member in own) or not named.isdisjoint(_spellings(use)):
+                continue
+            # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
+            if not view.active(use.conditions) or not view.certain(c for c in use.conditions if c.language == "cpp"):
+                continue
+            lacking = view.lacking_member(use)
+            if lacking is None:
+                coming = view.coming_member(use)
+                if coming is not None:
+                    severity = "warning" if use.sure and use.role != "aside" else "note"
+                    yield Hit(use.at, use.member, coming.message, coming.help, package.name, severity=severity)
+                continue
+            built = use.role in ("build", "run") and use.language == "cpp" and view.certain(use.conditions)
+            yield Hit(
+                use.at,
+                use.member,
+                lacking.message,
+                lacking.help,
+                package.name,
+                severity="note" if use.role == "aside" else "error" if built and use.sure else "warning",
+            )
+        for imported in package.digest.imports:
+            for name in imported.names:
+                lost = view.lost_interface_module(imported.module, name)
+                if lost is None or f"{imported.module}.{name}" in named or not view.active(imported.conditions):
+                    continue
+                yield Hit(
+                    imported.at,
+                    f"{imported.module}.{name}",
+                    lost.message,
+                    lost.help,
+                    package.name,
+                    severity="note" if imported.role == "aside" or imported.conditions else "warning",
+                )
+
+
+def _spellings(use: MemberUse) -> tuple[str, ...]:
+    """A constant as the tables of names have it."""
+    kind, _, name = use.interface.partition("/")
+    part = "" if use.section == "message" else use.section.capitalize()
+    parts = (use.package, kind, name, *((part,) if part else ()), use.member)
+    return ("::".join(parts), ".".join(parts), f"{use.package}::{name}{part}::{use.member}")

@@ -1,0 +1,186 @@
+"""The interfaces of other packages that a source file can mean, and which of their members only some versions have.
+
+What the files themselves say is read in members_cpp.py and members_python.py.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from ..targets.fields import ROS1_SUFFIXES, Definition, Fields, Member
+
+
+class Interface(NamedTuple):
+    """An interface that a file can mean. name: `kind/Name`."""
+
+    package: str
+    ros: int
+    name: str
+
+    @property
+    def short(self) -> str:
+        return self.name.rpartition("/")[2]
+
+
+class Type(NamedTuple):
+    """What an expression is. section: empty for a whole service or action, or all of its constants' scopes.
+    several: a sequence of them."""
+
+    interface: Interface
+    section: str
+    several: bool = False
+
+
+class Found(NamedTuple):
+    """A use of a member. offset: where its name stands. sure: the receiver's type shows."""
+
+    interface: Interface
+    section: str
+    member: str
+    offset: int
+    sure: bool
+
+
+def interfaces_included(paths: Iterable[str], table: Fields) -> tuple[list[Interface], list[str]]:
+    """The interfaces whose generated headers include paths name, and the paths that look so but are not known."""
+    found: dict[Interface, None] = {}
+    unknown = []
+    for path in paths:
+        head, _, rest = path.partition("/")
+        stem, _, ending = rest.rpartition(".")
+        if not stem or ending not in ("h", "hpp"):
+            continue
+        parts = stem.split("/")
+        if len(parts) == 2 and parts[0] in ("msg", "srv", "action"):
+            ros = 2
+        elif len(parts) == 1 and ending == "h" and stem[0].isupper():
+            ros = 1
+        else:
+            continue
+        history = table.history(head, ros)
+        name = history.by_header.get(stem) if history is not None else None
+        if name is not None:
+            found[Interface(head, ros, name)] = None
+        else:
+            unknown.append(path)
+    return list(found), unknown
+
+
+def interface_named(text: str, table: Fields) -> Interface | None:
+    """The interface that a qualified C++ name (`pkg::msg::Name`, `pkg::Name`, whatever stands behind) is of."""
+    parts = text.split("::")
+    if len(parts) > 2 and parts[1] in ("msg", "srv", "action"):
+        history = table.history(parts[0], 2)
+        name = f"{parts[1]}/{parts[2]}"
+        return Interface(parts[0], 2, name) if history is not None and history.spans(name) is not None else None
+    history = table.history(parts[0], 1) if len(parts) > 1 else None
+    known = history.by_header.get(parts[1].removesuffix("Ptr").removesuffix("Const")) if history is not None else None
+    return Interface(parts[0], 1, known) if known is not None and "/" not in parts[1] else None
+
+
+def interfaces_imported(imports: Iterable[tuple[str, tuple[str, ...]]], table: Fields) -> list[Interface]:
+    """The interfaces that modules such as `pkg.msg` and names imported from them bring."""
+    found: dict[Interface, None] = {}
+    for module, names in imports:
+        package, _, kind = module.partition(".")
+        if kind not in ("msg", "srv", "action"):
+            continue
+        for ros in (2, 1):
+            history = table.history(package, ros)
+            if history is None:
+                continue
+            for name in names:
+                known = f"{kind}/{name}"
+                if history.spans(known) is not None:
+                    found[Interface(package, ros, known)] = None
+                elif ros == 1 and name in history.by_header and name not in ("", "*"):
+                    found[Interface(package, ros, history.by_header[name])] = None
+    return list(found)
+
+
+class Scope:
+    """The interfaces that a file can name, with those nested in them."""
+
+    def __init__(self, included: Iterable[Interface], table: Fields):
+        self.table = table
+        self.definitions: dict[Interface, Definition] = {}
+        waiting = list(included)
+        while waiting:
+            interface = waiting.pop()
+            if interface in self.definitions:
+                continue
+            history = table.history(interface.package, interface.ros)
+            definition = history.definition(interface.name) if history is not None else None
+            if definition is None:
+                continue
+            self.definitions[interface] = definition
+            for members in definition.sections.values():
+                for rows in members.values():
+                    waiting.extend(nested(row, interface.ros) for row in rows if row.nested)
+        self.changing = frozenset(name for d in self.definitions.values() for name in d.changing)
+        self.by_name: dict[str, list[tuple[Interface, str]]] = {}
+        for interface in sorted(self.definitions):
+            kind = interface.name.partition("/")[0]
+            for suffix in ROS1_SUFFIXES[kind] if interface.ros == 1 else ("",):
+                section = "message" if kind == "msg" else suffix.lower()
+                self.by_name.setdefault(interface.short + suffix, []).append((interface, section))
+            if interface.ros == 2:
+                for part in PARTS[kind]:
+                    self.by_name.setdefault(f"{interface.short}_{part.capitalize()}", []).append((interface, part))
+
+    def step(self, type_: Type, name: str) -> Type | None:
+        """What a field of a value is; None when the versions differ in that, or it is no interface."""
+        definition = self.definitions.get(type_.interface)
+        if definition is None or type_.several:
+            return None
+        if type_.section in ("", *_WRAPPERS):
+            return self._part(type_, name, definition)
+        rows = definition.members(type_.section, name)
+        kinds = {(row.nested, row.array) for row in rows if not row.constant}
+        if len(kinds) != 1:
+            return None
+        (inner, array), = kinds  # fmt: skip
+        return Type(nested(rows[0], type_.interface.ros), "message", array) if inner else None
+
+    def _part(self, type_: Type, name: str, definition: Definition) -> Type | None:
+        """`srv.request`, and `.goal` of what ROS 1 sends around a goal."""
+        wanted = type_.section.removeprefix("action") or name
+        return type_._replace(section=name) if wanted == name and name in definition.sections else None
+
+    def changes(self, type_: Type, name: str) -> str | None:
+        """The section in which a value has a member that some versions lack, None when it has not."""
+        definition = self.definitions.get(type_.interface)
+        if definition is None or type_.several or name not in definition.changing:
+            return None
+        return type_.section if definition.members(type_.section, name) else None
+
+
+FAR = 240
+"""How many characters before a place are looked at."""
+PARTS = {"msg": (), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
+"""The sections that types of a kind of interface have names for."""
+_WRAPPERS = ("action", "actiongoal", "actionresult", "actionfeedback")
+
+
+def nested(member: Member, ros: int) -> Interface:
+    """The interface that a field is made of."""
+    package, _, name = member.nested.partition("/")
+    return Interface(package, ros, f"msg/{name}")
+
+
+def section_of(told: tuple[Interface, str], words: list[str]) -> str | None:
+    """The section of a type that scopes behind an interface's name tell; None when they name something else."""
+    interface, section = told
+    for word in words:
+        part = word.lower()
+        if word != word.capitalize() or part not in PARTS[interface.name.partition("/")[0]] or section:
+            return None
+        section = part
+    return section
+
+
+def any_of(words: Iterable[str]) -> str:
+    """A regular expression that matches any of the words, the longest that does."""
+    return "|".join(sorted(map(re.escape, words), key=len, reverse=True))
