@@ -7,6 +7,8 @@ import re
 from functools import cache
 
 from ..targets.changes import TransitiveInclude, all_rows, transitive_includes
+from ..targets.includes import offered
+from ..targets.standard import DEFINED_IN
 from .package import Watched
 
 _KINDS = frozenset({"api-removed", "api-renamed", "api-changed", "python-removed", "python-api"})
@@ -32,8 +34,10 @@ def watched() -> Watched:
             # A new name of which an old one is told may be used where it is not there yet.
             if row.new_since and len(row.new) > 7 and _WORD.match(row.new) and not row.ambiguous:
                 (qualified if "::" in row.new else words).add(row.new)
+    headers.update({name: found for name, found in offered().items() if name not in headers})
+    headers.update({name: tuple(h for h in found if "bits/" not in h) for name, found in DEFINED_IN.items()})
     for include in transitive_includes():
-        headers[include.name] = tuple(include.headers)
+        headers[include.name] = tuple(dict.fromkeys((*include.headers, *headers.get(include.name, ()))))
     version = hashlib.sha1(
         repr((sorted(words), sorted(qualified), sorted(python), sorted(headers.items()))).encode()
     ).hexdigest()

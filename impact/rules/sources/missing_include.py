@@ -24,65 +24,116 @@ Not reported
     unless a library that once brought the name is among them.
 """
 
-from ...model.package import is_header
+import re
+from typing import NamedTuple
+
+from ...model.package import NeededHeader, is_header
 from ...model.view import View
-from ...targets.standard import reaches
-from ...targets.version import at_least, parts
+from ...targets.includes import Machine, offered
+from ...targets.standard import DEFINED_IN
 from ..cure import Insert
 from ..rule import Hit, rule
 
 
+# Made while a library is built; they hold macros and include nothing.
+_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$")
+
+
 @rule(severity="warning")
 def missing_include(view: View):
-    here, coming = _dropped(view, view.target), {}
-    newest = view.target.newest()
-    if newest is not None:
-        coming = {name: known for name, known in _dropped(view, newest).items() if name not in here}
     for package in view:
-        told = set()
+        reaches, told = dict(package.digest.reaches), set()
+        compiled = {path for path, _ in package.digest.source_targets}
         for need in package.digest.needed_headers:
-            known = here.get(need.name) or coming.get(need.name)
-            if known is None or need.role == "aside" or not view.active(need.conditions):
+            if need.role == "aside" or not view.active(need.conditions):
                 continue
-            if need.name not in here and not view.later_active(need.conditions):
+            lost, now = _lost(view, need, reaches[need.at.path], view.machine, view.earlier_machines), True
+            if lost is None and view.later_machine is not None and view.later_active(need.conditions):
+                lost, now = _lost(view, need, reaches[need.at.path], view.later_machine, (view.machine,)), False
+            if lost is None or (need.at.path, lost.header) in told:
                 continue
-            row, version = known
-            header = row.headers[0]
-            if (need.at.path, header) in told:
-                continue
-            outside = [r for r in need.reach if not view.is_standard(r)]
-            if (row.through and not any(r.startswith(row.through) for r in need.reach)) or (
-                outside and not row.through
-            ):
-                continue
-            missed = row.through or _out_of_reach(need, row.library, version)
-            if not missed:
-                continue
-            told.add((need.at.path, header))
-            now = need.name in here
-            sure = (
-                now
-                and need.role == "build"
-                and not row.through
-                and not outside
-                and not is_header(need.at.path)
-                and view.certain(need.conditions)
-            )
+            told.add((need.at.path, lost.header))
+            here = now and need.at.path in compiled
+            sure = here and lost.sure and need.role == "build" and view.certain(need.conditions)
             where = "" if now else f" of {view.horizon}"
             yield Hit(
                 need.at,
-                header,
-                f"`{need.name}` is used without `<{header}>`, "
-                f"which {row.library} {version}{where} no longer brings along",
-                f"#include <{header}>",
+                lost.header,
+                f"`{need.name}` is used without `<{lost.header}>`, which {lost.by} {lost.version}{where} no longer "
+                "brings along",
+                f"#include <{lost.header}>",
                 package.name,
-                severity="error"
-                if sure
-                else "warning"
-                if now and not (row.through and is_header(need.at.path))
-                else "note",
-                fix=_included(view, package, need, header) if not row.through else (),
+                severity="error" if sure else "warning" if here else "note",
+                fix=_included(view, package, need, lost.header) if lost.by == "gcc" else (),
             )
+
+
+class _Lost(NamedTuple):
+    """A header that nothing brings along any more. by, version: what did; sure: all that is included is known."""
+
+    header: str
+    by: str
+    version: str
+    sure: bool
+
+
+def _lost(
+    view: View,
+    need: NeededHeader,
+    reaches: tuple[tuple[str, ...], ...],
+    machine: Machine,
+    earlier: tuple[Machine, ...],
+) -> _Lost | None:
+    """What one of the sources that compile a file misses on a machine although an earlier one brought it along."""
+    offering = DEFINED_IN.get(need.name) or offered().get(need.name)
+    if offering is None:
+        return None
+    wanted, best = frozenset(offering), None
+    for paths in reaches:
+        reach, own = view.outward(paths)
+        if not wanted.isdisjoint(own) or any(not wanted.isdisjoint(machine.brought(h).headers) for h in reach):
+            continue
+        outside = _outside(view, need.name, reach, machine)
+        if outside is None:
+            continue
+        found = _dropped(view, wanted, reach, machine, earlier)
+        if found is not None and (best is None or (not outside and not best.sure)):
+            best = _Lost(offering[0], *found, not outside)
+    return best
+
+
+def _dropped(
+    view: View, wanted: frozenset[str], reach: frozenset[str], machine: Machine, earlier: tuple[Machine, ...]
+) -> tuple[str, str] | None:
+    """Who brought one of the wanted headers along on the last earlier machine that had it, and its version by now."""
+    for before in earlier:
+        for header in sorted(reach):
+            if not wanted.isdisjoint(before.brought(header).headers):
+                if view.is_standard(header):
+                    return "gcc", machine.version("gcc") or ""
+                return machine.owner(header)
+    return None
+
+
+def _outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> list[str] | None:
+    """Headers among those that reach a file of which nothing is known; None when one of them may well bring the name:
+    any may a name of a standard library or Boost, and one that depends on it a name of another package."""
+    outside = {
+        path
+        for header in reach
+        for path in machine.brought(header).outside
+        if not view.is_standard(path) and (path in reach or (view.header(path) and not _GENERATED.search(path)))
+    }
+    if not outside:
+        return []
+    if name in DEFINED_IN or name.startswith(("boost::", "BOOST_")):
+        return None
+    owners = {owner[0] for header in offered()[name] if (owner := machine.owner(header)) is not None}
+    for path in outside:
+        around = view.spread(provider.name for provider in view.header(path))
+        if not around or any(n in owners or owners.intersection(view.libraries_of(n)) for n in around):
+            return None
+    return sorted(outside)
 
 
 def _included(view: View, package, need, header: str) -> tuple[Insert, ...]:
@@ -101,19 +152,3 @@ def _included(view: View, package, need, header: str) -> tuple[Insert, ...]:
     return (Insert(need.at.path, max(i.at.line for i in before), f"#include <{header}>"),) if before else ()
 
 
-def _dropped(view: View, target):
-    """Names whose header a target's compiler or libraries no longer bring along, with the row and the version."""
-    found = {}
-    for row in view.transitive:
-        version = target.library(row.library) or target.version(row.library)
-        if version and at_least(version, row.since):
-            found[row.name] = row, version
-    return found
-
-
-def _out_of_reach(need, library: str, version: str) -> bool:
-    """True when no standard header that reaches the file brings the name in that GCC, by what its headers include."""
-    if library != "gcc":
-        return True
-    headers = frozenset(r for r in need.reach)
-    return reaches(headers, need.name, parts(version)[0]) is False
