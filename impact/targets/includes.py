@@ -94,7 +94,11 @@ _GENERATOR = {1: ("gencpp", "<gencpp>"), 2: ("rosidl_generator_cpp", "<rosidl_ge
 _CONFIG = re.compile(r"\w+/\w+Config\.h\Z")
 _RECONFIGURE = (
     *("dynamic_reconfigure/config_tools.h", "limits", "ros/node_handle.h", "boost/any.hpp"),
-    *("dynamic_reconfigure/ConfigDescription.h", "dynamic_reconfigure/ParamDescription.h", "dynamic_reconfigure/Group.h"),
+    *(
+        "dynamic_reconfigure/ConfigDescription.h",
+        "dynamic_reconfigure/ParamDescription.h",
+        "dynamic_reconfigure/Group.h",
+    ),
     "dynamic_reconfigure/config_init_mutex.h",
 )
 """What a header made from a .cfg file includes. Source: dynamic_reconfigure's ConfigType.h.template."""
@@ -137,7 +141,7 @@ class Machine:
                 return found
         if self.ros == 1 and _CONFIG.match(header):
             return _RECONFIGURE
-        if _MESSAGE[self.ros].match(header) and header not in self._data.owners_of:
+        if _MESSAGE[self.ros].match(header):
             owner, pattern = _GENERATOR[self.ros]
             version = self.version(owner)
             return self._data.included(owner, pattern, version) if version else None

@@ -1,27 +1,29 @@
 """missing-include: a name is used and its header reaches the file only by luck.
 
 What it does
-    Reports names of the standard library, and of libraries that the known-changes table covers, in files that do not
-    include the header that offers them, neither themselves nor through files of the package.
+    Reports names of the standard library, of Boost and of ROS packages in files that do not include the header that
+    offers them, when the headers that they do include stopped bringing it along.
 
 Why it breaks
-    Some other header brings it today. The next compiler or library version stops including it, and the build fails on
-    the machine that has that version.
+    Some other header brought it. The next compiler or library version stops including it, and the build fails on the
+    machine that has that version.
 
 Severity
-    error when only standard headers reach a source file and none of them brings the name in the target's compiler;
-    warning for headers, which something may precede, and for what an included library no longer brings; note when that
-    lies ahead, in the newest distro.
+    error when a source compiles the file, all headers that reach it there are known, and none of them brings the name
+    on the target; warning when some are not known, and none of those depends on the package at issue; note for files
+    that no source compiles, and for what lies ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
+    tf2_ros::Buffer buffer;                     // and only transform_listener.h, which stopped bringing it in Galactic
 
 Use instead
     #include <cstdint>
+    #include <tf2_ros/buffer.h>
 
 Not reported
-    Names that a standard header which reaches the file still brings; files that include headers of other packages,
-    unless a library that once brought the name is among them.
+    Names that a header which reaches the file may still bring; names of the standard library and of Boost in files that
+    something unknown reaches; types that a file of the package announces itself.
 """
 
 import re
@@ -150,5 +152,3 @@ def _included(view: View, package, need, header: str) -> tuple[Insert, ...]:
     ]
     before = [i for i in standard if i.path < header] or standard
     return (Insert(need.at.path, max(i.at.line for i in before), f"#include <{header}>"),) if before else ()
-
-

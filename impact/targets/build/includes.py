@@ -115,7 +115,9 @@ def defined(text: str) -> tuple[frozenset[str], frozenset[str]]:
     return frozenset(names), frozenset(announced - names)
 
 
-_PRIVATE = re.compile(r"^(?:std|testing|cv|tl|boost|Eigen)::|(?:^|::)(?:detail|details|impl|internal|deprecated)(?:::|_)|_impl$")
+_PRIVATE = re.compile(
+    r"^(?:std|testing|cv|tl|boost|Eigen)::|(?:^|::)(?:detail|details|impl|internal|deprecated)(?:::|_)|_impl$"
+)
 
 
 class Header(msgspec.Struct, frozen=True):
@@ -244,7 +246,9 @@ def read_generators(folder: Path) -> Iterator[tuple[str, str, State]]:
             for path, entry in _walk(tree, ""):
                 if path.startswith(below) and path.endswith(kind):
                     text = entry.data.decode("utf-8", "replace")
-                    found.update(dict.fromkeys(p for p in re.findall(r"""['"\s]*#include\s*[<"]([\w./+]+)[>"]""", text)))
+                    found.update(
+                        dict.fromkeys(p for p in re.findall(r"""['"\s]*#include\s*[<"]([\w./+]+)[>"]""", text))
+                    )
                     found.update(dict.fromkeys(re.findall(r"^\s*'((?:rosidl|\w+/)[\w./]+\.hpp)',?$", text, re.M)))
             if found:
                 yield package, match.group(1), {f"<{package}>": Header(tuple(found), frozenset(), frozenset())}
@@ -266,6 +270,7 @@ _COMPUTED = {
 
 def direct(state: State, kept) -> dict[str, tuple[str, ...]]:
     """Header to what it includes, through headers that are not kept. kept: include path to whether it is."""
+
     def answer(path: str, by: str) -> str:
         beside = by.rpartition("/")[0]
         while path.startswith("../"):
@@ -345,7 +350,17 @@ def _main() -> None:
         sparse.add(library)
         state = read_folder(Path(where))
         states[library][version] = direct(
-            state, lambda h: h.count("/") == 1 or h in used or bool(re.match(r"boost/(thread|filesystem|smart_ptr|date_time|function|bind|algorithm/string)/\w+\.hpp|opencv2/(\w+)/\2\.hpp", h))
+            state,
+            lambda h: (
+                h.count("/") == 1
+                or h in used
+                or bool(
+                    re.match(
+                        r"boost/(thread|filesystem|smart_ptr|date_time|function|bind|algorithm/string)/\w+\.hpp|opencv2/(\w+)/\2\.hpp",
+                        h,
+                    )
+                )
+            ),
         )
         note({p: h for p, h in state.items() if not p.startswith("boost/")})
     table = table_of({o: v for o, v in states.items() if any(v.values())}, libraries, sparse)
