@@ -190,7 +190,7 @@ class View:
         return tuple(machine_of(name, self.target.ros) for name in reversed(earlier))
 
     def outward(self, paths: tuple[str, ...]) -> tuple[frozenset[str], frozenset[str]]:
-        """What these include paths bring along in the workspace: paths of other places, and those of its own headers."""
+        """What these include paths bring along in the workspace: paths of other places, and of its own headers."""
         known = self._outward_of.get(paths)
         if known is None:
             found, own, stack = set(), set(), list(paths)

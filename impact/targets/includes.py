@@ -7,7 +7,7 @@ writes under a condition counts as written, except for those of other operating 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import pytest
-
-from rosimpact.impact.targets.build.includes import defined, direct, included, table_of
 from rosimpact.impact.targets.build.includes import Header as Read
+from rosimpact.impact.targets.build.includes import defined, direct, included, table_of
 from rosimpact.impact.targets.includes import Includes, Machine, default, machine_of, offered
 
 

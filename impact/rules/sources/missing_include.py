@@ -29,22 +29,23 @@ Not reported
 import re
 from typing import NamedTuple
 
-from ...model.package import NeededHeader, is_header
+from ...model.package import NeededHeader
 from ...model.view import View
-from ...targets.includes import Machine, offered
+from ...targets.includes import Machine, announced, offered
 from ...targets.standard import DEFINED_IN
 from ..cure import Insert
 from ..rule import Hit, rule
 
-
-# Made while a library is built; they hold macros and include nothing.
-_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$")
+# Headers that other ones include and that bring nothing: made of macros while a library is built, of other processors,
+# or of Boost, whose own headers are all known as far as they are there.
+_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|intrin\.h$|^boost/|@")
 
 
 @rule(severity="warning")
 def missing_include(view: View):
     for package in view:
-        reaches, told = dict(package.digest.reaches), set()
+        reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
+        told = set()
         compiled = {path for path, _ in package.digest.source_targets}
         for need in package.digest.needed_headers:
             if need.role == "aside" or not view.active(need.conditions):
@@ -82,7 +83,7 @@ class _Lost(NamedTuple):
 def _lost(
     view: View,
     need: NeededHeader,
-    reaches: tuple[tuple[str, ...], ...],
+    reaches: list[tuple[frozenset[str], frozenset[str]]],
     machine: Machine,
     earlier: tuple[Machine, ...],
 ) -> _Lost | None:
@@ -90,10 +91,12 @@ def _lost(
     offering = DEFINED_IN.get(need.name) or offered().get(need.name)
     if offering is None:
         return None
+    if need.name not in DEFINED_IN and all(machine.includes(header) is None for header in offering):
+        return None
     wanted, best = frozenset(offering), None
-    for paths in reaches:
-        reach, own = view.outward(paths)
-        if not wanted.isdisjoint(own) or any(not wanted.isdisjoint(machine.brought(h).headers) for h in reach):
+    enough = wanted.union(announced(need.name))  # an announced type may serve for pointers
+    for reach, own in reaches:
+        if not enough.isdisjoint(own) or any(not enough.isdisjoint(machine.brought(h).headers) for h in reach):
             continue
         outside = _outside(view, need.name, reach, machine)
         if outside is None:
@@ -118,18 +121,19 @@ def _dropped(
 
 
 def _outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> list[str] | None:
-    """Headers among those that reach a file of which nothing is known; None when one of them may well bring the name:
-    any may a name of a standard library or Boost, and one that depends on it a name of another package."""
+    """Headers among those that reach a file of which nothing is known; None when one of them may well bring the name.
+
+    Any that the file itself includes may bring a name of the standard library; one whose package depends on the name's
+    may bring another.
+    """
     outside = {
         path
         for header in reach
         for path in machine.brought(header).outside
         if not view.is_standard(path) and (path in reach or (view.header(path) and not _GENERATED.search(path)))
     }
-    if not outside:
-        return []
-    if name in DEFINED_IN or name.startswith(("boost::", "BOOST_")):
-        return None
+    if name in DEFINED_IN:
+        return None if outside & reach else sorted(outside)
     owners = {owner[0] for header in offered()[name] if (owner := machine.owner(header)) is not None}
     for path in outside:
         around = view.spread(provider.name for provider in view.header(path))

@@ -30,8 +30,12 @@ from ..version import parts
 
 _HEADER = re.compile(r"(?:\.(?:h|hh|hpp|hxx|h\+\+|inl|ipp|tcc)(?:\.in|\.em|\.template)?|/[A-Z][A-Za-z]+)$")
 _INNER = re.compile(r"(?:^|/)(?:details?|impl|internal|aux_|preprocessed|src|arch|private|hal|cuda|experimental/impl)/")
-_ASIDE = frozenset((*("test", "tests", "doc", "docs", "example", "examples", "benchmark", "third_party", "3rdparty"),
-                    *("mock_core", "gpu", "cuda", "recognition", "outofcore", "simulation", "people", "apps")))  # fmt: skip
+_ASIDE = frozenset(
+    (
+        *("test", "tests", "doc", "docs", "example", "examples", "benchmark", "third_party", "3rdparty"),
+        *("mock_core", "gpu", "cuda", "recognition", "outofcore", "simulation", "people", "apps"),
+    )
+)
 _LIBRARIES = {
     "PointCloudLibrary+pcl": "pcl",
     "jbeder+yaml-cpp": "yaml-cpp",
@@ -264,8 +268,11 @@ def read_folder(folder: Path) -> State:
 
 
 _COMPUTED = {
-    "boost/config.hpp": ("boost/config/stdlib/libstdcpp3.hpp", "boost/config/compiler/gcc.hpp", "boost/config/platform/linux.hpp"),
-}  # fmt: skip
+    "boost/config.hpp": tuple(
+        f"boost/config/{what}.hpp" for what in ("stdlib/libstdcpp3", "compiler/gcc", "platform/linux")
+    ),
+}
+"""Headers to those that they include by a macro, with GCC on Linux."""
 
 
 def direct(state: State, kept) -> dict[str, tuple[str, ...]]:
