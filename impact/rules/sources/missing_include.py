@@ -94,16 +94,18 @@ def _lost(
     if need.name not in DEFINED_IN and all(machine.includes(header) is None for header in offering):
         return None
     wanted, best = frozenset(offering), None
-    enough = wanted.union(announced(need.name))  # an announced type may serve for pointers
+    pointed = frozenset(announced(need.name))  # to a type that is announced, pointers may be made
     for reach, own in reaches:
-        if not enough.isdisjoint(own) or any(not enough.isdisjoint(machine.brought(h).headers) for h in reach):
+        if not wanted.isdisjoint(own) or any(not wanted.isdisjoint(machine.brought(h).headers) for h in reach):
             continue
         outside = _outside(view, need.name, reach, machine)
         if outside is None:
             continue
         found = _dropped(view, wanted, reach, machine, earlier)
-        if found is not None and (best is None or (not outside and not best.sure)):
-            best = _Lost(offering[0], *found, not outside)
+        if found is None or (best is not None and (best.sure or outside)):
+            continue
+        sure = not outside and all(pointed.isdisjoint(machine.brought(header).headers) for header in reach)
+        best = _Lost(offering[0], *found, sure)
     return best
 
 
