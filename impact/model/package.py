@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator
 
 import msgspec
 
@@ -35,6 +35,10 @@ TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration
 # `<urdf::...>` in the label of a use stands for the template arguments that are written.
 _OPEN_TYPES = re.compile(r"<[^<>]*\.\.\.>")
 _ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample)(?:_|\.|\d|$)")
+
+
+# So many of the sources that compile a header are looked at.
+_SOURCES = 6
 
 
 class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -82,13 +86,11 @@ class NameUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class NeededHeader(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A name whose header the file does not include, itself or through files of the package.
-    only_standard: every other include that reaches the file is a standard header."""
+    """A name whose header the file does not include, itself or through files of the package."""
 
     name: str
     at: At
     role: str
-    reach: tuple[str, ...]
     conditions: tuple[Condition, ...] = ()
 
 
@@ -141,6 +143,11 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     references: tuple[ReferenceUse, ...] = ()
     names: tuple[NameUse, ...] = ()
     needed_headers: tuple[NeededHeader, ...] = ()
+    # Of files with needed headers: the includes of other places that reach each source which compiles them; of headers
+    # that none does, those that reach themselves.
+    reaches: tuple[tuple[str, tuple[tuple[str, ...], ...]], ...] = ()
+    # Of headers: the headers of the package that they include.
+    inner: tuple[tuple[str, tuple[str, ...]], ...] = ()
     interfaces: tuple[InterfaceFile, ...] = ()
     syntax: tuple[SyntaxUse, ...] = ()
     headers: tuple[str, ...] = ()
@@ -299,6 +306,12 @@ class _Join:
             ),
             names=tuple(names + python_names),
             needed_headers=tuple(needed),
+            reaches=tuple(self.reaches(dict.fromkeys(n.at.path for n in needed), roles).items()),
+            inner=tuple(
+                (path, inner)
+                for path, found in self.resolved.items()
+                if is_header(path) and (inner := tuple(to for to, _ in found if to is not None))
+            ),
             interfaces=tuple(interfaces),
             syntax=tuple(syntax),
             headers=tuple(p for p in self.cpp if is_header(p)),
@@ -429,9 +442,10 @@ class _Join:
                 headers = watched.headers_of.get(text)
                 if headers is not None:
                     reach = self.reach(path) if reach is None else reach
-                    if not any(h in reach for h in headers):
-                        needed.append(NeededHeader(text, At(path, name.line, name.column), role, tuple(sorted(reach)),
-                                                   conditions + name.conditions))  # fmt: skip
+                    if not any(h in reach for h in headers) and not self.declares(path, text):
+                        needed.append(
+                            NeededHeader(text, At(path, name.line, name.column), role, conditions + name.conditions)
+                        )
             if facts.words:
                 words = facts.words.split(" ")
                 for word in sorted(watched.words.intersection(words) - defined):
@@ -440,7 +454,7 @@ class _Join:
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in watched.headers_of[word]):
                         at = self.bare(word, path, role, public, targets, conditions).at
-                        needed.append(NeededHeader(word, at, role, tuple(sorted(reach)), conditions))
+                        needed.append(NeededHeader(word, at, role, conditions))
         return includes, names, needed
 
     def uses(self, roles) -> Iterator[NameUse]:
@@ -573,18 +587,62 @@ class _Join:
 
     def reach(self, path: str) -> set[str]:
         """All include paths that reach a file, through files of the package."""
-        found: set[str] = set()
-        stack, seen = [path], set()
+        return {include.path for at in self.reached(path) for _, include in self.resolved.get(at, ())}
+
+    def reaches(self, paths: Iterable[str], roles) -> dict[str, tuple[tuple[str, ...], ...]]:
+        """For each file, what reaches it in the sources that compile it; the least of them tell enough."""
+        found: dict[str, set[tuple[str, ...]]] = {p: set() if is_header(p) else {self.outward(p)} for p in paths}
+        own = {path: frozenset(self.outward(path)) for path in found if is_header(path)}
+        for source, (role, *_) in roles.items():
+            if is_header(source):
+                continue
+            for path, before in self.met(source, own):
+                if role == roles[path][0]:
+                    found[path].add(tuple(sorted(own[path] | before)))
+        return {
+            path: tuple(sorted(sets, key=lambda s: (len(s), s))[:_SOURCES]) or (self.outward(path),)
+            for path, sets in found.items()
+        }
+
+    def met(self, source: str, wanted: Container[str]) -> Iterator[tuple[str, frozenset[str]]]:
+        """Headers among the wanted ones as a source comes to include them, with the include paths that no file of the
+        package answers up to there."""
+        before: dict[str, None] = {}
+        seen, stack = {source}, [iter(self.resolved.get(source, ()))]
+        while stack:
+            to, include = next(stack[-1], (None, None))
+            if include is None:
+                stack.pop()
+            elif to is None:
+                before[include.path] = None
+            elif to not in seen:
+                seen.add(to)
+                if to in wanted:
+                    yield to, frozenset(before)
+                stack.append(iter(self.resolved.get(to, ())))
+
+    def outward(self, path: str) -> tuple[str, ...]:
+        """The include paths among them that no file of the package answers."""
+        found = {i.path for at in self.reached(path) for to, i in self.resolved.get(at, ()) if to is None}
+        return tuple(sorted(found))
+
+    def reached(self, path: str) -> list[str]:
+        """The file and the files of the package that it includes, directly or not."""
+        stack, seen = [path], {}
         while stack:
             at = stack.pop()
-            if at in seen:
-                continue
-            seen.add(at)
-            for to, include in self.resolved.get(at, ()):
-                found.add(include.path)
-                if to is not None:
-                    stack.append(to)
-        return found
+            if at not in seen:
+                seen[at] = None
+                stack.extend(to for to, _ in self.resolved.get(at, ()) if to is not None)
+        return list(seen)
+
+    def declares(self, path: str, name: str) -> bool:
+        """True when the file, or one of the package that it includes, announces or defines a type of this name."""
+        space, _, word = name.rpartition("::")
+        if space.partition("::")[0] in ("", "std"):
+            return False
+        declared = re.compile(rb"\b(?:class|struct|enum|typedef|using)\b[^;{}=]*\b" + word.encode() + rb"\b\s*[;:{=<]")
+        return any(declared.search(self.read(at)) for at in self.reached(path))
 
     # -- what Python files need ------------------------------------------------------------------------------------
 

@@ -13,9 +13,10 @@ from typing import NamedTuple
 
 from ..config import Config
 from ..facts.condition import Condition
-from ..targets.changes import transitive_includes
+from ..targets.changes import DISTROS
 from ..targets.distro import known_distros
 from ..targets.fields import History, before, default_fields, there
+from ..targets.includes import Machine, machine_of
 from ..targets.library import include_roots
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
@@ -89,6 +90,7 @@ class View:
         self._held: dict[tuple[Condition, ...], bool | None] = {}
         self._reached: dict[int, tuple[object, frozenset[str], set[str]]] = {}
         self._standard: dict[str, bool] = {}
+        self._outward_of: dict[tuple[str, ...], tuple[frozenset[str], frozenset[str]]] = {}
         self._lost: dict[str, Misnamed | None] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
 
@@ -171,10 +173,74 @@ class View:
         target = self.target
         return name in self.workspace.packages or target.version(name) is not None or target.resolve(name) is not None
 
-    @property
-    def transitive(self):
-        """Headers that compilers and libraries stopped bringing along, see targets/changes.py."""
-        return transitive_includes()
+    @cached_property
+    def machine(self) -> Machine:
+        """The headers that the target has, see targets/includes.py."""
+        target = self.target
+        return Machine(target.ros, lambda name, library: target.library(name) if library else target.version(name))
+
+    @cached_property
+    def later_machine(self) -> Machine | None:
+        """Those of the newest long-term distro, None when this target is it or newer."""
+        newest = self.target.newest()
+        return machine_of(newest.distro, newest.ros) if newest is not None else None
+
+    @cached_property
+    def earlier_machines(self) -> tuple[Machine, ...]:
+        """Those of the earlier distros of the same generation, newest first."""
+        first, last = DISTROS["ardent" if self.target.ros == 2 else "groovy"], DISTROS.get(self.target.distro, 0)
+        earlier = [name for name, place in DISTROS.items() if first <= place < last]
+        return tuple(machine_of(name, self.target.ros) for name in reversed(earlier))
+
+    def outward(self, paths: tuple[str, ...]) -> tuple[frozenset[str], frozenset[str]]:
+        """What these include paths bring along in the workspace: paths of other places, and of its own headers."""
+        known = self._outward_of.get(paths)
+        if known is None:
+            found, own, stack = set(), set(), list(paths)
+            while stack:
+                path = stack.pop()
+                if path in found or path in own:
+                    continue
+                files = self._files_of(path)
+                (own if files else found).add(path)
+                for file in files:
+                    own.add(f"/{file}".rpartition("/include/")[2])
+                    stack.extend(self._outward.get(file, ()))
+                    stack.extend(self._inner.get(file, ()))
+            known = self._outward_of[paths] = frozenset(found), frozenset(own)
+        return known
+
+    def has_header(self, path: str) -> bool:
+        """True when a header of the workspace answers an include path."""
+        return bool(self._files_of(path))
+
+    def _files_of(self, path: str) -> tuple[str, ...]:
+        """The headers of the workspace that an include path names; a file's own path names itself."""
+        if path in self._header_files:
+            return (path,)
+        ending, found = "/" + path.lstrip("./"), []
+        for provider in self.header(path):
+            package = self.workspace.packages.get(provider.name) if provider.kind == "ros" else None
+            if package is not None:
+                found.extend(h for h in package.digest.headers if h.removesuffix(".in").endswith(ending))
+        return tuple(found)
+
+    @cached_property
+    def _header_files(self) -> frozenset[str]:
+        return frozenset(h for package in self.workspace for h in package.digest.headers)
+
+    @cached_property
+    def _inner(self) -> dict[str, tuple[str, ...]]:
+        return {path: inner for package in self.workspace for path, inner in package.digest.inner}
+
+    @cached_property
+    def _outward(self) -> dict[str, list[str]]:
+        found: dict[str, list[str]] = {}
+        for package in self.workspace:
+            for use in package.digest.includes:
+                if use.at.path in self._header_files:
+                    found.setdefault(use.at.path, []).append(use.path)
+        return found
 
     def successor(self, name: str) -> str:
         """What the known-changes table says to use instead of a package, as a cure; empty when it says nothing."""

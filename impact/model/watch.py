@@ -9,6 +9,8 @@ from functools import cache
 from ..facts.usage import Pattern
 from ..targets.changes import TransitiveInclude, all_rows, transitive_includes
 from ..targets.fields import default_fields
+from ..targets.includes import offered
+from ..targets.standard import DEFINED_IN
 from ..targets.uses import all_uses
 from .package import Watched
 
@@ -35,8 +37,10 @@ def watched() -> Watched:
             # A new name of which an old one is told may be used where it is not there yet.
             if row.new_since and len(row.new) > 7 and _WORD.match(row.new) and not row.ambiguous:
                 (qualified if "::" in row.new else words).add(row.new)
+    headers.update({name: found for name, found in offered().items() if name not in headers})
+    headers.update({name: tuple(h for h in found if "bits/" not in h) for name, found in DEFINED_IN.items()})
     for include in transitive_includes():
-        headers[include.name] = tuple(include.headers)
+        headers[include.name] = tuple(dict.fromkeys((*include.headers, *headers.get(include.name, ()))))
     uses: dict[str, list[tuple[str, Pattern]]] = {}
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     for row in all_uses():

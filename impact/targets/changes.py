@@ -66,15 +66,13 @@ class TransitiveInclude(NamedTuple):
     """A header that a compiler or library stopped bringing along.
 
     name: the identifier that needs it. headers: any of these offers it, best first. library, since: from which version
-    of which platform library on it has to be included. through: how the include paths begin that used to bring it
-    (empty: the standard library's own headers). sure: no other standard header is known to bring it since.
+    of which platform library on it has to be included. sure: no other standard header is known to bring it since.
     """
 
     name: str
     headers: tuple[str, ...]
     library: str
     since: str
-    through: str
     sure: bool
     source: str
 
@@ -85,7 +83,6 @@ class _TransitiveGroup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     since: str
     names: tuple[str, ...]
     source: str
-    through: str = ""
     sure: bool = False
 
 
@@ -132,7 +129,7 @@ def all_rows() -> tuple[Row, ...]:
 def transitive_includes() -> tuple[TransitiveInclude, ...]:
     """Every header that is known to have stopped coming along. Raises SnapshotError when the data cannot be read."""
     return tuple(
-        TransitiveInclude(name, g.headers, g.library, g.since, g.through, g.sure, g.source)
+        TransitiveInclude(name, g.headers, g.library, g.since, g.sure, g.source)
         for g in _file().transitive
         for name in g.names
     )

@@ -101,6 +101,28 @@ DEFINED_IN: dict[str, tuple[str, ...]] = {
     "std::priority_queue": ("queue",),
     "std::bitset": ("bitset",),
     "std::complex": ("complex",),
+    "std::tuple": ("tuple",),
+    "std::make_tuple": ("tuple",),
+    "std::system_error": ("system_error",),
+    "std::shared_mutex": ("shared_mutex",),
+    "std::shared_lock": ("shared_mutex",),
+    "std::min": ("algorithm", "bits/stl_algobase"),
+    "std::max": ("algorithm", "bits/stl_algobase"),
+    "std::fill": ("algorithm", "bits/stl_algobase"),
+    "std::copy": ("algorithm", "bits/stl_algobase"),
+    "std::lower_bound": ("algorithm", "bits/stl_algobase"),
+    **{
+        f"std::{name}": ("cmath",) for name in ("isnan", "isinf", "isfinite", "sqrt", "hypot", "fabs", "atan2", "round")
+    },
+    **dict.fromkeys(("FLT_MAX", "FLT_MIN", "FLT_EPSILON", "DBL_MAX", "DBL_MIN", "DBL_EPSILON"), ("cfloat", "float.h")),
+    **dict.fromkeys(("INT_MAX", "INT_MIN", "UINT_MAX", "LONG_MAX"), ("climits", "limits.h")),
+    **dict.fromkeys(("M_PI", "M_PI_2"), ("cmath", "math.h")),
+    "usleep": ("unistd.h",),
+    **{
+        f"{sign}INT{bits}_{end}": ("cstdint", "stdint.h")
+        for sign, end in (("U", "MAX"), ("", "MAX"), ("", "MIN"))
+        for bits in (8, 16, 32, 64)
+    },
 }
 """Name to the headers that define it, the public one first; a `bits/` one is libstdc++'s own that does."""
 

@@ -476,6 +476,30 @@ SILENT = {
         ),
         ("sled.cpp", '#include "sled.hpp"\n', ""),
     ),
+    "a header whose need its source includes first": Silent(
+        "missing-include",
+        ("jazzy",),
+        ament(
+            "find_package(tf2_ros REQUIRED)\nadd_library(sled sled.cpp)\nament_target_dependencies(sled tf2_ros)\n"
+            "install(TARGETS sled DESTINATION lib)",
+            "depend:tf2_ros",
+            sled_hpp="#pragma once\n#include <tf2_ros/transform_listener.h>\ntf2_ros::Buffer & frames();\n",
+            sled_cpp='#include <tf2_ros/buffer.h>\n#include "sled.hpp"\n',
+        ),
+        ("sled.cpp", "#include <tf2_ros/buffer.h>\n", ""),
+    ),
+    "a type that the package announces itself": Silent(
+        "missing-include",
+        ("jazzy",),
+        ament(
+            "find_package(tf2_ros REQUIRED)\nadd_library(sled sled.cpp)\nament_target_dependencies(sled tf2_ros)\n"
+            "install(TARGETS sled DESTINATION lib)",
+            "depend:tf2_ros",
+            sled_cpp="#include <tf2_ros/transform_listener.h>\nnamespace tf2_ros { class Buffer; }\n"
+            "tf2_ros::Buffer * frames() { return nullptr; }\n",
+        ),
+        ("sled.cpp", "namespace tf2_ros { class Buffer; }\n", ""),
+    ),
     "a comment that silences a finding": Silent(
         "removed-header",
         ("jazzy",),

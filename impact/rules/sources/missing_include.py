@@ -1,88 +1,147 @@
 """missing-include: a name is used and its header reaches the file only by luck.
 
 What it does
-    Reports names of the standard library, and of libraries that the known-changes table covers, in files that do not
-    include the header that offers them, neither themselves nor through files of the package.
+    Reports names of the standard library, of Boost and of ROS packages in files that do not include the header that
+    offers them, when the headers that they do include stopped bringing it along.
 
 Why it breaks
-    Some other header brings it today. The next compiler or library version stops including it, and the build fails on
-    the machine that has that version.
+    Some other header brought it. The next compiler or library version stops including it, and the build fails on the
+    machine that has that version.
 
 Severity
-    error when only standard headers reach a source file and none of them brings the name in the target's compiler;
-    warning for headers, which something may precede, and for what an included library no longer brings; note when that
-    lies ahead, in the newest distro.
+    error when a source compiles the file, all headers that reach it there are known, and none of them brings the name
+    on the target; warning when some are not known, and none of those depends on the package at issue; note for files
+    that no source compiles, and for what lies ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
+    tf2_ros::Buffer buffer;                     // and only transform_listener.h, which stopped bringing it in Galactic
 
 Use instead
     #include <cstdint>
+    #include <tf2_ros/buffer.h>
 
 Not reported
-    Names that a standard header which reaches the file still brings; files that include headers of other packages,
-    unless a library that once brought the name is among them.
+    Names that a header which reaches the file may still bring; names of the standard library and of Boost in files that
+    something unknown reaches; types that a file of the package announces itself.
 """
 
-from ...model.package import is_header
+import re
+from typing import NamedTuple
+
+from ...model.package import NeededHeader
 from ...model.view import View
-from ...targets.standard import reaches
-from ...targets.version import at_least, parts
+from ...targets.includes import Machine, announced, offered
+from ...targets.standard import DEFINED_IN
 from ..cure import Insert
 from ..rule import Hit, rule
+
+# Headers that other ones include and that bring nothing: made of macros while a library is built, of other processors,
+# or of Boost, whose own headers are all known as far as they are there.
+_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|intrin\.h$|^boost/|@")
 
 
 @rule(severity="warning")
 def missing_include(view: View):
-    here, coming = _dropped(view, view.target), {}
-    newest = view.target.newest()
-    if newest is not None:
-        coming = {name: known for name, known in _dropped(view, newest).items() if name not in here}
     for package in view:
+        reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
         told = set()
+        compiled = {path for path, _ in package.digest.source_targets}
         for need in package.digest.needed_headers:
-            known = here.get(need.name) or coming.get(need.name)
-            if known is None or need.role == "aside" or not view.active(need.conditions):
+            if need.role == "aside" or not view.active(need.conditions):
                 continue
-            if need.name not in here and not view.later_active(need.conditions):
+            lost, now = _lost(view, need, reaches[need.at.path], view.machine, view.earlier_machines), True
+            if lost is None and view.later_machine is not None and view.later_active(need.conditions):
+                lost, now = _lost(view, need, reaches[need.at.path], view.later_machine, (view.machine,)), False
+            if lost is None or (need.at.path, lost.header) in told:
                 continue
-            row, version = known
-            header = row.headers[0]
-            if (need.at.path, header) in told:
-                continue
-            outside = [r for r in need.reach if not view.is_standard(r)]
-            if (row.through and not any(r.startswith(row.through) for r in need.reach)) or (
-                outside and not row.through
-            ):
-                continue
-            missed = row.through or _out_of_reach(need, row.library, version)
-            if not missed:
-                continue
-            told.add((need.at.path, header))
-            now = need.name in here
-            sure = (
-                now
-                and need.role == "build"
-                and not row.through
-                and not outside
-                and not is_header(need.at.path)
-                and view.certain(need.conditions)
-            )
+            told.add((need.at.path, lost.header))
+            here = now and need.at.path in compiled
+            sure = here and lost.sure and need.role == "build" and view.certain(need.conditions)
             where = "" if now else f" of {view.horizon}"
             yield Hit(
                 need.at,
-                header,
-                f"`{need.name}` is used without `<{header}>`, "
-                f"which {row.library} {version}{where} no longer brings along",
-                f"#include <{header}>",
+                lost.header,
+                f"`{need.name}` is used without `<{lost.header}>`, which {lost.by} {lost.version}{where} no longer "
+                "brings along",
+                f"#include <{lost.header}>",
                 package.name,
-                severity="error"
-                if sure
-                else "warning"
-                if now and not (row.through and is_header(need.at.path))
-                else "note",
-                fix=_included(view, package, need, header) if not row.through else (),
+                severity="error" if sure else "warning" if here else "note",
+                fix=_included(view, package, need, lost.header) if lost.by == "gcc" else (),
             )
+
+
+class _Lost(NamedTuple):
+    """A header that nothing brings along any more. by, version: what did; sure: all that is included is known."""
+
+    header: str
+    by: str
+    version: str
+    sure: bool
+
+
+def _lost(
+    view: View,
+    need: NeededHeader,
+    reaches: list[tuple[frozenset[str], frozenset[str]]],
+    machine: Machine,
+    earlier: tuple[Machine, ...],
+) -> _Lost | None:
+    """What one of the sources that compile a file misses on a machine although an earlier one brought it along."""
+    offering = DEFINED_IN.get(need.name) or offered().get(need.name)
+    if offering is None:
+        return None
+    if need.name not in DEFINED_IN and all(machine.includes(header) is None for header in offering):
+        return None
+    wanted, best = frozenset(offering), None
+    pointed = frozenset(announced(need.name))  # to a type that is announced, pointers may be made
+    for reach, own in reaches:
+        if not wanted.isdisjoint(own) or any(not wanted.isdisjoint(machine.brought(h).headers) for h in reach):
+            continue
+        outside = _outside(view, need.name, reach, machine)
+        if outside is None:
+            continue
+        found = _dropped(view, wanted, reach, machine, earlier)
+        if found is None or (best is not None and (best.sure or outside)):
+            continue
+        sure = not outside and all(pointed.isdisjoint(machine.brought(header).headers) for header in reach)
+        best = _Lost(offering[0], *found, sure)
+    return best
+
+
+def _dropped(
+    view: View, wanted: frozenset[str], reach: frozenset[str], machine: Machine, earlier: tuple[Machine, ...]
+) -> tuple[str, str] | None:
+    """Who brought one of the wanted headers along on the last earlier machine that had it, and its version by now."""
+    for before in earlier:
+        for header in sorted(reach):
+            if not wanted.isdisjoint(before.brought(header).headers):
+                if view.is_standard(header):
+                    return "gcc", machine.version("gcc") or ""
+                return machine.owner(header)
+    return None
+
+
+def _outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> list[str] | None:
+    """Headers among those that reach a file of which nothing is known; None when one of them may well bring the name.
+
+    Any that the file itself includes may bring a name of the standard library; one whose package depends on the name's
+    may bring another.
+    """
+    outside = {
+        path
+        for header in reach
+        for path in machine.brought(header).outside
+        if not view.is_standard(path) and (path in reach or (view.header(path) and not _GENERATED.search(path)))
+    }
+    if name in DEFINED_IN:
+        return None if outside & reach else sorted(outside)
+    owners = {owner[0] for header in offered()[name] if (owner := machine.owner(header)) is not None}
+    for path in outside:
+        around = view.spread(provider.name for provider in view.header(path))
+        if not around or any(n in owners or owners.intersection(view.libraries_of(n)) for n in around):
+            return None
+    return sorted(outside)
 
 
 def _included(view: View, package, need, header: str) -> tuple[Insert, ...]:
@@ -99,21 +158,3 @@ def _included(view: View, package, need, header: str) -> tuple[Insert, ...]:
     ]
     before = [i for i in standard if i.path < header] or standard
     return (Insert(need.at.path, max(i.at.line for i in before), f"#include <{header}>"),) if before else ()
-
-
-def _dropped(view: View, target):
-    """Names whose header a target's compiler or libraries no longer bring along, with the row and the version."""
-    found = {}
-    for row in view.transitive:
-        version = target.library(row.library) or target.version(row.library)
-        if version and at_least(version, row.since):
-            found[row.name] = row, version
-    return found
-
-
-def _out_of_reach(need, library: str, version: str) -> bool:
-    """True when no standard header that reaches the file brings the name in that GCC, by what its headers include."""
-    if library != "gcc":
-        return True
-    headers = frozenset(r for r in need.reach)
-    return reaches(headers, need.name, parts(version)[0]) is False

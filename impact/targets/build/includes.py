@@ -1,0 +1,421 @@
+"""Builds data/includes.json.zst: which headers each header of a library or ROS package includes, version by version.
+
+    python -m rosimpact.impact.targets.build.includes FOLDER --installed boost=1.74=DIR ... --output DATA
+
+FOLDER holds git clones (`OWNER+NAME`, or a git directory below it); their release tags are read. DIR is an include
+folder of one version, for libraries whose repositories are too large to be read. Only names and versions are kept.
+
+Headers of detail folders are not kept: what they include counts as included by who includes them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import msgspec
+import zstandard
+
+from .. import includes
+from ..build_history import _git_directory, _tree
+from ..changes import DISTROS
+from ..distro import DistroTarget
+from ..snapshot import DATA
+from ..version import parts
+
+_HEADER = re.compile(r"(?:\.(?:h|hh|hpp|hxx|h\+\+|inl|ipp|tcc)(?:\.in|\.em|\.template)?|/[A-Z][A-Za-z]+)$")
+_INNER = re.compile(r"(?:^|/)(?:details?|impl|internal|aux_|preprocessed|src|arch|private|hal|cuda|experimental/impl)/")
+_ASIDE = frozenset(
+    (
+        *("test", "tests", "doc", "docs", "example", "examples", "benchmark", "third_party", "3rdparty"),
+        *("mock_core", "gpu", "cuda", "recognition", "outofcore", "simulation", "people", "apps"),
+    )
+)
+_LIBRARIES = {
+    "PointCloudLibrary+pcl": "pcl",
+    "jbeder+yaml-cpp": "yaml-cpp",
+    "flexible-collision-library+fcl": "fcl",
+    "ros+console_bridge": "console-bridge",
+    "ros+urdfdom_headers": "urdfdom-headers",
+    "orocos+orocos_kinematics_dynamics": "orocos-kdl",
+    "google+googletest": "gtest",
+    "OctoMap+octomap": "octomap",
+}
+"""Clones of platform libraries, by their names in platform_versions.yaml; all others hold ROS packages."""
+# Interfaces of rclcpp's nodes, for which its build makes headers from templates.
+_INTERFACES = tuple(
+    f"node_{name}"
+    for name in ("base", "clock", "graph", "logging", "parameters", "services", "time_source", "timers", "topics",
+                 "type_descriptions", "waitables")
+)  # fmt: skip
+_VERSION = re.compile(r"(?:v|pcl-|release-|yaml-cpp-|ros2_|[a-z_]+-)?(\d+(?:\.\d+){1,3})$")
+_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
+_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+_DIRECTIVE = re.compile(
+    r"^[ \t]*#[ \t]*(include|if|ifdef|ifndef|elif|else|endif)\b[ \t]*((?:[^\n\\]|\\\n)*)", re.MULTILINE
+)
+_ELSEWHERE = re.compile(
+    r"_WIN32|\bWIN32|_MSC_VER|__APPLE__|__BORLANDC__|_WIN64|__CYGWIN__|_LIBCPP_VERSION|__QNX__|__ANDROID__|__VXWORKS__"
+    r"|__CUDACC__|__HIPCC__|EIGEN_GPU|EIGEN_CUDA|EIGEN_HIP|EIGEN_HAS_GPU|SYCL|EIGEN_USE_|__ARM|__ALTIVEC|__VSX|__ZVECTOR"
+)
+_NEGATED = re.compile(r"!|__linux|__GNUC__|__unix|\|\|")
+
+
+def included(text: str) -> tuple[str, ...]:
+    """Include paths of a header, without those that only another operating system reads."""
+    found: dict[str, None] = {}
+    skipped: list[bool | None] = []
+    for directive, rest in _DIRECTIVE.findall(_COMMENT.sub(lambda m: "\n" * m.group().count("\n"), text)):
+        if directive in ("if", "ifdef", "ifndef"):
+            other = bool(_ELSEWHERE.search(rest)) and not _NEGATED.search(rest)
+            skipped.append(None if not other else directive != "ifndef")
+        elif directive in ("else", "elif") and skipped:
+            skipped[-1] = None if skipped[-1] is None else directive == "else" and not skipped[-1]
+        elif directive == "endif" and skipped:
+            skipped.pop()
+        elif directive == "include" and True not in skipped:
+            path = re.match(r'[<"]\s*([^>"]+?)\s*[>"]', rest)
+            if path:
+                found[path.group(1)] = None
+    return tuple(found)
+
+
+# Where a class, structure, enumeration or alias of a namespace is defined or only announced.
+_TOKEN = re.compile(
+    r"\bnamespace\s+(?P<space>[\w:]+)\s*(?:\[\[.*?\]\]\s*)?\{|\b(?:class|struct)\s+(?:[A-Z][A-Z0-9_]{3,}\s+|alignas\([^)]*\)\s*)*(?P<type>[A-Za-z_]\w*)"
+    r"\s*(?P<after>final\b|[;{:<])|\busing\s+(?P<alias>\w+)\s*=|\btypedef\b[^;{}]*?\b(?P<old>\w+)\s*;|[{}]"
+)
+
+
+def defined(text: str) -> tuple[frozenset[str], frozenset[str]]:
+    """Qualified names of types that a header defines, and of those that it only announces."""
+    text = re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', _COMMENT.sub(" ", text))
+    text = re.sub(r"^[ \t]*#(?:[^\n\\]|\\\n|\\)*", "", text, flags=re.MULTILINE)
+    names, announced, stack = set(), set(), []
+    for match in _TOKEN.finditer(text):
+        token = match.group()
+        inside = None not in stack
+        prefix = "::".join(s for s in stack if s) + "::" if stack else ""
+        if match.group("space"):
+            stack.append(match.group("space") if inside else None)
+        elif match.group("type"):
+            after = match.group("after")
+            if inside and prefix:
+                (announced if after == ";" else names).add(prefix + match.group("type"))
+            if after == "{":
+                stack.append(None)
+        elif match.group("alias") or match.group("old"):
+            if inside and prefix:
+                names.add(prefix + (match.group("alias") or match.group("old")))
+        elif token == "{":
+            stack.append(None)
+        elif stack:
+            stack.pop()
+    return frozenset(names), frozenset(announced - names)
+
+
+_PRIVATE = re.compile(
+    r"^(?:std|testing|cv|tl|boost|Eigen)::|(?:^|::)(?:detail|details|impl|internal|deprecated)(?:::|_)|_impl$"
+)
+
+
+class Header(msgspec.Struct, frozen=True):
+    """What one state of a header includes, defines and announces."""
+
+    includes: tuple[str, ...]
+    defined: frozenset[str]
+    announced: frozenset[str]
+
+
+def _read(data: bytes) -> Header:
+    text = data.decode("utf-8", "replace")
+    return Header(included(text), *defined(text))
+
+
+class Clone:
+    """The packages of a git clone at any tag: package to include path to header."""
+
+    def __init__(self, repository, library: str):
+        self.repository, self.library = repository, library
+        self.blobs: dict[bytes, Header] = {}
+        self.trees: dict[bytes, dict[str, dict[str, bytes]]] = {}
+
+    def packages(self, tree) -> dict[str, dict[str, bytes]]:
+        """Package to include path to blob; a platform library is one package."""
+        if self.library:
+            headers: dict[str, bytes] = {}
+            for path, entry in _walk(tree, ""):
+                self._add(headers, path, entry, "")
+            return {self.library: headers}
+        known = self.trees.get(tree.id.raw)
+        if known is None:
+            known = self.trees[tree.id.raw] = self._packages(tree)
+        return known
+
+    def _packages(self, tree) -> dict[str, dict[str, bytes]]:
+        entries = {entry.name: entry for entry in tree}
+        manifest = entries.get("package.xml")
+        if manifest is not None and manifest.type_str == "blob":
+            match = _NAME.search(manifest.data)
+            headers: dict[str, bytes] = {}
+            name = match.group(1).decode("utf-8", "replace") if match else ""
+            for path, entry in _walk(tree, ""):
+                self._add(headers, path, entry, name)
+            return {name: headers}
+        found = {}
+        for name, entry in entries.items():
+            if entry.type_str == "tree" and name not in _ASIDE and not name.startswith("."):
+                found.update(self.packages(entry))
+        return found
+
+    def _add(self, headers: dict[str, bytes], path: str, entry, package: str) -> None:
+        if not _HEADER.search("/" + path):
+            return
+        head, found, rest = f"/{path}".partition("/include/")
+        if path.startswith(f"src/{package}/") and package == "rviz":
+            found, rest, head = "x", path.removeprefix("src/"), ""
+        if self.library == "orocos-kdl" and path.startswith("orocos_kdl/src/"):
+            found, rest, head = "x", "kdl/" + path.removeprefix("orocos_kdl/src/"), ""
+        if package.startswith("rosidl_generator_cpp") or package == "gencpp":
+            return
+        if path.startswith("resource/") and path.endswith((".h.em", ".hpp.em", ".hpp.in")):
+            found, rest, head = "x", f"{package}/{path.removeprefix('resource/')}", ""
+        if not found or _ASIDE & set(head.split("/")):
+            return
+        rest = re.sub(r"\.(?:in|em|template)$", "", rest)
+        first, _, below = rest.partition("/")
+        if below.startswith(first + "/") and first == package:
+            rest = below
+        self.blobs.setdefault(entry.id.raw, None)
+        if self.blobs[entry.id.raw] is None:
+            self.blobs[entry.id.raw] = _read(entry.data)
+        for name in _INTERFACES if rest in ("rclcpp/get_interface.hpp", "rclcpp/interface_traits.hpp") else ("",):
+            made = rest.replace("rclcpp/get_", f"rclcpp/node_interfaces/get_{name}_") if name else rest
+            made = made.replace("rclcpp/interface_", f"rclcpp/node_interfaces/{name}_interface_") if name else made
+            headers.setdefault(made, entry.id.raw)
+
+
+def _walk(tree, prefix: str):
+    for entry in tree:
+        if entry.type_str == "tree":
+            yield from _walk(entry, f"{prefix}{entry.name}/")
+        elif entry.type_str == "blob":
+            yield prefix + entry.name, entry
+
+
+State = dict[str, Header]
+"""Include path to header, of one version of one owner."""
+
+
+def read_clones(folder: Path, names: Iterable[str]) -> Iterator[tuple[str, str, State]]:
+    """(package or library, version, its headers) at every release tag of the clones."""
+    import pygit2
+
+    for name in names:
+        where = _git_directory(folder / name)
+        if where is None:
+            raise FileNotFoundError(f"{folder / name}: no git directory")
+        repository = pygit2.Repository(str(where))
+        clone = Clone(repository, _LIBRARIES.get(name, ""))
+        for ref in sorted(repository.references):
+            tag = ref.removeprefix("refs/tags/")
+            match = _VERSION.match(tag) if ref.startswith("refs/tags/") else None
+            tree = match and _tree(repository, ref)
+            if match and tree:
+                for package, headers in clone.packages(tree).items():
+                    yield package, match.group(1), {h: clone.blobs[b] for h, b in headers.items()}
+
+
+def read_generators(folder: Path) -> Iterator[tuple[str, str, State]]:
+    """What a generated message header includes, as `message1` and `message2` of the generators' versions."""
+    import pygit2
+
+    for name, below, kind, package in (
+        ("ros+gencpp", ("scripts", ""), "msg.h.template", "gencpp"),
+        ("ros2+rosidl", ("rosidl_generator_cpp/resource",), ".em", "rosidl_generator_cpp"),
+    ):
+        where = _git_directory(folder / name)
+        repository = pygit2.Repository(str(where))
+        for ref in sorted(repository.references):
+            match = _VERSION.match(ref.removeprefix("refs/tags/")) if ref.startswith("refs/tags/") else None
+            tree = match and _tree(repository, ref)
+            if not match or not tree:
+                continue
+            found: dict[str, None] = {}
+            for path, entry in _walk(tree, ""):
+                if path.startswith(below) and path.endswith(kind):
+                    text = entry.data.decode("utf-8", "replace")
+                    found.update(
+                        dict.fromkeys(p for p in re.findall(r"""['"\s]*#include\s*[<"]([\w./+]+)[>"]""", text))
+                    )
+                    found.update(dict.fromkeys(re.findall(r"^\s*'((?:rosidl|\w+/)[\w./]+\.hpp)',?$", text, re.M)))
+            if found:
+                yield package, match.group(1), {f"<{package}>": Header(tuple(found), frozenset(), frozenset())}
+
+
+def read_folder(folder: Path) -> State:
+    """The headers of an include folder."""
+    return {
+        path.relative_to(folder).as_posix(): _read(path.read_bytes())
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and _HEADER.search("/" + path.relative_to(folder).as_posix())
+    }
+
+
+_COMPUTED = {
+    "boost/config.hpp": tuple(
+        f"boost/config/{what}.hpp" for what in ("stdlib/libstdcpp3", "compiler/gcc", "platform/linux")
+    ),
+}
+"""Headers to those that they include by a macro, with GCC on Linux."""
+
+
+def direct(state: State, kept) -> dict[str, tuple[str, ...]]:
+    """Header to what it includes, through headers that are not kept. kept: include path to whether it is."""
+
+    def answer(path: str, by: str) -> str:
+        beside = by.rpartition("/")[0]
+        while path.startswith("../"):
+            path, beside = path[3:], beside.rpartition("/")[0]
+        path = path.removeprefix("./")
+        near = f"{beside}/{path}" if beside else path
+        return near if near in state else path
+
+    found = {}
+    for header in state:
+        if not kept(header):
+            continue
+        reached: dict[str, None] = {}
+        stack, seen = [header], {header}
+        while stack:
+            at = stack.pop()
+            for path in (*state[at].includes, *_COMPUTED.get(at, ())):
+                to = answer(path, at)
+                if to in seen:
+                    continue
+                seen.add(to)
+                if to in state and not kept(to):
+                    stack.append(to)
+                elif to != header:
+                    reached[to] = None
+        found[header] = tuple(sorted(reached))
+    return found
+
+
+def table_of(states: dict[str, dict[str, dict[str, tuple[str, ...]]]], libraries, sparse) -> includes.Table:
+    """states: owner to version to header to its includes."""
+    places: dict[str, int] = {}
+    owners = {}
+    for owner, versions in sorted(states.items()):
+        order = sorted(versions, key=parts)
+        rows = {}
+        for header in sorted({h for v in versions.values() for h in v}):
+            runs, last = [], None
+            for version in order:
+                now = versions[version].get(header)
+                if now != last:
+                    last = now
+                    text = "-" if now is None else " ".join(str(places.setdefault(p, len(places))) for p in now)
+                    runs.append(f"{version} {text}".rstrip())
+            rows[header] = ";".join(runs)
+        owners[owner] = rows
+    return includes.Table(tuple(places), owners, frozenset(libraries), frozenset(sparse))
+
+
+def _main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("clones", nargs="+", help="OWNER+NAME")
+    parser.add_argument("--installed", action="append", default=[], metavar="LIBRARY=VERSION=DIR")
+    parser.add_argument("--output", type=Path, default=DATA)
+    asked = parser.parse_args()
+    states: dict[str, dict[str, dict[str, tuple[str, ...]]]] = defaultdict(dict)
+    defining: dict[str, set[str]] = defaultdict(set)
+    announcing: dict[str, set[str]] = defaultdict(set)
+
+    def note(state: State) -> None:
+        for path, header in state.items():
+            for name in header.defined:
+                defining[name].add(path)
+            for name in header.announced:
+                announcing[name].add(path)
+
+    for owner, version, state in (*read_clones(asked.folder, asked.clones), *read_generators(asked.folder)):
+        if version not in states[owner] and state:
+            states[owner][version] = direct(state, lambda h: not _INNER.search(h))
+            note(state)
+    libraries, sparse = set(_LIBRARIES.values()) & set(states), set()
+    used = {p for versions in states.values() for v in versions.values() for found in v.values() for p in found}
+    for item in asked.installed:
+        library, version, where = item.split("=")
+        libraries.add(library)
+        sparse.add(library)
+        state = read_folder(Path(where))
+        states[library][version] = direct(
+            state,
+            lambda h: (
+                h.count("/") == 1
+                or h in used
+                or bool(
+                    re.match(
+                        r"boost/(thread|filesystem|smart_ptr|date_time|function|bind|algorithm/string)/\w+\.hpp|opencv2/(\w+)/\2\.hpp",
+                        h,
+                    )
+                )
+            ),
+        )
+        note({p: h for p, h in state.items() if not p.startswith("boost/")})
+    table = table_of({o: v for o, v in states.items() if any(v.values())}, libraries, sparse)
+    table = msgspec.structs.replace(
+        table,
+        versions={distro: _versions(distro, table) for distro in DISTROS},
+        names={n: tuple(sorted(p)) for n, p in defining.items() if len(p) < 4 and not _PRIVATE.search(n)},
+    )
+    stopped = frozenset().union(*(_stopped(table, ros) for ros in (1, 2)))
+    names = {n: p for n, p in table.names.items() if n in stopped}
+    announced = {n: tuple(sorted(p)) for n, p in announcing.items() if n in names}
+    _write(msgspec.structs.replace(table, names=names, announced=announced), asked.output)
+
+
+def _versions(distro: str, table: includes.Table) -> dict[str, str]:
+    """The version of each owner in a distro, as the shipped snapshot has it at its end."""
+    target = DistroTarget(distro)
+    found = {"gcc": target.library("gcc") or ""}
+    for owner in table.owners:
+        found[owner] = (target.library(owner) if owner in table.libraries else None) or target.version(owner) or ""
+    return {owner: version for owner, version in found.items() if version}
+
+
+def _stopped(table: includes.Table, ros: int) -> set[str]:
+    """Types of which some header brings the definition in one distro and not in the next."""
+    distros = [d for d in DISTROS if d != "rolling" and DistroTarget(d).ros == ros]
+    found: set[str] = set()
+    names = table.names
+    by_header: dict[str, set[str]] = defaultdict(set)
+    shipped = includes.Includes(table)
+    for name, headers in names.items():
+        for header in headers:
+            by_header[header].add(name)
+    for before, after in pairwise(includes.machine_of(d, ros, shipped) for d in distros):
+        for header in shipped.owners_of:
+            if before.includes(header) is None or after.includes(header) is None:
+                continue
+            had, has = before.brought(header).headers, after.brought(header).headers
+            for name in {n for lost in had - has for n in by_header.get(lost, ())} - found:
+                if has.isdisjoint(names[name]) and any(after.includes(h) is not None for h in names[name]):
+                    found.add(name)
+    return found
+
+
+def _write(table: includes.Table, output: Path) -> None:
+    raw = json.dumps(msgspec.to_builtins(table), separators=(",", ":"), sort_keys=True).encode()
+    (output / "includes.json.zst").write_bytes(zstandard.ZstdCompressor(level=19).compress(raw))
+
+
+if __name__ == "__main__":
+    _main()
