@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from ..model.view import Need, View
+from ..model.view import Need, View, weight
 from ..model.workspace import Package
 
-_HOW = {"find_package": 0, "component": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5}
-_ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
-
-
-def weight(need: Need) -> tuple:
-    """Sort key: what is surest to break comes first."""
-    return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at.path, need.at.line)
+__all__ = ["circular", "name_to_declare", "present", "weight"]
 
 
 def present(view: View, name: str) -> bool:

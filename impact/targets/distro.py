@@ -78,8 +78,8 @@ def _known_distros(data: Snapshot) -> tuple[Known, ...]:
     facts = dict(data.rows("SELECT name, facts FROM distro_fact"))
     found = []
     for name, ros, python, status, first, last in data.rows(
-        "SELECT name, ros, python, status, (SELECT min(ts) FROM release WHERE distro = d.id),"
-        " (SELECT max(ts) FROM release WHERE distro = d.id) FROM distro d"
+        "SELECT name, ros, python, status, first, last FROM distro LEFT JOIN"
+        " (SELECT distro, min(ts) AS first, max(ts) AS last FROM release GROUP BY distro) ON distro = id ORDER BY id"
     ):
         fact = msgspec.json.decode(facts[name], type=DistroFacts) if name in facts else None
         found.append(
@@ -155,6 +155,7 @@ class DistroTarget(Target):
         self.name = name or (distro if date is None else f"{distro}@{date}")
         self._library_cells: dict[str, Library] | None = None
         self._released: dict[str, _Released] | None = None
+        self._versions: dict[str, str | None] = {}
         self._names: frozenset[str] | None = None
         self._declared: dict[str, tuple[ReleasedDependency, ...] | None] = {}
         self._held: dict[str, bool] = {}
@@ -170,7 +171,8 @@ class DistroTarget(Target):
         return DistroTarget, (distro, date, platform, versions, name)
 
     def identity(self) -> str:
-        return repr((self._asked, self.name, self.distro, self.date, self.platform, self._overrides, _data_stamp()))
+        stamp = snapshots.data_stamp()
+        return repr((self._asked, self.name, self.distro, self.date, self.platform, self._overrides, stamp))
 
     def changed(
         self,
@@ -254,6 +256,11 @@ class DistroTarget(Target):
         return self._released
 
     def version(self, package: str) -> str | None:
+        if package not in self._versions:
+            self._versions[package] = self._version(package)
+        return self._versions[package]
+
+    def _version(self, package: str) -> str | None:
         if package in self._overrides and self._is_package(package):
             return self._overrides[package] or None
         released = self._packages().get(package)
@@ -394,6 +401,8 @@ class DistroTarget(Target):
 
         For distros whose own manifests are not: what rests on it is likely, not sure.
         """
+        if not self.ever_released(package):
+            return None
         if self._neighbours is None:
             names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
             here = names.index(self.distro) if self.distro in names else 0
@@ -644,15 +653,6 @@ def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
         return bool(evaluate_condition(condition, variables))
     except Exception:
         return False
-
-
-def _data_stamp() -> tuple[tuple[str, int, int], ...]:
-    """Sizes and times of the shipped data files."""
-    return tuple(
-        (path.name, path.stat().st_size, path.stat().st_mtime_ns)
-        for path in sorted(snapshots.DATA.iterdir())
-        if path.is_file()
-    )
 
 
 @functools.cache

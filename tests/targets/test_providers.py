@@ -49,7 +49,7 @@ def test_header_is_provided_by(providers, path, first):
 
 @pytest.mark.parametrize("path", ["config.h", "utils.h", "no/such/header.hpp", ""])
 def test_header_that_says_nothing_about_its_owner(providers, path):
-    assert providers.header(path) == []
+    assert providers.header(path) == ()
 
 
 def test_header_of_a_reviewed_folder_is_not_sure(providers):

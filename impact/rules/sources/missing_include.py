@@ -40,6 +40,7 @@ def missing_include(view: View):
         coming = {name: known for name, known in _dropped(view, newest).items() if name not in here}
     for package in view:
         told = set()
+        beyond: dict[str, list[str]] = {}  # what is not of the standard library and reaches a file
         for need in package.digest.needed_headers:
             known = here.get(need.name) or coming.get(need.name)
             if known is None or need.role == "aside" or not view.active(need.conditions):
@@ -50,7 +51,9 @@ def missing_include(view: View):
             header = row.headers[0]
             if (need.at.path, header) in told:
                 continue
-            outside = [r for r in need.reach if not view.is_standard(r)]
+            outside = beyond.get(need.at.path)
+            if outside is None:
+                outside = beyond[need.at.path] = [r for r in need.reach if not view.is_standard(r)]
             if (row.through and not any(r.startswith(row.through) for r in need.reach)) or (
                 outside and not row.through
             ):
