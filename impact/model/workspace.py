@@ -381,6 +381,7 @@ class _Linker:
                 self.paths_of[owner.path].append(entry.path)
         self.all_paths = frozenset(e.path for e in tree.entries())
         self.by_name = {p.name: p for p in discovered.packages}
+        self._extras: dict[str, tuple[str, ...]] = {}
         self.identity = hashlib.sha1(f"{DIGEST_VERSION} {ros}".encode())
 
     def digests(self, store) -> list[Digest]:
@@ -526,7 +527,9 @@ class _Linker:
 
     def extras(self, package: str) -> tuple[str, ...]:
         """CMake files that a package of the workspace gives its dependants."""
-        place = self.by_name.get(package)
-        if place is None:
-            return ()
-        return extras_of(place.path, self.glob(place, self.paths_of[place.path]))
+        known = self._extras.get(package)
+        if known is None:
+            place = self.by_name.get(package)
+            cmake = [path for path in self.paths_of[place.path] if ".cmake" in path] if place is not None else []
+            known = self._extras[package] = extras_of(place.path, self.glob(place, cmake)) if cmake else ()
+        return known

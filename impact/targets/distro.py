@@ -133,7 +133,7 @@ class DistroTarget(Target):
         data: Snapshot | None = None,
     ):
         self._data = data or snapshots.default()
-        self._neighbours: list[DistroTarget] | None = None
+        self._neighbours: dict[str, DistroTarget] = {}
         self._asked = (distro, date, platform, dict(versions or {}), name)
         row = self._data.row("SELECT id, ros, python FROM distro WHERE name = ?", (distro,))
         if row is None:
@@ -401,17 +401,36 @@ class DistroTarget(Target):
 
         For distros whose own manifests are not: what rests on it is likely, not sure.
         """
-        if not self.ever_released(package):
+        homes = self._distros_with(package)
+        if not homes:
             return None
-        if self._neighbours is None:
-            names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
-            here = names.index(self.distro) if self.distro in names else 0
-            near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
-            self._neighbours = [DistroTarget(name, data=self._data) for name in near if name != self.distro]
-        for neighbour in self._neighbours:
-            if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
-                return found
+        for name in self._nearest:
+            if name in homes:
+                if name not in self._neighbours:
+                    self._neighbours[name] = DistroTarget(name, data=self._data)
+                neighbour = self._neighbours[name]
+                if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
+                    return found
         return None
+
+    @functools.cached_property
+    def _nearest(self) -> list[str]:
+        """The other distros of this generation, the nearest first."""
+        names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
+        here = names.index(self.distro) if self.distro in names else 0
+        near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
+        return [name for name in near if name != self.distro]
+
+    def _distros_with(self, package: str) -> frozenset[str]:
+        """Distros of this generation that have ever released a package."""
+        if not self.ever_released(package):
+            return frozenset()
+        rows = self._data.rows(
+            "SELECT d.name FROM home h JOIN package p ON p.id = h.package JOIN distro d ON d.id = h.distro"
+            " WHERE p.name = ? AND d.ros = ?",
+            (package, self.ros),
+        )
+        return frozenset(name for (name,) in rows)
 
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
@@ -475,14 +494,7 @@ class DistroTarget(Target):
 
     def last_distro(self, package: str) -> str:
         """The newest distro of the same generation that has released a package, empty when none has."""
-        names = [
-            name
-            for (name,) in self._data.rows(
-                "SELECT d.name FROM home h JOIN package p ON p.id = h.package JOIN distro d ON d.id = h.distro"
-                " WHERE p.name = ? AND d.ros = ?",
-                (package, self.ros),
-            )
-        ]
+        names = sorted(self._distros_with(package))
         order = {known.name: place for place, known in enumerate(known_distros(self._data))}
         return max(names, key=lambda name: order.get(name, -1), default="")
 
