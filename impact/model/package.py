@@ -174,8 +174,8 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     version: str = ""
 
     def meant(self, text: str) -> str:
-        """The watched name that a qualified name of C++ is a use of, empty when it is of none. The name itself stands for
-        a bare word that it ends with."""
+        """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
+        a watched bare word ends it."""
         known = self._meant.get(text)
         if known is None:
             wanted = text

@@ -416,7 +416,7 @@ class View:
         return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
 
     def brought_by(self, package: Package) -> dict[str, str]:
-        """The names of closure(), each with the declared name that brings it on the shortest way, empty for the base."""
+        """The names of closure(), each with the declared name that brings it on the shortest way, or an empty text."""
         found = {n: n for n in self._built_with(package)}
         queue = deque(found)
         while queue:
