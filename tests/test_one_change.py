@@ -238,3 +238,15 @@ def test_a_package_says_nothing_that_its_digest_does_not(ws, run, cache, tmp_pat
             assert kept == {"name", "path", "manifest", "build", "build_type"}
             assert all(getattr(package, name) is getattr(package.digest, name) for name in kept)
             assert isinstance(package, Package)
+
+
+def test_what_is_asked_of_names_that_grow_is_answered_anew(ws, run, cache, tmp_path):
+    with open_workspace(ws, Options(targets=("jazzy",), cache=tmp_path / "facts")) as opened:
+        (view,) = opened.views
+        providers, names = view.header("angles/angles.h"), {"rclcpp"}
+        assert not view.answered(providers, names)
+        names.add("angles")
+        assert view.answered(providers, names)
+        assert view.answered(providers, frozenset({"angles"})) and not view.answered(providers, frozenset({"rclpy"}))
+        with pytest.raises(TypeError):
+            view.declared(opened.workspace.packages["arm"])["angles"] = {"build"}  # type: ignore[index]

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property, lru_cache
+from types import MappingProxyType
 from typing import NamedTuple
 
 from ..config import Config
@@ -79,6 +80,8 @@ _BROAD = frozenset({"mrpt"})
 _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 
 _UNCONFIGURED = Config()
+# What may be known by its identity as long as it is kept, since it does not change.
+_LASTING = (frozenset, MappingProxyType)
 
 
 class View:
@@ -90,7 +93,7 @@ class View:
         self._direct: dict[str, tuple[str, ...]] = {}
         self._whole: dict[str, frozenset[str]] = {}
         self._spreads: dict[frozenset[str], frozenset[str]] = {}
-        self._declared: dict[str, dict[str, set[str]]] = {}
+        self._declared: dict[str, Mapping[str, set[str]]] = {}
         self._needs: dict[str, tuple[Need, ...]] = {}
         self._weighed: dict[str, tuple[Need, ...]] = {}
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
@@ -377,11 +380,11 @@ class View:
 
     # -- declared dependencies -----------------------------------------------------------------------------------------
 
-    def declared(self, package: Package) -> dict[str, set[str]]:
+    def declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
         known = self._declared.get(package.name)
         if known is None:
-            known = self._declared[package.name] = self._declares(package)
+            known = self._declared[package.name] = MappingProxyType(self._declares(package))
         return known
 
     def _declares(self, package: Package) -> dict[str, set[str]]:
@@ -475,9 +478,11 @@ class View:
             known = self._debian[name] = frozenset(resolution.packages if resolution else ())
         return known
 
-    def answered(self, providers: tuple[Provider, ...], names: dict[str, set[str]] | frozenset[str]) -> bool:
+    def answered(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
         """True when one of the providers is among the names, as itself, as a key that installs the same package, or as
-        the package that vendors it. Neither may change afterwards."""
+        the package that vendors it."""
+        if not isinstance(names, _LASTING) or type(providers) is not tuple:
+            return self._answers(providers, names)  # they may change until they are asked again
         # Asked of the same two again and again; both are kept, so that no other object gets their ids.
         key = id(providers), id(names)
         known = self._answered.get(key)
@@ -485,7 +490,7 @@ class View:
             known = self._answered[key] = (providers, names, self._answers(providers, names))
         return known[2]
 
-    def _answers(self, providers: tuple[Provider, ...], names: dict[str, set[str]] | frozenset[str]) -> bool:
+    def _answers(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
         for provider in providers:
             if not provider.name or provider.name in names:
                 return True
@@ -500,12 +505,14 @@ class View:
     def _reach(self, names) -> tuple[frozenset[str], frozenset[str]]:
         """What a set of names vendors, and the system packages that its keys install."""
         known = self._reached.get(id(names))
-        if known is None or known[0] is not names:
+        if known is None:
             vendored = frozenset(
                 n.removesuffix("_vendor").removeprefix("rviz_") for n in names if n.endswith("_vendor")
             )
             installed = frozenset().union(*(self.debian(n) for n in names if n not in self.workspace.packages))
-            known = self._reached[id(names)] = (names, vendored, installed)
+            known = (names, vendored, installed)
+            if isinstance(names, _LASTING):
+                self._reached[id(names)] = known
         return known[1], known[2]
 
     # -- who provides --------------------------------------------------------------------------------------------------
