@@ -5,8 +5,10 @@ usage: check.py WORKSPACE [--ros1 WORKSPACE] [--target jazzy] [--repeat 3]
 Every figure is the best of the repeats, wall time of a whole process on this machine, imports included:
     cold       no facts are known (an empty cache folder; the distro data is unpacked already)
     warm       nothing has changed since
-    header     a shared header was changed (the one that most packages of the workspace include)
-    macro      a CMake file that packages give their dependants was changed
+    header     a comment in a shared header was changed (the one that most packages of the workspace include)
+    include    an include was added to that header, so that everything is judged anew
+    macro      a comment in a CMake file that packages give their dependants was changed
+    call       a find_package was added to its first macro, so that who calls it is joined and everything is judged anew
 Anchors: reading the C++ and CMake bytes, parsing them with tree-sitter (if tree_sitter and tree_sitter_cpp are
 installed), and catkin_lint on the ROS 1 workspace (if it is installed), which reads CMake and manifests only.
 """
@@ -15,6 +17,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -23,6 +26,7 @@ import tempfile
 import time
 from pathlib import Path
 
+MACRO = re.compile(r"(?im)^(\s*(?:macro|function)\s*\([^)]*\))")
 SOURCES = (".cpp", ".hpp", ".h", ".cc", ".c", ".cxx", ".hh", ".cmake", "CMakeLists.txt")
 
 
@@ -60,6 +64,8 @@ def main() -> None:
         cache, copy = Path(scratch, "cache"), Path(scratch, "ws")
         shutil.copytree(args.workspace, copy, symlinks=True)
         environment = {**os.environ, "ROSIMPACT_CACHE": str(cache)}
+        # An installed package is compiled; compiling it anew in every run is not what is measured here.
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
         command = [sys.executable, "-m", "rosimpact.impact.cli", "check", str(copy), "--target", args.target, "--quiet"]
         files = sources(copy)
         size = sum(p.stat().st_size for p in files)
@@ -76,11 +82,15 @@ def main() -> None:
         header = most_included(copy)
         macro = next((p for p in sorted(copy.rglob("cmake/*.cmake")) if "Find" not in p.name), None)
 
-        def change(path: Path | None, comment: str):
+        def call() -> None:
+            text = macro.read_text() if macro is not None else ""
+            macro.write_text(MACRO.sub(rf"\1\nfind_package(Of{time.time_ns()})", text, count=1))
+
+        def change(path: Path | None, line: str):
             def touch() -> None:
                 if path is not None:
                     with path.open("a") as file:
-                        file.write(f"{comment} {time.time_ns()}\n")
+                        file.write(line.format(time.time_ns()) + "\n")
 
             return touch
 
@@ -88,9 +98,13 @@ def main() -> None:
             ("cold", *best(args.repeat, forget, command, environment)),
             ("warm", *best(args.repeat + 2, lambda: None, command, environment)),
         ]
-        rows.append(("header", *best(args.repeat, change(header, "//"), command, environment)))
+        rows.append(("header", *best(args.repeat, change(header, "// {}"), command, environment)))
+        rows.append(
+            ("include", *best(args.repeat, change(header, "#include <rclcpp/of_{}.hpp>"), command, environment))
+        )
         if macro is not None:
-            rows.append(("macro", *best(args.repeat, change(macro, "#"), command, environment)))
+            rows.append(("macro", *best(args.repeat, change(macro, "# {}"), command, environment)))
+            rows.append(("call", *best(args.repeat, call, command, environment)))
         rows.append(
             (
                 "--help",

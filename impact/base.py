@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from . import memo
 from .gather import gather
 from .model.view import View
-from .model.watch import watched
 from .model.workspace import link
 from .report.report import Report
 from .tree import GitTree, Tree, TreeError, WorkingTree, at_merge_bases, inside, shown
@@ -111,7 +111,7 @@ def read_pinned(path: Path) -> dict[str, str]:
 def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     """The workspace as it was in another tree, seen by the same targets."""
     gathered = gather(tree, opened.store, jobs=jobs)
-    workspace = link(tree, gathered, opened.store, opened.workspace.ros, watched())
+    workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.watched(opened.store))
     views = [View(workspace, view.target, view.providers, view.config) for view in opened.views]
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views)
 

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from . import findings as after
+from . import memo
 from .config import Config, PathSetting, load, parse
 from .facts.store import Store
 from .gather import Gathered, gather
 from .model.view import View
-from .model.watch import watched
 from .model.workspace import Workspace, link
 from .report.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
 from .rules.cure import Declare, Insert, Replace
@@ -192,7 +192,7 @@ def open_workspace(
     config = settings_of(root, tree, options.config)
     with Store(options.cache) as store:
         gathered = gather(tree, store, jobs=options.jobs, progress=progress)
-        workspace = link(tree, gathered, store, None, watched())
+        workspace = link(tree, gathered, store, None, memo.watched(store))
         gathered.problems += [*workspace.discovered.problems, *_left_out(workspace, gathered)]
         targets = choose_targets(options.targets, config, workspace, tree)
         views = [View(workspace, chosen.target, default_providers(), config) for chosen in targets]
@@ -350,8 +350,6 @@ def judge(
 def _hits(
     opened: Opened, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None
 ) -> Iterator[tuple[str, str, Hit]]:
-    from . import memo
-
     every = list(rules)
     names = [rule.name for rule in every if rule.per_target and rule.family != "interfaces"]
     kept = {view.target.name: memo.recall(opened.store, view, names) for view in opened.views}

@@ -6,11 +6,6 @@ import sys
 from pathlib import Path
 from typing import Any, NamedTuple
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib  # pyright: ignore[reportMissingImports]
-
 
 class ConfigError(ValueError):
     """rosimpact.toml cannot be used; the message names the file and what to change."""
@@ -66,6 +61,10 @@ def load(folder: Path, file: Path | None = None) -> Config:
 
 def parse(data: bytes, path: Path) -> Config:
     """What a rosimpact.toml says. data: its bytes. path: where it lies, for messages. Raises ConfigError."""
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib  # pyright: ignore[reportMissingImports]
     try:
         tables = tomllib.loads(data.decode("utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

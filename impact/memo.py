@@ -5,6 +5,7 @@ A second run on unchanged files then judges nothing anew. Time plays no part: th
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 from collections.abc import Iterable, Sequence
@@ -14,10 +15,13 @@ from pathlib import Path
 import msgspec
 
 from .facts.store import Store
+from .model import watch
 from .model.build import At
+from .model.package import Watched
 from .model.view import View
 from .rules.cure import Declare, Insert, Remove, Replace
 from .rules.rule import Cure, Edit, Hit
+from .targets.snapshot import data_stamp
 from .targets.target import Change, Target
 
 _CURES: dict[str, type] = {kind.__name__: kind for kind in (Declare, Remove, Replace, Insert, Edit)}
@@ -57,6 +61,18 @@ def _code() -> str:
                     f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape")
                 )
     return stamp.hexdigest()
+
+
+def watched(store: Store) -> Watched:
+    """The names that rules look out for, as an earlier run gathered them from the same tables."""
+    name = hashlib.sha1(f"{_code()} {data_stamp()}".encode()).digest()
+    data = store.memo("watched", name)
+    if data is not None:
+        with contextlib.suppress(msgspec.MsgspecError):
+            return msgspec.msgpack.decode(data, type=Watched)
+    names = watch.watched()
+    store.remember("watched", [(name, msgspec.msgpack.encode(names))])
+    return names
 
 
 def key(view: View, rules: Iterable[str]) -> bytes:
@@ -115,9 +131,9 @@ def prepare(store: Store, target: Target) -> None:
         data = store.memo("changes", name)
         if data is not None:
             try:
-                one.set_changes(tuple(Change(*row) for row in msgspec.msgpack.decode(data)))
+                one.set_changes(msgspec.msgpack.decode(data, type=tuple[Change, ...]))
                 continue
-            except (msgspec.MsgspecError, TypeError):
+            except msgspec.MsgspecError:
                 pass
         store.remember("changes", [(name, msgspec.msgpack.encode([tuple(change) for change in one.changes()]))])
 

@@ -436,8 +436,8 @@ def test_a_rule_that_fails_is_named_and_the_others_are_heard(say, ws, monkeypatc
         raise RuntimeError("out of cheese")
         yield
 
-    # What was remembered of this content knows nothing of the failure: content of its own.
-    write(ws, {"src/bad/CMakeLists.txt": CMAKE + "# judged by a rule that fails\n"})
+    # What was remembered of such a package knows nothing of the failure: a package of its own.
+    write(ws, {"src/bad/CMakeLists.txt": CMAKE + "find_package(judged_by_a_rule_that_fails)\n"})
     rules = registry.all_rules()
     monkeypatch.setitem(registry._RULES, "removed-header", rules["removed-header"]._replace(run=fails))
     said = say("check", ws, "--target", "jazzy", "--target", "humble", "--format", "json")
@@ -749,7 +749,7 @@ def test_unpacked_data_that_broke_is_unpacked_again(say, ws, data, tmp_path, spo
     for file in unpacked:
         file.chmod(0o644)
         spoil(file)
-    write(ws, {"src/bad/src/node.cpp": "#include <tf2/time.h>\n"})  # or the first answer is remembered
+    write(ws, {"src/bad/CMakeLists.txt": CMAKE + "find_package(Eigen3)\n"})  # or the first answer is remembered
     monkeypatch.setattr(snapshot, "_default", snapshot.Snapshot(data, tmp_path / "unpacked", data))
     monkeypatch.setattr(providers, "_default", providers.Providers(data, tmp_path / "unpacked"))
     said = check(say, ws)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import posixpath
 import re
 from collections.abc import Callable, Container, Iterable, Iterator
+from functools import cached_property
 
 import msgspec
 
@@ -200,7 +201,7 @@ def role_of_folder(path: str) -> str | None:
     return None
 
 
-class Watched(msgspec.Struct, frozen=True):
+class Watched(msgspec.Struct, frozen=True, dict=True):
     """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
     of the standard library the headers that offer them. uses: labels and patterns of uses by a word that each has in
     it, for C++; modules: the same for Python, by the package that is imported. fields: the table of interfaces."""
@@ -213,6 +214,23 @@ class Watched(msgspec.Struct, frozen=True):
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     version: str = ""
     fields: Fields | None = None
+
+    def meant(self, text: str) -> str:
+        """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
+        a watched bare word ends it."""
+        known = self._meant.get(text)
+        if known is None:
+            wanted = text
+            while wanted not in self.qualified and "::" in wanted:
+                wanted = wanted.rpartition("::")[0]
+            if wanted not in self.qualified:
+                wanted = text if text in self.words or text.rsplit("::", 1)[-1] in self.words else ""
+            known = self._meant[text] = wanted
+        return known
+
+    @cached_property
+    def _meant(self) -> dict[str, str]:
+        return {}
 
 
 def digest_of(
@@ -430,14 +448,9 @@ class _Join:
             reach = None
             for name in facts.qualified:
                 text = name.text.removeprefix("::")
-                wanted = text
-                while wanted not in watched.qualified and "::" in wanted:
-                    wanted = wanted.rpartition("::")[0]
-                if wanted in watched.qualified:
+                wanted = watched.meant(text)
+                if wanted:
                     names.append(NameUse(wanted, At(path, name.line, name.column), role, public, "cpp",
-                                         conditions + name.conditions, targets))  # fmt: skip
-                elif text in watched.words or text.rsplit("::", 1)[-1] in watched.words:
-                    names.append(NameUse(text, At(path, name.line, name.column), role, public, "cpp",
                                          conditions + name.conditions, targets))  # fmt: skip
                 headers = watched.headers_of.get(text)
                 if headers is not None:

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property, lru_cache
+from types import MappingProxyType
 from typing import NamedTuple
 
 from ..config import Config
@@ -57,6 +58,15 @@ class Need(NamedTuple):
     targets: tuple[str, ...] = ()
 
 
+_HOW = {"find_package": 0, "component": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5}
+_ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
+
+
+def weight(need: Need) -> tuple:
+    """Sort key: what is surest to break comes first."""
+    return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at.path, need.at.line)
+
+
 class Misnamed(NamedTuple):
     """Why an include path cannot be right, and what to write."""
 
@@ -73,6 +83,8 @@ _BROAD = frozenset({"mrpt"})
 _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 
 _UNCONFIGURED = Config()
+# What may be known by its identity as long as it is kept, since it does not change.
+_LASTING = (frozenset, MappingProxyType)
 
 
 class View:
@@ -80,15 +92,21 @@ class View:
 
     def __init__(self, workspace: Workspace, target: Target, providers, config: Config = _UNCONFIGURED):
         self.workspace, self.target, self.providers, self.config = workspace, target, providers, config
-        self._closures: dict[tuple[str, frozenset[str]], dict[str, str]] = {}
+        self._closures: dict[str, frozenset[str]] = {}
+        self._direct: dict[str, tuple[str, ...]] = {}
+        self._whole: dict[str, frozenset[str]] = {}
+        self._spreads: dict[frozenset[str], frozenset[str]] = {}
+        self._declared: dict[str, Mapping[str, set[str]]] = {}
         self._needs: dict[str, tuple[Need, ...]] = {}
+        self._weighed: dict[str, tuple[Need, ...]] = {}
+        self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
         self._headers: dict[str, tuple[Provider, ...]] = {}
         self._cmake: dict[str, tuple[Provider, ...]] = {}
         self._modules: dict[str, tuple[Provider, ...]] = {}
         self._debian: dict[str, frozenset[str]] = {}
         self._sealed: dict[str, list[str]] = {}
         self._held: dict[tuple[Condition, ...], bool | None] = {}
-        self._reached: dict[int, tuple[object, frozenset[str], set[str]]] = {}
+        self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._standard: dict[str, bool] = {}
         self._outward_of: dict[tuple[str, ...], tuple[frozenset[str], frozenset[str]]] = {}
         self._lost: dict[str, Misnamed | None] = {}
@@ -300,10 +318,7 @@ class View:
         name, version = lacking[0]
         if any(self.nested_header(owner, path) for owner, _ in lacking) or path.startswith(_GENERATED):
             return None
-        if not any(
-            self.providers.has_header(name, header, target.distro, version)
-            for header, _ in self.providers.headers_of(name)
-        ):
+        if not self.providers.has_headers(name, target.distro, version):
             return None  # a release without any header in its tree gets them while it is built
         spans = self.providers.header_history(name, path)
         if not spans:
@@ -568,8 +583,14 @@ class View:
 
     # -- declared dependencies -----------------------------------------------------------------------------------------
 
-    def declared(self, package: Package) -> dict[str, set[str]]:
+    def declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
+        known = self._declared.get(package.name)
+        if known is None:
+            known = self._declared[package.name] = MappingProxyType(self._declares(package))
+        return known
+
+    def _declares(self, package: Package) -> dict[str, set[str]]:
         found: dict[str, set[str]] = {}
         for dependency in package.manifest.dependencies:
             if dependency.kind in ("conflict", "replace", "group", "member_of_group"):
@@ -589,21 +610,20 @@ class View:
             return ()
         return [d.name for d in released if d.kind in _INSTALLED_WITH]
 
-    def closure(self, package: Package, kinds: frozenset[str] = _BUILT_WITH) -> dict[str, str]:
-        """Everything on a machine that has just what the package declares: name to the declared name that brings it."""
-        key = (package.name, kinds)
-        known = self._closures.get(key)
+    def closure(self, package: Package) -> frozenset[str]:
+        """Everything on a machine that has just what the package declares, the package itself included."""
+        known = self._closures.get(package.name)
         if known is None:
-            start = [n for n, k in self.declared(package).items() if k & kinds]
-            known = dict.fromkeys(_ALWAYS, "")
-            known[package.name] = package.name
-            known.update(self.spread(start))
-            self._closures[key] = known
+            known = self.spread(self._built_with(package)).union(_ALWAYS, (package.name,))
+            self._closures[package.name] = known
         return known
 
-    def spread(self, names: Iterable[str]) -> dict[str, str]:
-        """Transitive closure of installed_with over names, each with the start it was reached from."""
-        found = {n: n for n in names}
+    def _built_with(self, package: Package) -> list[str]:
+        return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
+
+    def brought_by(self, package: Package) -> dict[str, str]:
+        """The names of closure(), each with the declared name that brings it on the shortest way, or an empty text."""
+        found = {n: n for n in self._built_with(package)}
         queue = deque(found)
         while queue:
             name = queue.popleft()
@@ -611,11 +631,32 @@ class View:
                 if other not in found:
                     found[other] = found[name]
                     queue.append(other)
-        return found
+        return {**dict.fromkeys(_ALWAYS, ""), package.name: package.name, **found}
 
-    @cached_property
-    def _direct(self) -> dict[str, tuple[str, ...]]:
-        return {}
+    def spread(self, names: Iterable[str]) -> frozenset[str]:
+        """These names and everything that is installed along with them."""
+        start = frozenset(names)
+        known = self._spreads.get(start)
+        if known is None:
+            known = self._spreads[start] = frozenset().union(*map(self._installed_whole, start))
+        return known
+
+    def _installed_whole(self, name: str) -> frozenset[str]:
+        """A name and everything that is installed along with it."""
+        known = self._whole.get(name)
+        if known is None:
+            found, waiting = {name}, [name]
+            while waiting:
+                for other in self._installed_with(waiting.pop()):
+                    if other not in found:
+                        found.add(other)
+                        whole = self._whole.get(other)
+                        if whole is None:
+                            waiting.append(other)
+                        else:
+                            found |= whole
+            known = self._whole[name] = frozenset(found)
+        return known
 
     def _installed_with(self, name: str) -> tuple[str, ...]:
         known = self._direct.get(name)
@@ -623,14 +664,14 @@ class View:
             known = self._direct[name] = tuple(self.installed_with(name))
         return known
 
-    def blind(self, package: Package) -> list[str]:
-        """Declared packages whose own dependencies are not known anywhere, so that the closure may lack something."""
+    def blind(self, package: Package) -> bool:
+        """True when dependencies of something in the closure are not known anywhere, so that it may lack something."""
         target = self.target
-        return [
-            n for n in self.closure(package)
-            if n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
+        return any(
+            n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
             and target.dependencies(n) is None and target.similar_dependencies(n) is None
-        ]  # fmt: skip
+            for n in self.closure(package)
+        )  # fmt: skip
 
     def sealed(self, package: Package) -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
@@ -651,9 +692,19 @@ class View:
             known = self._debian[name] = frozenset(resolution.packages if resolution else ())
         return known
 
-    def answered(self, providers: Iterable[Provider], names: dict[str, str] | dict[str, set[str]] | set[str]) -> bool:
+    def answered(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
         """True when one of the providers is among the names, as itself, as a key that installs the same package, or as
         the package that vendors it."""
+        if not isinstance(names, _LASTING) or type(providers) is not tuple:
+            return self._answers(providers, names)  # they may change until they are asked again
+        # Asked of the same two again and again; both are kept, so that no other object gets their ids.
+        key = id(providers), id(names)
+        known = self._answered.get(key)
+        if known is None:
+            known = self._answered[key] = (providers, names, self._answers(providers, names))
+        return known[2]
+
+    def _answers(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
         for provider in providers:
             if not provider.name or provider.name in names:
                 return True
@@ -665,18 +716,17 @@ class View:
                 return True
         return False
 
-    def _reach(self, names) -> tuple[frozenset[str], set[str]]:
+    def _reach(self, names) -> tuple[frozenset[str], frozenset[str]]:
         """What a set of names vendors, and the system packages that its keys install."""
         known = self._reached.get(id(names))
-        if known is None or known[0] is not names:
+        if known is None:
             vendored = frozenset(
                 n.removesuffix("_vendor").removeprefix("rviz_") for n in names if n.endswith("_vendor")
             )
-            installed: set[str] = set()
-            for name in names:
-                if name not in self.workspace.packages:
-                    installed |= self.debian(name)
-            known = self._reached[id(names)] = (names, vendored, installed)
+            installed = frozenset().union(*(self.debian(n) for n in names if n not in self.workspace.packages))
+            known = (names, vendored, installed)
+            if isinstance(names, _LASTING):
+                self._reached[id(names)] = known
         return known[1], known[2]
 
     # -- who provides --------------------------------------------------------------------------------------------------
@@ -781,6 +831,13 @@ class View:
             known = self._needs[package.name] = tuple(self._collect(package))
         return known
 
+    def weighed(self, package: Package) -> tuple[Need, ...]:
+        """The same, what is surest to break first."""
+        known = self._weighed.get(package.name)
+        if known is None:
+            known = self._weighed[package.name] = tuple(sorted(self.needs(package), key=weight))
+        return known
+
     def _collect(self, package: Package) -> Iterator[Need]:
         digest = package.digest
         for found in package.build.found:
@@ -814,8 +871,8 @@ class View:
             if not providers:
                 self.unresolved["include"].add(include.path)
                 continue
-            if any(not p.name for p in providers):
-                continue
+            if not providers[0].name:
+                continue  # the compiler has it, and nobody else is asked
             yield Need("include", include.path, providers, include.at, include.role, self.certain(include.conditions),
                        True, include.public, include.targets)  # fmt: skip
         for item in digest.imports:

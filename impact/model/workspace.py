@@ -1,7 +1,8 @@
 """The linked workspace: every package's digest, and who in the workspace offers what.
 
 A digest is remembered by the content of everything it was joined from: the names of the package's files, their content
-ids, and those of CMake files of other packages that its CMake reads. Time plays no part in it.
+ids, and those of CMake files of other packages that its CMake reads. Time plays no part in it. The identity of the
+workspace is made of the digests themselves: an edit that changes none of them changes nothing that rules can see.
 """
 
 from __future__ import annotations
@@ -90,7 +91,7 @@ class Workspace:
     ):
         self.packages: dict[str, Package] = {d.name: Package(d) for d in packages}
         self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
-        # Differs whenever anything that the digests were joined from does.
+        # Differs whenever a digest, their order or the generation does.
         self.identity = identity
         self._interface_stems: dict[str, tuple[frozenset[str], frozenset[str]]] = {}
         self._provided: dict[str, list[str]] = {}
@@ -150,8 +151,6 @@ class Workspace:
                     found[name[:-3]] = package.name
                 elif name.endswith(".proto"):
                     found[name.replace(".proto", ".pb.h")] = package.name
-                elif name.endswith((".yaml", ".yml")):
-                    pass
         return found
 
     @cached_property
@@ -174,9 +173,10 @@ class Workspace:
         found: dict[str, set[str]] = {}
         for package in self:
             for path in package.digest.files:
-                match = re.match(r"Find(.+)\.cmake$", posixpath.basename(path))
-                if match:
-                    found.setdefault(match.group(1), set()).add(package.name)
+                if path.endswith(".cmake"):
+                    name = posixpath.basename(path).removesuffix(".cmake")
+                    if name.startswith("Find") and name != "Find":
+                        found.setdefault(name.removeprefix("Find"), set()).add(package.name)
         return found
 
     @cached_property
@@ -188,10 +188,10 @@ class Workspace:
             if package.build.project:
                 found.setdefault(package.build.project, package.name)
             for path in package.digest.files:
-                name = posixpath.basename(path)
-                match = re.match(r"(.+?)-?[Cc]onfig\.cmake(?:\.in)?$", name)
-                if match:
-                    found.setdefault(match.group(1), package.name)
+                if path.endswith((".cmake", ".cmake.in")):
+                    match = _CONFIGURATION.match(posixpath.basename(path))
+                    if match:
+                        found.setdefault(match.group(1), package.name)
         return found
 
     def provides_header(self, include: str) -> list[str]:
@@ -276,6 +276,9 @@ class Workspace:
                     if owner != package.name:
                         found.setdefault(owner, set()).add(package.name)
         return found
+
+
+_CONFIGURATION = re.compile(r"(.+?)-?[Cc]onfig\.cmake(?:\.in)?$")
 
 
 def importable(package: Package) -> set[str]:
@@ -370,7 +373,8 @@ class _Linker:
                 self.paths_of[owner.path].append(entry.path)
         self.all_paths = frozenset(e.path for e in tree.entries())
         self.by_name = {p.name: p for p in discovered.packages}
-        self.identity = hashlib.sha1()
+        self._extras: dict[str, tuple[str, ...]] = {}
+        self.identity = hashlib.sha1(f"{DIGEST_VERSION} {ros}".encode())
 
     def digests(self, store) -> list[Digest]:
         found: dict[str, Digest] = {}
@@ -386,25 +390,33 @@ class _Linker:
                 size = int.from_bytes(blob[:4], "big")
                 read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
                 if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items()):
-                    self.identity.update(keys[place.path] + blob[: 4 + size])
-                    found[place.path] = decoder.decode(memoryview(blob)[4 + size :])
+                    packed = memoryview(blob)[4 + size :]
+                    self.identify(packed)
+                    found[place.path] = decoder.decode(packed)
                     continue
             try:
                 digest, read = self.join(place)
             except Exception as error:
                 # One package that nobody foresaw must not take the others with it.
-                found[place.path] = self.failed(place, error)
-                continue
+                digest, read = self.failed(place, error), None
             found[place.path] = digest
-            head = encoder.encode(read)
-            self.identity.update(keys[place.path] + len(head).to_bytes(4, "big") + head)
             try:
-                fresh.append((keys[place.path], len(head).to_bytes(4, "big") + head + encoder.encode(digest)))
+                packed, head = encoder.encode(digest), encoder.encode(read)
             except UnicodeEncodeError:
-                continue  # names that are no UTF-8 cannot be stored, and are read anew each time
+                # Names that are no UTF-8 cannot be stored, and are read anew each time.
+                self.identify(repr(digest).encode("utf-8", "backslashreplace"))
+                continue
+            self.identify(packed)
+            if read is not None:
+                fresh.append((keys[place.path], len(head).to_bytes(4, "big") + head + packed))
         if store is not None and fresh:
             store.remember("digest", fresh)
         return [found[p.path] for p in places]
+
+    def identify(self, digest: bytes | memoryview) -> None:
+        """Takes a digest, as bytes, into the workspace's identity."""
+        self.identity.update(len(digest).to_bytes(8, "big"))
+        self.identity.update(digest)
 
     def failed(self, place, error: Exception) -> Digest:
         """What stands for a package whose join failed: its manifest, and a problem that says so."""
@@ -507,7 +519,9 @@ class _Linker:
 
     def extras(self, package: str) -> tuple[str, ...]:
         """CMake files that a package of the workspace gives its dependants."""
-        place = self.by_name.get(package)
-        if place is None:
-            return ()
-        return extras_of(place.path, self.glob(place, self.paths_of[place.path]))
+        known = self._extras.get(package)
+        if known is None:
+            place = self.by_name.get(package)
+            cmake = [path for path in self.paths_of[place.path] if ".cmake" in path] if place is not None else []
+            known = self._extras[package] = extras_of(place.path, self.glob(place, cmake)) if cmake else ()
+        return known

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..model.package import NameUse
-from ..model.view import Need, View
+from ..model.view import Need, View, weight
 from ..model.workspace import Package
 from ..targets.library import default_standard, standard_year
 from ..targets.target import Change
@@ -13,13 +13,7 @@ from ..targets.uses import standards_of
 from ..targets.version import at_least
 from .rule import Hit
 
-_HOW = {"find_package": 0, "component": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5}
-_ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
-
-
-def weight(need: Need) -> tuple:
-    """Sort key: what is surest to break comes first."""
-    return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at.path, need.at.line)
+__all__ = ["circular", "name_to_declare", "present", "weight"]
 
 
 def present(view: View, name: str) -> bool:

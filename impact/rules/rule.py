@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import NamedTuple
 
 from .cure import Declare, Insert, Remove, Replace
@@ -91,10 +92,15 @@ def rule(*, severity: str, preview: bool = False, per_target: bool = True):
 
 def all_rules() -> dict[str, Rule]:
     """Every rule by name, importing the families on first use."""
+    _import_families()
+    return dict(sorted(_RULES.items()))
+
+
+@cache
+def _import_families() -> None:
     package = importlib.import_module(__name__.rpartition(".")[0])
     for family in pkgutil.iter_modules(package.__path__, package.__name__ + "."):
         if family.ispkg:
             folder = importlib.import_module(family.name)
             for module in pkgutil.iter_modules(folder.__path__, folder.__name__ + "."):
                 importlib.import_module(module.name)
-    return dict(sorted(_RULES.items()))

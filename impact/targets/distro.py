@@ -79,8 +79,8 @@ def _known_distros(data: Snapshot) -> tuple[Known, ...]:
     facts = dict(data.rows("SELECT name, facts FROM distro_fact"))
     found = []
     for name, ros, python, status, first, last in data.rows(
-        "SELECT name, ros, python, status, (SELECT min(ts) FROM release WHERE distro = d.id),"
-        " (SELECT max(ts) FROM release WHERE distro = d.id) FROM distro d"
+        "SELECT name, ros, python, status, first, last FROM distro LEFT JOIN"
+        " (SELECT distro, min(ts) AS first, max(ts) AS last FROM release GROUP BY distro) ON distro = id ORDER BY id"
     ):
         fact = msgspec.json.decode(facts[name], type=DistroFacts) if name in facts else None
         found.append(
@@ -136,7 +136,7 @@ class DistroTarget(Target):
         rules: Mapping[str, Any] | None = None,
     ):
         self._data = data or snapshots.default()
-        self._neighbours: list[DistroTarget] | None = None
+        self._neighbours: dict[str, DistroTarget] = {}
         self._asked = (distro, date, platform, dict(versions or {}), name)
         self._rules = dict(rules or {})
         row = self._data.row("SELECT id, ros, python FROM distro WHERE name = ?", (distro,))
@@ -159,6 +159,7 @@ class DistroTarget(Target):
         self.name = name or (distro if date is None else f"{distro}@{date}")
         self._library_cells: dict[str, Library] | None = None
         self._released: dict[str, _Released] | None = None
+        self._versions: dict[str, str | None] = {}
         self._names: frozenset[str] | None = None
         self._declared: dict[str, tuple[ReleasedDependency, ...] | None] = {}
         self._held: dict[str, bool] = {}
@@ -174,8 +175,10 @@ class DistroTarget(Target):
         return DistroTarget, (distro, date, platform, versions, name, None, self._rules)
 
     def identity(self) -> str:
-        return repr((self._asked, self.name, self.distro, self.date, self.platform, self._overrides, self._rules,
-                     _data_stamp()))  # fmt: skip
+        stamp = snapshots.data_stamp()
+        return repr(
+            (self._asked, self.name, self.distro, self.date, self.platform, self._overrides, self._rules, stamp)
+        )
 
     def changed(
         self,
@@ -266,6 +269,11 @@ class DistroTarget(Target):
         return self._released
 
     def version(self, package: str) -> str | None:
+        if package not in self._versions:
+            self._versions[package] = self._version(package)
+        return self._versions[package]
+
+    def _version(self, package: str) -> str | None:
         if package in self._overrides and self._is_package(package):
             return self._overrides[package] or None
         released = self._packages().get(package)
@@ -412,15 +420,36 @@ class DistroTarget(Target):
 
         For distros whose own manifests are not: what rests on it is likely, not sure.
         """
-        if self._neighbours is None:
-            names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
-            here = names.index(self.distro) if self.distro in names else 0
-            near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
-            self._neighbours = [DistroTarget(name, data=self._data) for name in near if name != self.distro]
-        for neighbour in self._neighbours:
-            if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
-                return found
+        homes = self._distros_with(package)
+        if not homes:
+            return None
+        for name in self._nearest:
+            if name in homes:
+                if name not in self._neighbours:
+                    self._neighbours[name] = DistroTarget(name, data=self._data)
+                neighbour = self._neighbours[name]
+                if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
+                    return found
         return None
+
+    @functools.cached_property
+    def _nearest(self) -> list[str]:
+        """The other distros of this generation, the nearest first."""
+        names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
+        here = names.index(self.distro) if self.distro in names else 0
+        near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
+        return [name for name in near if name != self.distro]
+
+    def _distros_with(self, package: str) -> frozenset[str]:
+        """Distros of this generation that have ever released a package."""
+        if not self.ever_released(package):
+            return frozenset()
+        rows = self._data.rows(
+            "SELECT d.name FROM home h JOIN package p ON p.id = h.package JOIN distro d ON d.id = h.distro"
+            " WHERE p.name = ? AND d.ros = ?",
+            (package, self.ros),
+        )
+        return frozenset(name for (name,) in rows)
 
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
@@ -487,14 +516,7 @@ class DistroTarget(Target):
 
     def last_distro(self, package: str) -> str:
         """The newest distro of the same generation that has released a package, empty when none has."""
-        names = [
-            name
-            for (name,) in self._data.rows(
-                "SELECT d.name FROM home h JOIN package p ON p.id = h.package JOIN distro d ON d.id = h.distro"
-                " WHERE p.name = ? AND d.ros = ?",
-                (package, self.ros),
-            )
-        ]
+        names = sorted(self._distros_with(package))
         order = {known.name: place for place, known in enumerate(known_distros(self._data))}
         return max(names, key=lambda name: order.get(name, -1), default="")
 
@@ -668,15 +690,6 @@ def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
         return bool(evaluate_condition(condition, variables))
     except Exception:
         return False
-
-
-def _data_stamp() -> tuple[tuple[str, int, int], ...]:
-    """Sizes and times of the shipped data files."""
-    return tuple(
-        (path.name, path.stat().st_size, path.stat().st_mtime_ns)
-        for path in sorted(snapshots.DATA.iterdir())
-        if path.is_file()
-    )
 
 
 @functools.cache

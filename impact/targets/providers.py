@@ -48,13 +48,17 @@ release known still counts). ros_header: where a package's header is. ros_packag
 ros_module, ros_cmake: packages, space separated.
 """
 
-FACT_SCHEMA = "CREATE TABLE fact(kind TEXT, name TEXT, entries TEXT, PRIMARY KEY(kind, name)) WITHOUT ROWID;"
-"""Filled from data/providers.yaml. kind: a table's name. entries: as in provider, `ros:NAME` for a released package."""
+FACT_SCHEMA = """
+CREATE TABLE fact(kind TEXT, name TEXT, entries TEXT, PRIMARY KEY(kind, name)) WITHOUT ROWID;
+CREATE INDEX ros_header_of ON ros_header(package, pattern);
+"""
+"""Made while unpacking. fact is filled from data/providers.yaml: kind is a table's name, entries are as in provider,
+`ros:NAME` for a released package. The index is quicker made than shipped."""
 
 BY_FOLDER = 1 << 30
 """Bit in header.platforms: a bare file name that is found only where a package's own folder is on the include path."""
 
-_FORMAT = 1
+_FORMAT = 2
 _LIBC = Provider("system", "", "")
 
 
@@ -78,19 +82,28 @@ class Providers:
         self._sets: dict[int, tuple[Provider, ...]] = {}
         self._spans: dict[int, tuple[HeaderSpan, ...]] = {}
         self._releases: dict[str, tuple[HeaderSpan, ...]] = {}
+        self._headers: dict[str, tuple[Provider, ...]] = {}
+        self._found: dict[tuple[str, str], tuple[int, int] | None] = {}
+        self._patterns: dict[str, tuple[int, ...]] = {}
 
     def __reduce__(self):
         return Providers, (self._data, self._cache)
 
     # Lookups
 
-    def header(self, path: str) -> list[Provider]:
+    def header(self, path: str) -> tuple[Provider, ...]:
         """Who installs a header that is included as path (`ros/ros.h`, `opencv2/core.hpp`), best first.
 
         A provider with an empty name is the C library, the kernel's headers or the compiler. That `pkg/x.h` is of the
         released package `pkg` is a convention which the caller adds; what is here was seen in a file list. Released
         packages of both ROS generations are listed; the caller knows which its target has.
         """
+        known = self._headers.get(path)
+        if known is None:
+            known = self._headers[path] = tuple(self._header(path))
+        return known
+
+    def _header(self, path: str) -> list[Provider]:
         found = self._facts("header", path)
         system = self._system("header", path)
         released = [
@@ -204,10 +217,15 @@ class Providers:
             return None
         return _within(self.header_history(package, header), distro, version)
 
-    def headers_of(self, package: str) -> tuple[tuple[str, tuple[HeaderSpan, ...]], ...]:
-        """Every header that a ROS package ever had, with the releases that have it."""
-        rows = self._rows("SELECT path, pattern FROM ros_header WHERE package = ? ORDER BY path", package)
-        return tuple((path, self._pattern(number)) for path, number in rows)
+    def has_headers(self, package: str, distro: str, version: str) -> bool | None:
+        """Whether a package's release in a distro has any header; None when that release's tree is not known."""
+        if not _within(self.known_releases(package), distro, version):
+            return None
+        numbers = self._patterns.get(package)
+        if numbers is None:
+            rows = self._rows("SELECT DISTINCT pattern FROM ros_header WHERE package = ?", package)
+            numbers = self._patterns[package] = tuple(number for (number,) in rows)
+        return any(_within(self._pattern(number), distro, version) for number in numbers)
 
     def _vendors(self, key: str) -> list[Provider]:
         return self._facts("vendor", key)
@@ -224,19 +242,32 @@ class Providers:
     # Rows
 
     def _facts(self, kind: str, name: str) -> list[Provider]:
-        found: list[Provider] = []
-        for (entries,) in self._rows("SELECT entries FROM fact WHERE kind = ? AND name = ?", kind, name):
-            found.extend(_decode(entries))
-        return found
+        entries = self._reviewed.get((kind, name))
+        return [] if entries is None else _decode(entries)
+
+    @cached_property
+    def _reviewed(self) -> dict[tuple[str, str], str]:
+        """The facts of data/providers.yaml, a few hundred, by kind and name."""
+        return {(kind, name): entries for kind, name, entries in self._rows("SELECT kind, name, entries FROM fact")}
 
     def _system(self, table: str, name: str) -> list[Provider]:
-        for number, platforms in self._rows(f"SELECT provider, platforms FROM {table} WHERE name = ?", name):
-            known = self._sets.get(number)
-            if known is None:
-                ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
-                known = self._sets[number] = tuple(_decode(entries))
-            return [provider._replace(sure=False) for provider in known] if platforms & BY_FOLDER else list(known)
-        return []
+        row = self._row(table, name)
+        if row is None:
+            return []
+        number, platforms = row
+        known = self._sets.get(number)
+        if known is None:
+            ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
+            known = self._sets[number] = tuple(_decode(entries))
+        return [provider._replace(sure=False) for provider in known] if platforms & BY_FOLDER else list(known)
+
+    def _row(self, table: str, name: str) -> tuple[int, int] | None:
+        """(provider, platforms) of a name in one of the tables of the system's packages, None when it is not there."""
+        key = table, name
+        if key not in self._found:
+            rows = self._rows(f"SELECT provider, platforms FROM {table} WHERE name = ?", name)
+            self._found[key] = rows[0] if rows else None
+        return self._found[key]
 
     def _ros(self, table: str, name: str) -> list[Provider]:
         for (packages,) in self._rows(f"SELECT packages FROM {table} WHERE name = ?", name):
@@ -244,9 +275,10 @@ class Providers:
         return []
 
     def _platforms_of(self, table: str, name: str) -> tuple[str, ...]:
-        for (bits,) in self._rows(f"SELECT platforms FROM {table} WHERE name = ?", name):
-            return tuple(platform for place, platform in enumerate(self.platforms) if bits >> place & 1)
-        return ()
+        row = self._row(table, name)
+        if row is None:
+            return ()
+        return tuple(platform for place, platform in enumerate(self.platforms) if row[1] >> place & 1)
 
     def _pattern(self, number: int) -> tuple[HeaderSpan, ...]:
         known = self._spans.get(number)

@@ -101,6 +101,12 @@ def unpack(data: Path = DATA) -> bytes:
     return unpacked.decompress(data / "distros.sqlite.zst", shipped_info(data).sha256, "snapshot.json")
 
 
+def data_stamp() -> tuple[tuple[str, int, int], ...]:
+    """Sizes and times of the shipped data files; differs whenever one of them does."""
+    files = ((path.name, path.stat()) for path in sorted(DATA.iterdir()) if path.is_file())
+    return tuple((name, status.st_size, status.st_mtime_ns) for name, status in files)
+
+
 def updated_folder() -> Path:
     """Where `rosimpact data update` keeps what it made; it is used while it is newer than what is shipped."""
     return cache_folder() / "updated"

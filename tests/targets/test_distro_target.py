@@ -261,6 +261,13 @@ def test_closure_follows_exports_and_ends_at_keys():
     assert target("jazzy").closure("no_such_package") == frozenset()
 
 
+def test_dependencies_of_the_nearest_distro_that_knows_a_package():
+    jazzy = target("jazzy")
+    assert jazzy.dependencies("orocos_kdl") is None
+    assert {d.name for d in jazzy.similar_dependencies("orocos_kdl")} >= {"cmake", "eigen"}
+    assert jazzy.similar_dependencies("eigen") is None and jazzy.similar_dependencies("no_such_package") is None
+
+
 def test_history_and_since():
     jazzy = target("jazzy")
     steps = jazzy.history("cv_bridge")

@@ -49,12 +49,25 @@ def test_header_is_provided_by(providers, path, first):
 
 @pytest.mark.parametrize("path", ["config.h", "utils.h", "no/such/header.hpp", ""])
 def test_header_that_says_nothing_about_its_owner(providers, path):
-    assert providers.header(path) == []
+    assert providers.header(path) == ()
 
 
 def test_header_of_a_reviewed_folder_is_not_sure(providers):
     (found,) = providers.header("gz/math/Some_new_header.hh")
     assert (found.kind, found.name, found.sure) == ("ros", "gz_math_vendor", False)
+
+
+@pytest.mark.parametrize(
+    ("package", "distro", "version", "there"),
+    [
+        ("angles", "jazzy", "1.16.0", True),
+        ("ament_cmake_core", "jazzy", "2.5.0", False),  # a release without a header in its tree
+        ("angles", "jazzy", "0.0.1", None),  # no such release
+        ("no_such_package", "jazzy", "1.0.0", None),
+    ],
+)
+def test_whether_a_release_has_headers_at_all(providers, package, distro, version, there):
+    assert providers.has_headers(package, distro, version) is there
 
 
 @pytest.mark.parametrize(

@@ -156,7 +156,7 @@ def _may_bring(view: View, change: Change, path: str) -> bool:
         return False
     providers = view.header(path)
     keys = {provider.name for provider in view.cmake(_CMAKE_NAME.get(change.package, change.package))}
-    return not providers or any(p.kind == "ros" and keys & view.spread((p.name,)).keys() for p in providers)
+    return not providers or any(p.kind == "ros" and not keys.isdisjoint(view.spread((p.name,))) for p in providers)
 
 
 def _by_file(package) -> dict[str, set[str]]:

@@ -28,7 +28,6 @@ import posixpath
 
 from ...model.view import View
 from ...targets.library import variables
-from ..evidence import weight
 from ..rule import Hit, rule
 from .missing_find_package import found_names
 from .undeclared_package import WITH_CLIENT
@@ -154,7 +153,7 @@ def _ament(view: View, package):
     # Until Galactic all headers lay in one folder, so a missing export went unnoticed.
     apart = view.target.distro not in ("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic")
     includers = view.workspace.includers.get(package.name)
-    for need in sorted(view.needs(package), key=weight):
+    for need in view.weighed(package):
         if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, reach):
             continue
         name = next((p.name for p in need.providers if p.name in found), None)

@@ -26,7 +26,6 @@ import re
 from functools import lru_cache
 
 from ...model.view import View, interface_of
-from ..evidence import weight
 from ..rule import Hit, rule
 
 _SYSTEM_BY_DEFAULT = (
@@ -74,7 +73,7 @@ def missing_find_package(view: View):
             )
         sought = {_folded(f.name) for f in package.build.found}
         linked = {_folded(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
-        for need in sorted(view.needs(package), key=weight):
+        for need in view.weighed(package):
             if need.how != "include" or need.role != "build" or not need.certain:
                 continue
             if view.answered(need.providers, reachable) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
@@ -153,7 +152,7 @@ def _not_given(view: View, package):
     if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
         return
     told = set()
-    reach: dict[str, dict[str, str] | None] = {}
+    reach: dict[str, frozenset[str] | None] = {}
     for include in package.digest.includes:
         providers = view.header(include.path)
         if (
@@ -272,6 +271,7 @@ def _no_components(view: View, package):
         )
 
 
+@lru_cache(maxsize=10000)
 def _folded(name: str) -> str:
     return re.sub(r"[^a-z]|^lib|dev$", "", name.lower())
 

@@ -108,7 +108,7 @@ def _field_packages(view: View, package):
                             severity="error",
                         )
                     continue
-                if owner in _reached(view, given):
+                if owner in view.spread(given):
                     continue
                 told.add(owner)
                 yield Hit(
@@ -126,10 +126,6 @@ def _at(interface, field):
     from ...model.build import At
 
     return At(interface.path, field.line, field.column)
-
-
-def _reached(view: View, names) -> set[str]:
-    return set(view.spread(names))
 
 
 def _rosidl_manifest(view: View, package):

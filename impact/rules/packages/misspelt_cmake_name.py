@@ -45,12 +45,14 @@ def misspelt_cmake_name(view: View):
     for package in view:
         declared = view.declared(package)
         found = {f.name for f in package.build.found}
-        near = Names(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
+        near = None
         for at, name, required, conditions, exact in _named(package):
             if package.name in view.workspace.find_modules.get(name, ()):
                 continue
             if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
                 continue
+            if near is None:
+                near = Names(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
             halves = _run_together(name, near.names)
             if halves:
                 yield Hit(

@@ -147,10 +147,10 @@ def undeclared_package(view: View):
             if name is None or name == package.name:
                 continue
             (borrowed if view.answered(need.providers, closure) else missing).setdefault(name, []).append(need)
-        yield from _borrowed(view, package, borrowed, closure)
+        yield from _borrowed(view, package, borrowed)
         if not missing:
             continue
-        blind = bool(view.blind(package))
+        blind = view.blind(package)
         spoken = 0
         for name, needs in missing.items():
             needs.sort(key=lambda n: weight(n))
@@ -174,7 +174,7 @@ def undeclared_package(view: View):
             )
 
 
-def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dict[str, str]):
+def _borrowed(view: View, package, borrowed: dict[str, list[Need]]):
     """What built code uses and only a dependency of a dependency brings: it leaves when that one does."""
     for name, needs in borrowed.items():
         if name in WITH_CLIENT or name.startswith(("ament_", "rosidl_", "rmw")) or name.endswith(_MESSAGES):
@@ -201,14 +201,17 @@ def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dic
         if not strong:
             continue
         first = min(strong, key=weight)
+        brought_by = view.brought_by(package)
         if (
             ours
             and first.how == "include"
-            and closure.get(name, "") in view.workspace.packages
+            and brought_by.get(name, "") in view.workspace.packages
             and view.target.ros == 1
         ):
             continue  # one repository, built in its order
-        through = closure.get(name) or next((closure[p.name] for p in first.providers if p.name in closure), "")
+        through = brought_by.get(name) or next(
+            (brought_by[p.name] for p in first.providers if p.name in brought_by), ""
+        )
         yield Hit(
             first.at,
             name,

@@ -25,7 +25,7 @@ Not reported
 
 from ...model.view import View
 from ..cure import Declare, Remove
-from ..evidence import circular, weight
+from ..evidence import circular
 from ..rule import Hit, rule
 
 _FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})
@@ -38,7 +38,7 @@ def wrong_dependency_kind(view: View):
         declared = view.declared(package)
         build, exported, run = None, None, None
         told = set()
-        for need in sorted(view.needs(package), key=weight):
+        for need in view.weighed(package):
             own = [p.name for p in need.providers if p.name in declared]
             if not own or not need.certain or not need.required or any(n in told for n in own):
                 continue

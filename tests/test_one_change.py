@@ -1,0 +1,252 @@
+"""One edit, wherever it is: what is remembered of the run before is used where nothing changed, and only there.
+
+Every edit here is made to one package and changes what is true of another one. The answer of a cache that knows the
+workspace as it was has to be that of an empty one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from rosimpact.impact import memo
+from rosimpact.impact.check import Options, check, open_workspace
+from rosimpact.impact.model.view import View
+from rosimpact.impact.model.workspace import Package, Workspace
+from rosimpact.impact.rules.rule import all_rules
+
+HERE = Path(__file__).parent
+MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>d</description>
+<maintainer email="a@b.org">a</maintainer><license>MIT</license><buildtool_depend>ament_cmake</buildtool_depend>
+{depends}<export><build_type>ament_cmake</build_type></export></package>
+"""
+# arm uses what hand has, declares or gives its dependants; hand uses tip.
+FILES = {
+    "hand/package.xml": MANIFEST.format(
+        name="hand", depends="<depend>angles</depend>\n<depend>tip</depend>\n<exec_depend>rclpy</exec_depend>\n"
+    ),
+    "hand/CMakeLists.txt": """cmake_minimum_required(VERSION 3.8)
+project(hand)
+find_package(ament_cmake REQUIRED)
+find_package(angles REQUIRED)
+find_package(tip REQUIRED)
+add_library(hand src/hand.cpp)
+target_include_directories(hand PUBLIC include)
+ament_target_dependencies(hand angles tip)
+install(DIRECTORY include/ DESTINATION include)
+install(TARGETS hand DESTINATION lib)
+ament_export_libraries(hand)
+ament_export_dependencies(angles)
+ament_package(CONFIG_EXTRAS cmake/hand.cmake)
+""",
+    "hand/cmake/hand.cmake": """macro(hand_setup)
+  find_package(rclcpp REQUIRED)
+endmacro()
+""",
+    "hand/include/hand/hand.hpp": "#include <angles/angles.h>\nint hand();\n",
+    "hand/include/hand/finger.hpp": "int finger();\n",
+    "hand/cmake/grip-config.cmake.in": "set(grip_FOUND TRUE)\n",
+    "hand/hand_tools/__init__.py": "",
+    "hand/src/hand.cpp": "#include <hand/hand.hpp>\n#include <tip/tip.hpp>\nint hand() { return 1; }\n",
+    "tip/package.xml": MANIFEST.format(name="tip", depends=""),
+    "tip/CMakeLists.txt": """cmake_minimum_required(VERSION 3.8)
+project(tip)
+find_package(ament_cmake REQUIRED)
+add_library(tip INTERFACE)
+install(DIRECTORY include/ DESTINATION include)
+install(TARGETS tip DESTINATION lib)
+ament_package()
+""",
+    "tip/include/tip/tip.hpp": "int tip();\n",
+    "tip/include/tip/nail.hpp": "int nail();\n",
+    "hand_msgs/package.xml": MANIFEST.format(
+        name="hand_msgs",
+        depends="<build_depend>rosidl_default_generators</build_depend>\n<exec_depend>rosidl_default_runtime</exec_depend>"
+        "\n<member_of_group>rosidl_interface_packages</member_of_group>\n",
+    ),
+    "hand_msgs/CMakeLists.txt": """cmake_minimum_required(VERSION 3.8)
+project(hand_msgs)
+find_package(ament_cmake REQUIRED)
+find_package(rosidl_default_generators REQUIRED)
+rosidl_generate_interfaces(${PROJECT_NAME} "msg/Grip.msg" "msg/Touch.msg")
+ament_package()
+""",
+    "hand_msgs/msg/Grip.msg": "int32 force\n",
+    "hand_msgs/msg/Touch.msg": "int32 where\n",
+    "arm/package.xml": MANIFEST.format(
+        name="arm",
+        depends="<depend>hand</depend>\n<depend>hand_msgs</depend>\n<depend>rclcpp</depend>\n<depend>our_secret</depend>\n",
+    ),
+    "arm/CMakeLists.txt": """cmake_minimum_required(VERSION 3.8)
+project(arm)
+find_package(ament_cmake REQUIRED)
+find_package(hand REQUIRED)
+find_package(hand_msgs REQUIRED)
+find_package(grip)
+hand_setup()
+add_executable(arm src/arm.cpp)
+ament_target_dependencies(arm hand hand_msgs rclcpp)
+install(TARGETS arm DESTINATION lib/${PROJECT_NAME})
+install(PROGRAMS scripts/wave.py DESTINATION lib/${PROJECT_NAME})
+ament_package()
+""",
+    "arm/src/arm.cpp": "#include <hand/hand.hpp>\n#include <hand/finger.hpp>\n#include <angles/angles.h>\n"
+    "#include <rclcpp/rclcpp.hpp>\n#include <hand_msgs/msg/grip.hpp>\nint main() { return hand(); }\n",
+    "arm/scripts/wave.py": "#!/usr/bin/env python3\nimport hand_tools\n",
+}
+
+
+@pytest.fixture
+def ws(tmp_path) -> Path:
+    for name, text in FILES.items():
+        path = tmp_path / "ws" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return tmp_path / "ws"
+
+
+@pytest.fixture
+def run(cache, tmp_path, monkeypatch) -> Callable[..., list]:
+    """Findings of a workspace with a named cache of facts; each name has a folder of its own."""
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
+
+    def findings(ws: Path, name: str) -> list:
+        report = check(ws, Options(targets=("jazzy", "humble"), preview=True, cache=tmp_path / name))
+        return [report.findings, report.coverage]
+
+    return findings
+
+
+def replaced(path: str, old: str, new: str) -> Callable[[Path], None]:
+    def edit(ws: Path) -> None:
+        text = (ws / path).read_text()
+        assert old in text
+        (ws / path).write_text(text.replace(old, new))
+
+    return edit
+
+
+def removed(path: str) -> Callable[[Path], None]:
+    return lambda ws: (ws / path).unlink()
+
+
+def added(path: str, text: str) -> Callable[[Path], None]:
+    return lambda ws: (ws / path).write_text(text)
+
+
+# What is edited, the edit, and the package of which something else is said then (none: what is unresolved).
+EDITS = [
+    ("a header goes", removed("tip/include/tip/tip.hpp"), "hand"),
+    ("a declared dependency goes", replaced("hand/package.xml", "<depend>angles</depend>", ""), "arm"),
+    ("a declared kind changes", replaced("hand/package.xml", "<depend>angles<", "<test_depend>angles<"), "hand"),
+    ("a macro finds less", replaced("hand/cmake/hand.cmake", "find_package(rclcpp REQUIRED)", ""), "arm"),
+    ("a macro goes", removed("hand/cmake/hand.cmake"), "arm"),
+    ("a package is ignored", added("hand/COLCON_IGNORE", ""), "arm"),
+    ("a package is renamed", replaced("tip/package.xml", "<name>tip<", "<name>top<"), "hand"),
+    ("a package includes another", added("hand/src/hand.cpp", "#include <arm/arm.hpp>\n"), "hand"),
+    ("an export goes", replaced("hand/CMakeLists.txt", "ament_export_dependencies(angles)\n", ""), "hand"),
+    ("nobody includes it any more", replaced("hand/src/hand.cpp", "#include <tip/tip.hpp>\n", ""), "tip"),
+    ("a message goes", removed("hand_msgs/msg/Grip.msg"), "arm"),
+    ("a CMake configuration goes", removed("hand/cmake/grip-config.cmake.in"), ""),
+    ("a Python module goes", removed("hand/hand_tools/__init__.py"), ""),
+    ("a cycle", replaced("tip/package.xml", "<export>", "<depend>arm</depend><export>"), "arm"),
+    ("a name is private", added("rosimpact.toml", '[workspace]\nprivate = ["our_secret"]\n'), "arm"),
+]
+
+
+@pytest.mark.parametrize(("edit", "concerned"), [e[1:] for e in EDITS], ids=[e[0] for e in EDITS])
+def test_what_is_remembered_never_hides_a_change(ws, run, edit, concerned):
+    before = run(ws, "kept")
+    assert run(ws, "kept") == before
+    edit(ws)
+    fresh = run(ws, "fresh")
+    assert run(ws, "kept") == fresh
+    assert run(ws, "kept") == fresh
+    # An edit that changes nothing would show nothing.
+    assert about(concerned, before) != about(concerned, fresh)
+
+
+def about(package: str, found: list) -> list:
+    """Findings of a package; everything, what could not be resolved included, without one."""
+    return [finding for finding in found[0] if finding.package == package] if package else found
+
+
+def test_edits_one_after_the_other_and_back(ws, run):
+    first = run(ws, "kept")
+    for _, edit, _ in EDITS:
+        text = {path: path.read_bytes() for path in ws.rglob("*") if path.is_file()}
+        edit(ws)
+        run(ws, "kept")
+        for path in [path for path in ws.rglob("*") if path.is_file() and path not in text]:
+            path.unlink()
+        for path, data in text.items():
+            path.write_bytes(data)
+        assert run(ws, "kept") == first
+
+
+JUDGED = [
+    ("nothing", lambda ws: None, False),
+    ("a comment in a header", replaced("hand/include/hand/hand.hpp", "int hand();", "int hand();  // grips"), False),
+    ("a comment in a macro", replaced("hand/cmake/hand.cmake", "endmacro()", "endmacro()  # done"), False),
+    ("a function's body", replaced("hand/src/hand.cpp", "return 1;", "return 2;"), False),
+    ("an include in a header", replaced("hand/include/hand/hand.hpp", "int", "#include <vector>\nint"), True),
+    ("a call in a macro", replaced("hand/cmake/hand.cmake", "REQUIRED)", "REQUIRED)\n  find_package(tip)"), True),
+]
+
+
+@pytest.mark.parametrize(("edit", "anew"), [row[1:] for row in JUDGED], ids=[row[0] for row in JUDGED])
+def test_rules_run_only_when_a_digest_changed(ws, run, monkeypatch, edit, anew):
+    run(ws, "kept")
+    edit(ws)
+    ran = []
+    monkeypatch.setattr(memo, "remember", lambda store, view, *rest: ran.append(view.target.name))
+    run(ws, "kept")
+    assert ran == (["jazzy", "humble"] if anew else [])
+
+
+class _Unseen:
+    """Stands for what no rule that is remembered may look at: the digests' identity does not speak of it."""
+
+    def __getattr__(self, name: str):
+        raise AssertionError(f"a rule asked for `{name}` of what is no digest")
+
+
+CASES = sorted(path for path in (HERE / "rules").glob("*/*/before") if path.is_dir())
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda path: path.parent.name)
+def test_rules_per_target_see_nothing_but_digests(case, cache, tmp_path, monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
+    rules = [rule for rule in all_rules().values() if rule.per_target and rule.family != "interfaces"]
+    with open_workspace(case, Options(targets=("jazzy", "noetic"), cache=tmp_path / "facts")) as opened:
+        for view in opened.views:
+            whole = [list(rule.run(view)) for rule in rules]
+            digests = [package.digest for package in opened.workspace]
+            unseen: object = _Unseen()
+            bare = Workspace(digests, unseen, opened.workspace.ros, unseen, unseen)  # type: ignore[arg-type]
+            again = View(bare, view.target, view.providers, view.config)
+            assert [list(rule.run(again)) for rule in rules] == whole
+
+
+def test_a_package_says_nothing_that_its_digest_does_not(ws, run, cache, tmp_path):
+    with open_workspace(ws, Options(targets=("jazzy",), cache=tmp_path / "facts")) as opened:
+        for package in opened.workspace:
+            kept = {name for name, value in vars(package).items() if value is not package.digest}
+            assert kept == {"name", "path", "manifest", "build", "build_type"}
+            assert all(getattr(package, name) is getattr(package.digest, name) for name in kept)
+            assert isinstance(package, Package)
+
+
+def test_what_is_asked_of_names_that_grow_is_answered_anew(ws, run, cache, tmp_path):
+    with open_workspace(ws, Options(targets=("jazzy",), cache=tmp_path / "facts")) as opened:
+        (view,) = opened.views
+        providers, names = view.header("angles/angles.h"), {"rclcpp"}
+        assert not view.answered(providers, names)
+        names.add("angles")
+        assert view.answered(providers, names)
+        assert view.answered(providers, frozenset({"angles"})) and not view.answered(providers, frozenset({"rclpy"}))
+        with pytest.raises(TypeError):
+            view.declared(opened.workspace.packages["arm"])["angles"] = {"build"}  # type: ignore[index]
