@@ -387,22 +387,31 @@ class DistroTarget(Target):
 
     def newest(self) -> DistroTarget | None:
         """The newest long-term distro of this generation, None when this distro is it or newer."""
-        return _newest(self.distro, self._data)
+        return _newest(self.distro, self.date if self.distro == "rolling" else "", self._data)
 
     def similar_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         """What the package declares in the nearest distro of the same generation whose manifest of it is known.
 
         For distros whose own manifests are not: what rests on it is likely, not sure.
         """
+        for neighbour in self._near:
+            if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
+                return found
+        return None
+
+    def similar_build_type(self, package: str) -> str:
+        """The build type of the package in the nearest distro of the same generation that says it; likely, not sure."""
+        return next((found for near in self._near if near.knows_manifests and (found := near.build_type(package))), "")
+
+    @property
+    def _near(self) -> list[DistroTarget]:
+        """Other distros of this generation, the nearest first."""
         if self._neighbours is None:
             names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
             here = names.index(self.distro) if self.distro in names else 0
             near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
             self._neighbours = [DistroTarget(name, data=self._data) for name in near if name != self.distro]
-        for neighbour in self._neighbours:
-            if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
-                return found
-        return None
+        return self._neighbours
 
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
@@ -656,14 +665,14 @@ def _data_stamp() -> tuple[tuple[str, int, int], ...]:
 
 
 @functools.cache
-def _newest(distro: str, data: Snapshot) -> DistroTarget | None:
+def _newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
     known = known_distros(data)
     here = next((k for k in known if k.name == distro), None)
-    if here is None or distro == "rolling":
+    if here is None:
         return None
     lasting = [k for k in known if k.ros == here.ros and k.lts]
     last = lasting[-1] if lasting else None
-    return DistroTarget(last.name, data=data) if last and last.released > here.released else None
+    return DistroTarget(last.name, data=data) if last and last.released > (day or here.released) else None
 
 
 def _platform_order() -> dict[str, int]:

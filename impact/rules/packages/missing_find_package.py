@@ -254,21 +254,18 @@ def _no_components(view: View, package):
         name = found.name
         if found.how != "catkin" or name == "catkin" or not view.certain(found.conditions):
             continue
-        if (
-            name in view.workspace.packages
-            or view.target.version(name) is not None
-            or view.target.resolve(name) is None
-        ):
+        if name in view.workspace.packages or view.target.version(name) is not None or view.private(name):
             continue
-        if view.providers.cmake_platforms(name) or any(p.kind == "system" for p in view.cmake(name)):
-            continue  # a plain CMake package of the system answers, and catkin takes it
+        key = view.target.resolve(name) is not None
+        if not key and not any(p.kind == "system" and view.target.resolve(p.name) for p in view.cmake(name)):
+            continue
         yield Hit(
             found.at,
             name,
             f"`{name}` is a system library in {view.target.distro} and no catkin component",
             f"find_package({name} REQUIRED), or pkg-config, on its own",
             package.name,
-            severity="warning",
+            severity="error" if key and found.required and not view.underlaid else "warning",
         )
 
 
