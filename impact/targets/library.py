@@ -15,6 +15,64 @@ BOOST_COMPILED = frozenset({
     "type_erasure", "unit_test_framework", "url", "wave",
 })  # fmt: skip
 
+# Boost libraries that come with another one, as CMake's own knowledge of them says (FindBoost.cmake).
+BOOST_BROUGHT = {
+    "thread": {"system", "chrono", "date_time", "atomic"},
+    "filesystem": {"system", "atomic"},
+    "chrono": {"system"},
+    "iostreams": {"regex"},
+    "log": {"log_setup", "date_time", "filesystem", "thread", "regex", "chrono", "atomic", "system"},
+    "timer": {"chrono", "system"},
+    "locale": {"system"},
+    "coroutine": {"context", "system"},
+    "wave": {"filesystem", "serialization", "thread", "chrono", "date_time", "atomic", "system"},
+    "mpi": {"serialization"},
+}
+# Boost libraries in catkin_LIBRARIES wherever roscpp is found. Source: catkin_package(DEPENDS Boost) of roscpp,
+# rosconsole, rostime and cpp_common.
+BOOST_OF_ROSCPP = frozenset({"system", "thread", "filesystem", "regex", "date_time", "chrono", "atomic", "signals"})
+
+# Headers whose use needs a compiled library, by how their path begins. Source: the libraries' documentation.
+_COMPILED_HEADERS = (
+    ("boost/filesystem.hpp", "filesystem", ""),
+    ("boost/filesystem/", "filesystem", ""),
+    ("boost/program_options", "program_options", ""),
+    ("boost/regex.hpp", "regex", "1.76"),
+    ("boost/regex/", "regex", "1.76"),
+    ("boost/iostreams/device/mapped_file.hpp", "iostreams", ""),
+    ("boost/iostreams/device/file_descriptor.hpp", "iostreams", ""),
+    ("boost/iostreams/filter/gzip.hpp", "iostreams", ""),
+    ("boost/iostreams/filter/zlib.hpp", "iostreams", ""),
+    ("boost/iostreams/filter/bzip2.hpp", "iostreams", ""),
+    ("boost/archive/text_", "serialization", ""),
+    ("boost/archive/binary_", "serialization", ""),
+    ("boost/archive/xml_", "serialization", ""),
+    ("boost/archive/polymorphic_", "serialization", ""),
+    ("boost/thread.hpp", "thread", ""),
+    ("boost/thread/thread.hpp", "thread", ""),
+    ("boost/thread/mutex.hpp", "thread", "1.69"),
+    ("boost/thread/recursive_mutex.hpp", "thread", "1.69"),
+    ("boost/thread/shared_mutex.hpp", "thread", "1.69"),
+    ("boost/thread/condition", "thread", "1.69"),
+    ("boost/log/", "log", ""),
+    ("boost/locale.hpp", "locale", ""),
+    ("boost/timer/timer.hpp", "timer", ""),
+    ("boost/random/random_device.hpp", "random", ""),
+    ("boost/asio.hpp", "system", "1.69"),
+    ("boost/asio/", "system", "1.69"),
+)
+
+
+def compiled_component(header: str, version: str) -> str | None:
+    """The compiled Boost library that code with this include needs to be linked to in a Boost version, None when it is
+    headers alone or not known."""
+    if not header.startswith("boost/"):
+        return None
+    for start, component, until in _COMPILED_HEADERS:
+        if header.startswith(start):
+            return None if until and version and at_least(version, until) else component
+    return None
+
 
 class Gone(NamedTuple):
     """A component that a library's version lacks, and what to do."""
@@ -40,14 +98,6 @@ _GONE = (
         "1.69",
         "drop the component and use boost/signals2 (header-only)",
         "Boost 1.69 release notes",
-    ),
-    _Row(
-        "Boost",
-        "exception",
-        "boost",
-        "1.83",
-        "drop the component: Boost.Exception is header-only",
-        "Boost 1.69 CMake configuration",
     ),
     _Row("Boost", "coroutine2", "boost", "1.60", "use `coroutine` or `context`", "Boost.Coroutine2 is header-only"),
     _Row(

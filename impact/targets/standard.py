@@ -106,19 +106,22 @@ DEFINED_IN: dict[str, tuple[str, ...]] = {
 
 HEADER_SINCE: dict[str, int] = {
     **dict.fromkeys(
-        """
-        array atomic chrono condition_variable forward_list future initializer_list mutex random ratio regex
-        scoped_allocator system_error thread tuple type_traits typeindex unordered_map unordered_set cfenv
-        cinttypes cstdint
-        """.split(),
+        (
+            *("array", "atomic", "chrono", "condition_variable", "forward_list", "future", "initializer_list", "mutex"),
+            *("random", "ratio", "regex", "scoped_allocator", "system_error", "thread", "tuple", "type_traits"),
+            *("typeindex", "unordered_map", "unordered_set", "cfenv", "cinttypes", "cstdint"),
+        ),
         11,
     ),
     "shared_mutex": 14,
-    **dict.fromkeys("any charconv execution filesystem memory_resource optional string_view variant".split(), 17),
     **dict.fromkeys(
-        """
-        barrier bit compare concepts coroutine latch numbers ranges semaphore source_location span stop_token syncstream
-        """.split(),
+        ("any", "charconv", "execution", "filesystem", "memory_resource", "optional", "string_view", "variant"), 17
+    ),
+    **dict.fromkeys(
+        (
+            *("barrier", "bit", "compare", "concepts", "coroutine", "latch", "numbers", "ranges", "semaphore"),
+            *("source_location", "span", "stop_token", "syncstream"),
+        ),
         20,
     ),
 }

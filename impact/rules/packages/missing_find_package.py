@@ -26,6 +26,7 @@ import re
 from functools import lru_cache
 
 from ...model.view import View, interface_of
+from ...targets.version import at_least
 from ..evidence import weight
 from ..rule import Hit, rule
 
@@ -54,10 +55,19 @@ def missing_find_package(view: View):
         yield from _no_components(view, package)
         yield from _directories_not_given(view, package)
         yield from _not_given(view, package)
+        yield from _only_placed(view, package)
+        yield from _never_set(view, package)
+        yield from _no_prefix(view, package)
         found = found_names(view, package)
         if found is None:
             continue
         reachable = view.spread(found)
+        for_tests = {f.name for f in package.build.found if _for_tests(f) and f.name in found}
+        outside = {f.name for f in package.build.found if not _for_tests(f)}
+        built = (
+            view.spread(n for n in found if n in outside or n not in for_tests) if for_tests - outside else reachable
+        )
+        shipped = {t.name for t in package.build.targets if t.kind != "test" and not _for_tests(t)}
         closure = view.closure(package)
         told = set()
         for at, name in _given_to_targets(view, package):
@@ -72,12 +82,13 @@ def missing_find_package(view: View):
                 package.name,
                 severity="error",
             )
-        sought = {_folded(f.name) for f in package.build.found}
+        sought = {_folded(f.name) for f in package.build.found if f.name in outside}
         linked = {_folded(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
         for need in sorted(view.needs(package), key=weight):
             if need.how != "include" or need.role != "build" or not need.certain:
                 continue
-            if view.answered(need.providers, reachable) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
+            reached = built if shipped.intersection(need.targets) else reachable
+            if view.answered(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
                 continue
             name = next((p.name for p in need.providers if p.name in closure), None)
             if name is None or name in told or name == package.name:
@@ -267,6 +278,98 @@ def _no_components(view: View, package):
             package.name,
             severity="error" if key and found.required and not view.underlaid else "warning",
         )
+
+
+# Vendor packages that only tell CMake where the library's configuration is, from which version on: package, version,
+# CMake package, how its include paths begin. Source: the vendor packages' `-extras.cmake.in`.
+_PLACING = (("yaml_cpp_vendor", "9.0.0", "yaml-cpp", "yaml-cpp/"),)
+
+
+def _only_placed(view: View, package):
+    """Libraries whose vendor package is found and no longer finds them."""
+    found = {f.name: f for f in package.build.found}
+    for vendor, since, library, root in _PLACING:
+        version = view.target.version(vendor)
+        asked = found.get(vendor)
+        if asked is None or library in found or not version or not at_least(version, since):
+            continue
+        linked = {_folded(link.item) for t in package.build.targets for link in t.links}
+        if _folded(library) in linked:
+            continue
+        use = next((i for i in package.digest.includes if i.path.startswith(root) and i.targets), None)
+        if use is None or not view.certain(use.conditions):
+            continue
+        others = view.spread(name for name in found if name != vendor)
+        if vendor in others or library in others:
+            continue  # it may come along with those
+        yield Hit(
+            asked.at,
+            library,
+            f"`{use.path}` is included, and {vendor} {version} no longer finds `{library}`",
+            f"add find_package({library} REQUIRED) and link it",
+            package.name,
+            severity="error" if asked.required else "warning",
+        )
+
+
+_LIBRARIES = re.compile(r"(.+)_(?:LIBRARIES|LIBRARY|LIBS)\Z")
+# Variables that other things than a find_package of their own name set: test macros, Python, Qt, catkin itself, what
+# PCL, gazebo and rviz find along.
+_SET_ALONG = re.compile(
+    r"(?i)(gtest|gmock|python|pythonlibs|qt|qt\d?\w*|catkin|boost\w*|rviz.*|ogre\w*|eigen\d?|opengl|gl|x11|openmp\w*|"
+    r"threads|sdformat|protobuf|vtk|openssl\w*|tinyxml\d?|console_bridge|urdfdom\w*|mpi|cuda\w*|.*_cuda|dl|m|rt)\Z"
+)
+
+
+def _never_set(view: View, package):
+    """`${X_LIBRARIES}` that a target links and nothing sets: the linker then misses the library."""
+    build = package.build
+    if build.unresolved or any("$" in f.name for f in build.found):
+        return
+    sought = {_folded(n) for f in build.found for n in (f.name, f.prefix) if n}
+    reachable = {_folded(name) for name in view.spread(f.name for f in build.found)}
+    told = set()
+    for use in build.uses:
+        match = (
+            _LIBRARIES.match(use.name) if use.kind == "variable" and use.context == "target_link_libraries" else None
+        )
+        if match is None or use.name in told or not view.certain(use.conditions):
+            continue
+        stem = match.group(1)
+        folded = _folded(stem)
+        if not folded or _SET_ALONG.match(stem) or view._is_package(stem):
+            continue
+        if any(folded in other or other in folded for other in (*sought, *reachable) if len(other) > 2):
+            continue
+        told.add(use.name)
+        module = next((m for m in (stem, f"lib{stem}") if view.providers.pkgconfig(m)), "")
+        known = module or (stem if view.cmake(stem) else "")
+        if not known:
+            continue
+        yield Hit(
+            use.at,
+            known,
+            f"`{use.name}` is linked, and nothing sets it",
+            f"pkg_check_modules({stem} REQUIRED {module})" if module else f"find_package({stem} REQUIRED)",
+            package.name,
+        )
+
+
+def _no_prefix(view: View, package):
+    """pkg_check_modules(REQUIRED x): its first argument names the variables, so that x is not required."""
+    for found in package.build.found:
+        if found.how == "pkg_check_modules" and found.prefix in ("REQUIRED", "QUIET"):
+            yield Hit(
+                found.at,
+                found.name,
+                f"`{found.prefix}` is taken as the prefix of the variables, so `{found.name}` is not {found.prefix}",
+                f"pkg_check_modules({found.name.upper().replace('-', '_')} {found.prefix} {found.name})",
+                package.name,
+            )
+
+
+def _for_tests(made) -> bool:
+    return any("TESTING" in c.text for c in made.conditions)
 
 
 def _folded(name: str) -> str:

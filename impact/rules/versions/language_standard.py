@@ -104,8 +104,10 @@ def _ros2(view: View, package, default: int | None):
         if _order(need.standard) > have and default >= _order(need.standard):
             severity = "error" if need.sure else "warning"
             where = ""
-        elif newest is not None and (later := needed_standard(newest, include.path)) and (
-            _order(later.standard) > have and (default_standard(newest) or 0) >= _order(later.standard)
+        elif (
+            newest is not None
+            and (later := needed_standard(newest, include.path))
+            and (_order(later.standard) > have and (default_standard(newest) or 0) >= _order(later.standard))
         ):
             need, severity, where = later, "warning", f" in {view.horizon}"
         else:
@@ -113,7 +115,8 @@ def _ros2(view: View, package, default: int | None):
         yield Hit(
             fixed[1],
             f"-std=c++{fixed[0] % 100:02d}",
-            f"C++{fixed[0] % 100:02d} is set by a flag, and {_what(include.path, need)}{where} needs C++{need.standard}",
+            f"C++{fixed[0] % 100:02d} is set by a flag, and {_what(include.path, need)}{where} needs "
+            f"C++{need.standard}",
             f"set(CMAKE_CXX_STANDARD {need.standard})",
             package.name,
             severity=severity,
