@@ -544,6 +544,19 @@ SILENT = {
             "if(CATKIN_ENABLE_TESTING)\nfind_package(catkin REQUIRED COMPONENTS angles)\n",
         ),
     ),
+    "the include folder of ROS under a component's name": Silent(
+        "missing-find-package",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            "catkin_package()\ninclude_directories(${roscpp_INCLUDE_DIRS})\nadd_executable(run run.cpp)\n"
+            "target_link_libraries(run ${catkin_LIBRARIES})\n"
+            "install(TARGETS run RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})",
+            "roscpp",
+            run_cpp="#include <ros/ros.h>\n" + MAIN,
+        ),
+        ("CMakeLists.txt", "include_directories(${roscpp_INCLUDE_DIRS})", ""),
+    ),
     "a find_package name in its own case": Silent(
         "misspelt-cmake-name",
         ("noetic",),

@@ -1,18 +1,14 @@
-"""catkin-depends: catkin stops at a package that CMake names and package.xml, or catkin itself, does not know so.
+"""catkin-depends: catkin_package() names a package in CATKIN_DEPENDS that it refuses.
 
 What it does
-    Makes the checks of find_package(catkin COMPONENTS ...) and catkin_package(CATKIN_DEPENDS ...): every package of
-    CATKIN_DEPENDS has to be a catkin package and a run dependency, and a build dependency too when it is a component of
-    find_package(catkin); every component needs a CMake configuration in the ROS workspace, where system libraries have
-    none.
+    Makes the checks of catkin_package(CATKIN_DEPENDS ...): every package of it has to be a catkin package and a run
+    dependency, and a build dependency too when it is a component of find_package(catkin).
 
 Why it breaks
-    catkin_package() ends with FATAL_ERROR, and find_package(catkin) does not find the component: nothing of the package
-    is built, on any machine.
+    catkin_package() ends with FATAL_ERROR: nothing of the package is built, on any machine.
 
 Severity
-    error; warning under a condition that is not known, and for a component under the name of a system library that an
-    underlay may bring.
+    error; warning where only another distro's manifest says that the package is a plain CMake one.
 
 Example
     catkin_package(CATKIN_DEPENDS roscpp tf)    # and package.xml has <build_depend>tf</build_depend> alone
@@ -21,7 +17,7 @@ Use instead
     <depend>tf</depend>                         # format 1: <run_depend>tf</run_depend> beside it
 
 Not reported
-    Names that CMake makes up while it runs; packages whose build type is not known.
+    Names under a condition that is not known; packages whose build type is not known.
 """
 
 from ...model.view import View

@@ -3,14 +3,17 @@
 What it does
     Reports packages whose headers compiled code includes, or whose CMake variables and targets are used, when no
     find_package (or catkin component, pkg_check_modules, ament_auto) of the package asks for them and none that is
-    asked for brings them.
+    asked for brings them. What is found for the tests alone counts for the tests alone. Also components of catkin that
+    are system libraries on the target, libraries that their vendor package no longer finds, and pkg_check_modules
+    whose first argument, the prefix of its variables, is REQUIRED.
 
 Why it breaks
     The compiler misses the include path, or the linker the library, unless another package happens to add them.
 
 Severity
-    error where a target is linked or an include path used under a name that only the missing find_package defines;
-    warning for includes, since an include path may come along by accident.
+    error where a target is linked or an include path used under a name that only the missing find_package defines,
+    where catkin is asked for a system library, and, since Kinetic, where no target gets ROS's include folder; warning
+    for includes, since an include path may come along by accident, and for variables that nothing sets.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -235,6 +238,8 @@ def _directories_not_given(view: View, package):
     )
     if "catkin_INCLUDE_DIRS" in given or "/opt/ros" in given:
         return
+    if any(f"{f.name}_INCLUDE_DIRS" in given for f in build.found if f.how == "catkin"):
+        return  # all of /opt/ros lies in one folder
     for target in build.targets:
         if target.kind not in ("executable", "library") or not view.certain(target.conditions):
             continue
@@ -255,8 +260,13 @@ def _directories_not_given(view: View, package):
                 f"`{include.path}` is included by `{target.name}`, which does not get catkin_INCLUDE_DIRS",
                 "include_directories(${catkin_INCLUDE_DIRS})",
                 package.name,
+                severity="warning" if view.target.distro in _WITH_CPATH else "error",
             )
             return
+
+
+# Distros whose setup files put the include folder of ROS into CPATH. Source: catkin's change log, 0.7.0.
+_WITH_CPATH = ("groovy", "hydro", "indigo", "jade")
 
 
 def _no_components(view: View, package):

@@ -3,8 +3,8 @@
 What it does
     Reports names in find_package, catkin COMPONENTS, ament_export_dependencies, ament_target_dependencies and
     catkin_package that nobody provides and that are two known names run together, or one edit or a different case away
-    from a name the package declares or finds; and variables such as `Eigen3_INCLUDE_DIR` that no find module sets, one
-    edit or case away from one that is.
+    from a name the package declares or finds; names in find_package that are known in another case alone; and variables
+    such as `Eigen3_INCLUDE_DIR` that no find module sets, one edit or case away from one that is.
 
 Why it breaks
     CMake takes an unknown variable as empty and says nothing; an unknown package stops this build or a dependant's.
