@@ -544,6 +544,18 @@ SILENT = {
             "if(CATKIN_ENABLE_TESTING)\nfind_package(catkin REQUIRED COMPONENTS angles)\n",
         ),
     ),
+    "a program that is linked to its client library": Silent(
+        "missing-find-package",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            CATKIN_NODE + "target_link_libraries(run ${catkin_LIBRARIES})\n"
+            "install(TARGETS run RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})",
+            "roscpp",
+            run_cpp="#include <ros/ros.h>\n" + MAIN,
+        ),
+        ("CMakeLists.txt", "target_link_libraries(run ${catkin_LIBRARIES})", ""),
+    ),
     "the include folder of ROS under a component's name": Silent(
         "missing-find-package",
         ("noetic",),
@@ -588,6 +600,18 @@ SILENT = {
             sled_cpp="int sled() { return 0; }\n",
         ),
         ("CMakeLists.txt", "target_link_libraries(run PRIVATE sled)", ""),
+    ),
+    "a compiled library that each program is linked to": Silent(
+        "library-component",
+        ("jazzy",),
+        ament(
+            "find_package(yaml-cpp REQUIRED)\nadd_executable(run run.cpp)\nadd_executable(walk run.cpp)\n"
+            "target_link_libraries(run yaml-cpp::yaml-cpp)\ntarget_link_libraries(walk yaml-cpp)\n"
+            "install(TARGETS run walk DESTINATION lib/${PROJECT_NAME})",
+            "yaml-cpp",
+            run_cpp="#include <yaml-cpp/yaml.h>\n" + MAIN,
+        ),
+        ("CMakeLists.txt", "target_link_libraries(walk yaml-cpp)\n", ""),
     ),
     "a standard header of the standard that is set": Silent(
         "language-standard",

@@ -3,7 +3,8 @@
 What it does
     Compares the components given to find_package(Boost|Qt5|Qt6|VTK|OpenCV|PCL ... COMPONENTS) with what the target's
     version of the library has, and with the imported targets (`Boost::thread`, `Qt5::Widgets`) and headers that need a
-    compiled component.
+    compiled component. Also programs that include a header of a compiled library, such as yaml-cpp, and are not linked
+    to it, where another target of the package is.
 
 Why it breaks
     CMake stops at a component that is gone (`signals` since Boost 1.69), or the linker at symbols of one never linked.
@@ -24,6 +25,7 @@ Use instead
 import re
 from typing import NamedTuple
 
+from ...model.package import IncludeUse
 from ...model.view import View
 from ...targets.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP, compiled_component, gone_component
 from ...targets.version import at_least
@@ -68,6 +70,7 @@ def library_component(view: View):
         yield from _old_qt(view, package)
         yield from _linked(view, package, asked)
         yield from _included(view, package, asked)
+        yield from _linked_elsewhere(view, package)
 
 
 def _old_qt(view: View, package):
@@ -166,21 +169,9 @@ def _how_sure(view: View, include, target, known: _Given) -> str:
 
 def _given(view: View, package, targets, name: str, asked) -> _Given | None:
     """What a target is linked to, itself or through targets of its package; None when that cannot be told."""
-    items = {link.item for link in package.build.links}
-    stack, seen = [name], set()
-    while stack:
-        target = targets.get(stack.pop())
-        if target is None or target.name in seen:
-            continue
-        seen.add(target.name)
-        if target.kind in ("unknown", "external", "fetched", "imported"):
-            return None
-        if target.alias_of:
-            stack.append(target.alias_of)
-        for link in target.links:
-            if link.how in ("link", "ament"):
-                items.add(link.item)
-                stack.append(link.item)
+    items = _links(package, targets, name)
+    if items is None:
+        return None
     components: set[str] = set()
     packages: set[str] = set()
     for item in items:
@@ -210,6 +201,87 @@ def _given(view: View, package, targets, name: str, asked) -> _Given | None:
     for extra in list(components):
         components |= BOOST_BROUGHT.get(extra, set())
     return _Given(frozenset(components), more)
+
+
+def _links(package, targets, name: str) -> set[str] | None:
+    """Everything a target is linked to, itself or through targets of its package; None when that cannot be told."""
+    items = {link.item for link in package.build.links}
+    stack, seen = [name], set()
+    while stack:
+        target = targets.get(stack.pop())
+        if target is None or target.name in seen:
+            continue
+        seen.add(target.name)
+        if target.kind in ("unknown", "external", "fetched", "imported"):
+            return None
+        if target.alias_of:
+            stack.append(target.alias_of)
+        for link in target.links:
+            if link.how in ("link", "ament"):
+                items.add(link.item)
+                stack.append(link.item)
+    return items
+
+
+# Libraries that code with these includes has to be linked to: how the include paths begin, and a word of every name
+# that the library is linked by, both folded.
+_LINKED = (
+    ("yaml-cpp/", "yamlcpp"),
+    ("tinyxml2.h", "tinyxml2"),
+    ("tinyxml.h", "tinyxml"),
+    ("json/json.h", "jsoncpp"),
+    ("jsoncpp/", "jsoncpp"),
+    ("curl/curl.h", "curl"),
+    ("GeographicLib/", "geographiclib"),
+    ("assimp/", "assimp"),
+    ("glog/", "glog"),
+    ("ceres/", "ceres"),
+    ("SDL2/", "sdl2"),
+    ("libusb-1.0/", "usb"),
+)
+
+
+def _linked_elsewhere(view: View, package):
+    """Programs that include a library's header and are not linked to it, beside a target that is."""
+    targets = {t.name: t for t in package.build.targets}
+    links: dict[str, set[str] | None] = {}
+    told = set()
+    for root, word in _LINKED:
+        users: dict[str, IncludeUse] = {}
+        for include in package.digest.includes:
+            if include.path.startswith(root) and view.certain(include.conditions):
+                for name in include.targets:
+                    users.setdefault(name, include)
+        if len(users) < 2:
+            continue
+        for name in users:
+            if name not in links:
+                links[name] = _links(package, targets, name) if name in targets else None
+        own = {n for n in users if links[n] is not None and any(word in _plain(i) for i in links[n] or ())}
+        for name, include in users.items():
+            target, items = targets.get(name), links[name]
+            if not own or name in own or target is None or items is None or word in told:
+                continue
+            if target.kind not in ("executable", "test") or not view.certain(
+                c for c in target.conditions if "TESTING" not in c.text
+            ):
+                continue
+            if any("$" in item and not _VARIABLE.match(item) for item in items):
+                continue
+            told.add(word)
+            subject = root.partition("/")[0].removesuffix(".h")
+            yield Hit(
+                target.at,
+                subject,
+                f"`{name}` includes `{include.path}` and is not linked to `{subject}`, as `{min(own)}` is",
+                f"link to `{name}` what `{min(own)}` is linked to",
+                package.name,
+                severity="warning",
+            )
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
 _VARIABLE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|LIBRARY|LIBS|EXPORTED_TARGETS)\}\Z")

@@ -5,15 +5,17 @@ What it does
     find_package (or catkin component, pkg_check_modules, ament_auto) of the package asks for them and none that is
     asked for brings them. What is found for the tests alone counts for the tests alone. Also components of catkin that
     are system libraries on the target, libraries that their vendor package no longer finds, and pkg_check_modules
-    whose first argument, the prefix of its variables, is REQUIRED.
+    whose first argument, the prefix of its variables, is REQUIRED, and programs that include a client library and are
+    linked to nothing.
 
 Why it breaks
     The compiler misses the include path, or the linker the library, unless another package happens to add them.
 
 Severity
     error where a target is linked or an include path used under a name that only the missing find_package defines,
-    where catkin is asked for a system library, and, since Kinetic, where no target gets ROS's include folder; warning
-    for includes, since an include path may come along by accident, and for variables that nothing sets.
+    where catkin is asked for a system library, for a program that is linked to nothing, and, since Kinetic, where no
+    target gets ROS's include folder; warning for includes, since an include path may come along by accident, and for
+    variables that nothing sets.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -61,6 +63,7 @@ def missing_find_package(view: View):
         yield from _only_placed(view, package)
         yield from _never_set(view, package)
         yield from _no_prefix(view, package)
+        yield from _linked_to_nothing(view, package)
         found = found_names(view, package)
         if found is None:
             continue
@@ -288,6 +291,38 @@ def _no_components(view: View, package):
             package.name,
             severity="error" if key and found.required and not view.underlaid else "warning",
         )
+
+
+# Headers of client libraries, whose compiled part every program needs that includes them.
+_CLIENTS = {"ros/ros.h": ("roscpp", "${catkin_LIBRARIES}"), "rclcpp/rclcpp.hpp": ("rclcpp", "rclcpp::rclcpp")}
+
+
+def _linked_to_nothing(view: View, package):
+    """Programs that include a client library and are given nothing to link."""
+    build = package.build
+    if build.unresolved or build.links or package.build_type == "ament_cmake_auto":
+        return
+    linked = {t.name for t in build.targets if any(link.how in ("link", "ament") for link in t.links)}
+    programs = {
+        t.name: t
+        for t in build.targets
+        if t.kind == "executable" and t.name not in linked and t.sources and view.certain(t.conditions)
+    }
+    for include in package.digest.includes if programs else ():
+        client, item = _CLIENTS.get(include.path, ("", ""))
+        if not client or client in view.workspace.packages or not view.certain(include.conditions):
+            continue
+        for name in include.targets:
+            target = programs.pop(name, None)
+            if target is not None:
+                yield Hit(
+                    target.at,
+                    client,
+                    f"`{name}` includes `{include.path}` and is linked to nothing",
+                    f"target_link_libraries({name} {item})",
+                    package.name,
+                    severity="error",
+                )
 
 
 # Vendor packages that only tell CMake where the library's configuration is, from which version on: package, version,
