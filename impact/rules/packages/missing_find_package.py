@@ -312,6 +312,8 @@ def _linked_to_nothing(view: View, package):
         client, item = _CLIENTS.get(include.path, ("", ""))
         if not client or client in view.workspace.packages or not view.certain(include.conditions):
             continue
+        if include.role != "build":
+            continue  # such as a test's program that `make all` leaves out
         for name in include.targets:
             target = programs.pop(name, None)
             if target is not None:
