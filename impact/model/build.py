@@ -142,7 +142,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What the CMake of a package says. minimum: cmake_minimum_required's version and place. standard: the highest C++
     standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with its
     place. standard_default_only: it is only set where the user or a toolchain has not chosen one. standard_by_flag: by
-    a -std= flag, which goes over what linked targets ask for; CMAKE_CXX_STANDARD does not.
+    -std= flags alone, so that CMake adds what linked targets ask for only where the compiler's default is lower.
     message_files: (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told.
     files: the CMake files read, relative to the root."""
 

@@ -11,7 +11,7 @@ import datetime
 import functools
 import operator
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import msgspec
@@ -407,7 +407,7 @@ class DistroTarget(Target):
 
     def newest(self) -> DistroTarget | None:
         """The newest long-term distro of this generation, None when this distro is it or newer."""
-        return _newest(self.distro, self._data)
+        return _newest(self.distro, self.date if self.distro == "rolling" else "", self._data)
 
     def updated(self) -> DistroTarget | None:
         """The same distro as of the data's newest day, None when this is it."""
@@ -420,17 +420,24 @@ class DistroTarget(Target):
 
         For distros whose own manifests are not: what rests on it is likely, not sure.
         """
+        for neighbour in self._near(package):
+            if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
+                return found
+        return None
+
+    def similar_build_type(self, package: str) -> str:
+        """The build type of the package in the nearest distro of the same generation that says it; likely, not sure."""
+        near = self._near(package)
+        return next((found for one in near if one.knows_manifests and (found := one.build_type(package))), "")
+
+    def _near(self, package: str) -> Iterator[DistroTarget]:
+        """Other distros of this generation that have released a package, the nearest first."""
         homes = self._distros_with(package)
-        if not homes:
-            return None
-        for name in self._nearest:
+        for name in self._nearest if homes else ():
             if name in homes:
                 if name not in self._neighbours:
                     self._neighbours[name] = DistroTarget(name, data=self._data)
-                neighbour = self._neighbours[name]
-                if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
-                    return found
-        return None
+                yield self._neighbours[name]
 
     @functools.cached_property
     def _nearest(self) -> list[str]:
@@ -693,14 +700,14 @@ def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
 
 
 @functools.cache
-def _newest(distro: str, data: Snapshot) -> DistroTarget | None:
+def _newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
     known = known_distros(data)
     here = next((k for k in known if k.name == distro), None)
-    if here is None or distro == "rolling":
+    if here is None:
         return None
     lasting = [k for k in known if k.ros == here.ros and k.lts]
     last = lasting[-1] if lasting else None
-    return DistroTarget(last.name, data=data) if last and last.released > here.released else None
+    return DistroTarget(last.name, data=data) if last and last.released > (day or here.released) else None
 
 
 def _platform_order() -> dict[str, int]:

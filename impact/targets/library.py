@@ -15,6 +15,64 @@ BOOST_COMPILED = frozenset({
     "type_erasure", "unit_test_framework", "url", "wave",
 })  # fmt: skip
 
+# Boost libraries that come with another one, as CMake's own knowledge of them says (FindBoost.cmake).
+BOOST_BROUGHT = {
+    "thread": {"system", "chrono", "date_time", "atomic"},
+    "filesystem": {"system", "atomic"},
+    "chrono": {"system"},
+    "iostreams": {"regex"},
+    "log": {"log_setup", "date_time", "filesystem", "thread", "regex", "chrono", "atomic", "system"},
+    "timer": {"chrono", "system"},
+    "locale": {"system"},
+    "coroutine": {"context", "system"},
+    "wave": {"filesystem", "serialization", "thread", "chrono", "date_time", "atomic", "system"},
+    "mpi": {"serialization"},
+}
+# Boost libraries in catkin_LIBRARIES wherever roscpp is found. Source: catkin_package(DEPENDS Boost) of roscpp,
+# rosconsole, rostime and cpp_common.
+BOOST_OF_ROSCPP = frozenset({"system", "thread", "filesystem", "regex", "date_time", "chrono", "atomic", "signals"})
+
+# Headers whose use needs a compiled library, by how their path begins. Source: the libraries' documentation.
+_COMPILED_HEADERS = (
+    ("boost/filesystem.hpp", "filesystem", ""),
+    ("boost/filesystem/", "filesystem", ""),
+    ("boost/program_options", "program_options", ""),
+    ("boost/regex.hpp", "regex", "1.76"),
+    ("boost/regex/", "regex", "1.76"),
+    ("boost/iostreams/device/mapped_file.hpp", "iostreams", ""),
+    ("boost/iostreams/device/file_descriptor.hpp", "iostreams", ""),
+    ("boost/iostreams/filter/gzip.hpp", "iostreams", ""),
+    ("boost/iostreams/filter/zlib.hpp", "iostreams", ""),
+    ("boost/iostreams/filter/bzip2.hpp", "iostreams", ""),
+    ("boost/archive/text_", "serialization", ""),
+    ("boost/archive/binary_", "serialization", ""),
+    ("boost/archive/xml_", "serialization", ""),
+    ("boost/archive/polymorphic_", "serialization", ""),
+    ("boost/thread.hpp", "thread", ""),
+    ("boost/thread/thread.hpp", "thread", ""),
+    ("boost/thread/mutex.hpp", "thread", "1.69"),
+    ("boost/thread/recursive_mutex.hpp", "thread", "1.69"),
+    ("boost/thread/shared_mutex.hpp", "thread", "1.69"),
+    ("boost/thread/condition", "thread", "1.69"),
+    ("boost/log/", "log", ""),
+    ("boost/locale.hpp", "locale", ""),
+    ("boost/timer/timer.hpp", "timer", ""),
+    ("boost/random/random_device.hpp", "random", ""),
+    ("boost/asio.hpp", "system", "1.69"),
+    ("boost/asio/", "system", "1.69"),
+)
+
+
+def compiled_component(header: str, version: str) -> str | None:
+    """The compiled Boost library that code with this include needs to be linked to in a Boost version, None when it is
+    headers alone or not known."""
+    if not header.startswith("boost/"):
+        return None
+    for start, component, until in _COMPILED_HEADERS:
+        if header.startswith(start):
+            return None if until and version and at_least(version, until) else component
+    return None
+
 
 class Gone(NamedTuple):
     """A component that a library's version lacks, and what to do."""
@@ -40,14 +98,6 @@ _GONE = (
         "1.69",
         "drop the component and use boost/signals2 (header-only)",
         "Boost 1.69 release notes",
-    ),
-    _Row(
-        "Boost",
-        "exception",
-        "boost",
-        "1.83",
-        "drop the component: Boost.Exception is header-only",
-        "Boost 1.69 CMake configuration",
     ),
     _Row("Boost", "coroutine2", "boost", "1.60", "use `coroutine` or `context`", "Boost.Coroutine2 is header-only"),
     _Row(
@@ -136,7 +186,10 @@ def satisfies(target: Target, package: str, request: str, exact: bool) -> Answer
 
 
 class NeededStandard(NamedTuple):
-    """A C++ standard that a header needs: 11, 14, 17 ...; of which package, which version; sure when all users do."""
+    """A C++ standard that a header needs: 11, 14, 17 ...; of which package, which version; sure when all users do.
+
+    version: empty where the package is not released on the target, and every release for its distro needs it.
+    """
 
     standard: int
     package: str
@@ -151,22 +204,32 @@ class _StandardRow(NamedTuple):
     since: str
     standard: int
     source: str
+    sure: bool = True
+    distros: frozenset[str] = frozenset()
 
 
-# Headers that do not compile below a standard, by the start of their path. Newest first.
+# Headers that do not compile below a standard, by the start of their path. Newest first. distros: where every release
+# of the package needs it, so that one built from source does too.
 _STANDARDS = (
     _StandardRow("rclcpp/", "rclcpp", False, "9.0.0", 17, "rclcpp 9: any_subscription_callback.hpp includes <variant>"),
     _StandardRow("rclcpp/", "rclcpp", False, "0.5.0", 14, "REP-2000: Crystal and newer target C++14"),
+    _StandardRow("rclcpp_action/", "rclcpp", False, "9.0.0", 17, "rclcpp_action includes rclcpp's headers"),
+    _StandardRow("rclcpp_lifecycle/", "rclcpp", False, "9.0.0", 17, "rclcpp_lifecycle includes rclcpp's headers"),
+    _StandardRow("rclcpp_components/", "rclcpp", False, "9.0.0", 17, "rclcpp_components includes rclcpp's headers"),
     _StandardRow("pcl/", "pcl", True, "1.10", 14, "PCL 1.10 change log: C++14 is required"),
     _StandardRow("pcl/", "pcl", True, "1.9", 11, "PCL 1.9 change log"),
     _StandardRow("opencv2/", "opencv", True, "4.0", 11, "OpenCV 4.0 change log: a C++11 library"),
     _StandardRow("gazebo/", "gazebo-classic", True, "11.0", 17, "gazebo 11 migration guide"),
     _StandardRow("gazebo/", "gazebo-classic", True, "6.0", 11, "gazebo 6 migration guide"),
-    _StandardRow("moveit/", "moveit_core", False, "0.9.0", 11, "MoveIt change log, kinetic"),
+    _StandardRow("moveit/", "moveit_core", False, "0.9.0", 11, "MoveIt change log, kinetic", True,
+                 frozenset({"kinetic"})),
+    _StandardRow("ceres/", "ceres", True, "2.2", 17, "Ceres Solver 2.2 release notes: C++17 is required"),
+    _StandardRow("ceres/", "ceres", True, "2.0", 14, "Ceres Solver 2.0 release notes: C++14 is required"),
+    _StandardRow("Eigen/", "eigen3", True, "3.4.90", 14, "Eigen 5.0 release notes: C++14 is required"),
     _StandardRow("gtest/", "gtest", True, "1.17", 17, "GoogleTest 1.17 release notes"),
     _StandardRow("gtest/", "gtest", True, "1.13", 14, "GoogleTest 1.13 release notes"),
     _StandardRow("gtest/", "gtest", True, "1.8.1", 11, "GoogleTest 1.10 release notes"),
-)
+)  # fmt: skip
 
 
 def needed_standard(target: Target, include: str) -> NeededStandard | None:
@@ -174,8 +237,8 @@ def needed_standard(target: Target, include: str) -> NeededStandard | None:
     for row in _STANDARDS:
         if include.startswith(row.prefix):
             version = target.library(row.package) if row.library else target.version(row.package)
-            if version and at_least(version, row.since):
-                return NeededStandard(row.standard, row.package, version, True)
+            if at_least(version, row.since) if version else target.distro in row.distros:
+                return NeededStandard(row.standard, row.package, version or "", row.sure)
     return None
 
 

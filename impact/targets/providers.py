@@ -138,6 +138,10 @@ class Providers:
             found = [provider._replace(sure=False) for provider in found]
         return _once(found)
 
+    def spellings(self, name: str) -> tuple[str, ...]:
+        """Every known CMake package whose name differs from this one in letter case at most."""
+        return tuple(self._folded_cmake.get(name.lower(), ()))
+
     def pkgconfig(self, name: str) -> list[Provider]:
         """Who installs `name.pc`, best first."""
         return _once(self._facts("pkgconfig", name) + self._system("pkgconfig", name))

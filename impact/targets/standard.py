@@ -126,6 +126,30 @@ DEFINED_IN: dict[str, tuple[str, ...]] = {
 }
 """Name to the headers that define it, the public one first; a `bits/` one is libstdc++'s own that does."""
 
+HEADER_SINCE: dict[str, int] = {
+    **dict.fromkeys(
+        (
+            *("array", "atomic", "chrono", "condition_variable", "forward_list", "future", "initializer_list", "mutex"),
+            *("random", "ratio", "regex", "scoped_allocator", "system_error", "thread", "tuple", "type_traits"),
+            *("typeindex", "unordered_map", "unordered_set", "cfenv", "cinttypes", "cstdint"),
+        ),
+        11,
+    ),
+    "shared_mutex": 14,
+    **dict.fromkeys(
+        ("any", "charconv", "execution", "filesystem", "memory_resource", "optional", "string_view", "variant"), 17
+    ),
+    **dict.fromkeys(
+        (
+            *("barrier", "bit", "compare", "concepts", "coroutine", "latch", "numbers", "ranges", "semaphore"),
+            *("source_location", "span", "stop_token", "syncstream"),
+        ),
+        20,
+    ),
+}
+"""Standard headers to the C++ standard that they are of: libstdc++'s stop the compiler below C++11, and are empty below
+a later one. Source: cppreference.com, "Standard library headers"; libstdc++'s bits/c++0x_warning.h."""
+
 
 @cache
 def _tables() -> tuple[tuple[int, dict[str, frozenset[str]]], ...]:

@@ -97,6 +97,14 @@ class Target(Protocol):
         """The same in the nearest distro of this generation that knows it; likely, not sure."""
         ...
 
+    def build_type(self, package: str) -> str:
+        """`catkin`, `ament_cmake`, `cmake` ... of a released package; empty when not known or not said."""
+        ...
+
+    def similar_build_type(self, package: str) -> str:
+        """The same in the nearest distro of this generation that knows it; likely, not sure."""
+        ...
+
     def resolve(self, key: str) -> Resolution | None:
         """The rosdep rule for a key on this platform, None when there is none."""
         ...

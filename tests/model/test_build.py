@@ -266,6 +266,33 @@ def test_what_is_given_to_a_target(source, expected):
     ] == expected
 
 
+@pytest.mark.parametrize(
+    ("source", "by_flag"),
+    [
+        ("add_compile_options(-std=c++14)", True),
+        ('set(CMAKE_CXX_FLAGS "${CMAKE_CXX_FLAGS} -std=c++14")', True),
+        ("set(CMAKE_CXX_STANDARD 14)", False),
+        ("set(CMAKE_CXX_STANDARD 14)\nadd_compile_options(-std=c++14)", False),
+        ("set(CMAKE_CXX_STANDARD 14)\nadd_compile_options(-std=c++17)", False),
+        ("", False),
+    ],
+)
+def test_a_standard_that_flags_alone_set(source, by_flag):
+    assert build(source).standard_by_flag is by_flag
+
+
+@pytest.mark.parametrize(("required", "certain"), [("", False), ("REQUIRED", True)])
+def test_an_optional_module_may_be_found_or_not(required, certain):
+    (found,) = [
+        f
+        for f in build(
+            f"set(X_FOUND 0)\npkg_check_modules(X {required} x)\nif(X_FOUND)\nfind_package(Y)\nendif()"
+        ).found
+        if f.name == "Y"
+    ]
+    assert (found.conditions == ()) is certain
+
+
 STANDARDS = [
     ("set(CMAKE_CXX_STANDARD 17)", 17, False),
     ("if(NOT CMAKE_CXX_STANDARD)\nset(CMAKE_CXX_STANDARD 14)\nendif()", 14, True),

@@ -508,6 +508,187 @@ SILENT = {
         ),
         ("run.cpp", "  // rosimpact: allow(removed-header)", ""),
     ),
+    "a package of CATKIN_DEPENDS that is built and run with": Silent(
+        "catkin-depends",
+        ("melodic", "noetic"),
+        catkin("roscpp tf", "catkin_package(CATKIN_DEPENDS roscpp tf)", "roscpp", "tf"),
+        ("package.xml", "<depend>tf</depend>", "<exec_depend>tf</exec_depend>"),
+    ),
+    "a plain CMake package among the system's": Silent(
+        "catkin-depends",
+        ("melodic",),
+        catkin(
+            "roscpp",
+            "find_package(orocos_kdl REQUIRED)\ncatkin_package(CATKIN_DEPENDS roscpp DEPENDS orocos_kdl)",
+            "roscpp",
+            "orocos_kdl",
+        ),
+        ("CMakeLists.txt", "roscpp DEPENDS orocos_kdl", "roscpp orocos_kdl"),
+    ),
+    "a system library that is no component of catkin": Silent(
+        "missing-find-package",
+        ("noetic",),
+        catkin("roscpp", "find_package(yaml-cpp REQUIRED)\ncatkin_package()", "roscpp", "yaml-cpp"),
+        ("CMakeLists.txt", "COMPONENTS roscpp", "COMPONENTS roscpp yaml-cpp"),
+    ),
+    "a library that its vendor package no longer finds": Silent(
+        "missing-find-package",
+        ("jazzy",),
+        ament(
+            "find_package(yaml_cpp_vendor REQUIRED)\nfind_package(yaml-cpp REQUIRED)\nadd_executable(run run.cpp)\n"
+            "target_link_libraries(run yaml-cpp::yaml-cpp)\n" + INSTALLED,
+            "yaml_cpp_vendor",
+            run_cpp="#include <yaml-cpp/yaml.h>\n" + MAIN,
+        ),
+        (
+            "CMakeLists.txt",
+            "find_package(yaml-cpp REQUIRED)\nadd_executable(run run.cpp)\n"
+            "target_link_libraries(run yaml-cpp::yaml-cpp)",
+            "add_executable(run run.cpp)\nament_target_dependencies(run yaml_cpp_vendor)",
+        ),
+    ),
+    "a library's variables that pkg-config sets": Silent(
+        "missing-find-package",
+        ("jazzy",),
+        ament(
+            "find_package(PkgConfig REQUIRED)\npkg_check_modules(avcodec REQUIRED libavcodec)\n"
+            "add_executable(run run.cpp)\ntarget_link_libraries(run ${avcodec_LIBRARIES})\n" + INSTALLED,
+            "ffmpeg",
+            run_cpp=MAIN,
+        ),
+        ("CMakeLists.txt", "pkg_check_modules(avcodec REQUIRED libavcodec)", ""),
+    ),
+    "a prefix before REQUIRED": Silent(
+        "missing-find-package",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            "find_package(PkgConfig REQUIRED)\npkg_check_modules(YAML REQUIRED yaml-cpp)\ncatkin_package()",
+            "roscpp",
+            "yaml-cpp",
+        ),
+        ("CMakeLists.txt", "YAML REQUIRED", "REQUIRED"),
+    ),
+    "a package that is found for more than the tests": Silent(
+        "missing-find-package",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            "find_package(catkin REQUIRED COMPONENTS angles)\nif(CATKIN_ENABLE_TESTING)\nendif()\n"
+            + CATKIN_NODE
+            + "target_link_libraries(run ${catkin_LIBRARIES})\n"
+            "install(TARGETS run RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})",
+            "roscpp",
+            "angles",
+            run_cpp="#include <angles/angles.h>\n#include <ros/ros.h>\n" + MAIN,
+        ),
+        (
+            "CMakeLists.txt",
+            "find_package(catkin REQUIRED COMPONENTS angles)\nif(CATKIN_ENABLE_TESTING)\n",
+            "if(CATKIN_ENABLE_TESTING)\nfind_package(catkin REQUIRED COMPONENTS angles)\n",
+        ),
+    ),
+    "a program that is linked to its client library": Silent(
+        "missing-find-package",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            CATKIN_NODE + "target_link_libraries(run ${catkin_LIBRARIES})\n"
+            "install(TARGETS run RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})",
+            "roscpp",
+            run_cpp="#include <ros/ros.h>\n" + MAIN,
+        ),
+        ("CMakeLists.txt", "target_link_libraries(run ${catkin_LIBRARIES})", ""),
+    ),
+    "the include folder of ROS under a component's name": Silent(
+        "missing-find-package",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            "catkin_package()\ninclude_directories(${roscpp_INCLUDE_DIRS})\nadd_executable(run run.cpp)\n"
+            "target_link_libraries(run ${catkin_LIBRARIES})\n"
+            "install(TARGETS run RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})",
+            "roscpp",
+            run_cpp="#include <ros/ros.h>\n" + MAIN,
+        ),
+        ("CMakeLists.txt", "include_directories(${roscpp_INCLUDE_DIRS})", ""),
+    ),
+    "a find_package name in its own case": Silent(
+        "misspelt-cmake-name",
+        ("noetic",),
+        catkin(
+            "roscpp", "find_package(GeographicLib)\nfind_package(ZLIB REQUIRED)\ncatkin_package()", "roscpp", "zlib"
+        ),
+        ("CMakeLists.txt", "ZLIB", "Zlib"),
+    ),
+    "a Boost component that the program is linked to": Silent(
+        "library-component",
+        ("jazzy",),
+        ament(
+            "find_package(Boost REQUIRED COMPONENTS program_options)\nadd_executable(run run.cpp)\n"
+            "target_link_libraries(run Boost::program_options)\n" + INSTALLED,
+            "boost",
+            run_cpp="#include <boost/program_options.hpp>\n" + MAIN,
+        ),
+        ("CMakeLists.txt", "target_link_libraries(run Boost::program_options)\n", ""),
+    ),
+    "a Boost component that comes with a library of the package": Silent(
+        "library-component",
+        ("jazzy",),
+        ament(
+            "find_package(Boost REQUIRED COMPONENTS filesystem)\nadd_library(sled sled.cpp)\n"
+            "target_link_libraries(sled PUBLIC ${Boost_LIBRARIES})\nadd_executable(run run.cpp)\n"
+            "target_link_libraries(run PRIVATE sled)\ninstall(TARGETS sled DESTINATION lib)\n" + INSTALLED,
+            "boost",
+            run_cpp="#include <boost/filesystem.hpp>\n" + MAIN,
+            sled_cpp="int sled() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "target_link_libraries(run PRIVATE sled)", ""),
+    ),
+    "a compiled library that each program is linked to": Silent(
+        "library-component",
+        ("jazzy",),
+        ament(
+            "find_package(yaml-cpp REQUIRED)\nadd_executable(run run.cpp)\nadd_executable(walk run.cpp)\n"
+            "target_link_libraries(run yaml-cpp::yaml-cpp)\ntarget_link_libraries(walk yaml-cpp)\n"
+            "install(TARGETS run walk DESTINATION lib/${PROJECT_NAME})",
+            "yaml-cpp",
+            run_cpp="#include <yaml-cpp/yaml.h>\n" + MAIN,
+        ),
+        ("CMakeLists.txt", "target_link_libraries(walk yaml-cpp)\n", ""),
+    ),
+    "a standard header of the standard that is set": Silent(
+        "language-standard",
+        ("kinetic",),
+        catkin(
+            "roscpp",
+            "add_compile_options(-std=c++11)\n" + CATKIN_NODE + "target_link_libraries(run ${catkin_LIBRARIES})\n"
+            "install(TARGETS run RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})",
+            "roscpp",
+            run_cpp="#include <mutex>\n#include <ros/ros.h>\n" + MAIN,
+        ),
+        ("CMakeLists.txt", "add_compile_options(-std=c++11)\n", ""),
+    ),
+    "a flag for the standard that linked targets ask for": Silent(
+        "language-standard",
+        ("jazzy",),
+        ament(
+            'set(CMAKE_CXX_FLAGS "${CMAKE_CXX_FLAGS} -std=c++17")\n' + NODE.format("") + INSTALLED,
+            "rclcpp",
+            run_cpp=RCLCPP + MAIN,
+        ),
+        ("CMakeLists.txt", "-std=c++17", "-std=c++14"),
+    ),
+    "a lower CMAKE_CXX_STANDARD, which CMake raises": Silent(
+        "language-standard",
+        ("jazzy",),
+        ament(
+            "set(CMAKE_CXX_STANDARD 14)\n" + NODE.format("") + INSTALLED,
+            "rclcpp",
+            run_cpp=RCLCPP + MAIN,
+        ),
+        ("CMakeLists.txt", "set(CMAKE_CXX_STANDARD 14)", "add_compile_options(-std=c++14)"),
+    ),
 }
 
 

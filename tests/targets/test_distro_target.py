@@ -310,3 +310,33 @@ def test_end_of_life(name, ended):
 def test_ever_released():
     assert target("jazzy").ever_released("roscpp")
     assert not target("jazzy").ever_released("no_such_package")
+
+
+@pytest.mark.parametrize(
+    ("text", "distro"),
+    [
+        ("foxy", "lyrical"),
+        ("rolling@2022-02-21", "lyrical"),  # a rolling of that day is older than the newest long-term distro
+        ("rolling", None),
+        ("lyrical", None),
+        ("melodic", "noetic"),
+        ("noetic", None),
+    ],
+)
+def test_the_newest_long_term_distro(text, distro):
+    newest = target(text).newest()
+    assert (newest.distro if newest is not None else None) == distro
+
+
+@pytest.mark.parametrize(
+    ("text", "package", "here", "near"),
+    [
+        ("melodic", "orocos_kdl", "cmake", ""),
+        ("hydro", "orocos_kdl", "", "cmake"),  # the manifests of hydro are not known
+        ("noetic", "fcl", "cmake", ""),
+        ("noetic", "no_such_package", "", ""),
+    ],
+)
+def test_build_type(text, package, here, near):
+    machine = target(text)
+    assert (machine.build_type(package), machine.similar_build_type(package)) == (here, near)

@@ -300,3 +300,10 @@ def test_standard_library(module, minor, major, there):
 @pytest.mark.parametrize(("module", "ever"), [("imp", True), ("urllib2", True), ("tomllib", True), ("rospy", False)])
 def test_ever_in_the_standard_library(module, ever):
     assert ever_stdlib(module) is ever
+
+
+@pytest.mark.parametrize(
+    ("name", "spelled"), [("eigen", {"Eigen"}), ("zlib", {"ZLIB"}), ("ZLIB", {"ZLIB"}), ("NoSuchThing", set())]
+)
+def test_spellings_of_a_cmake_name(name, spelled):
+    assert set(default_providers().spellings(name)) == spelled

@@ -245,6 +245,8 @@ def pkg_check_modules(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.set_unknown(f"{prefix}_{suffix}", call.at)
     if required:
         run.set_text(f"{prefix}_FOUND", "1", call.at)
+    elif run.get(f"{prefix}_FOUND") is not None:
+        run.set_unknown(f"{prefix}_FOUND", call.at)
     if "IMPORTED_TARGET" in flags:
         run.new_target(f"PkgConfig::{prefix}", "imported", args[0].at)
 

@@ -187,10 +187,9 @@ class Interpreter:
         standard = None
         default_only = by_flag = False
         if self.standards:
-            number, at, _, by_flag = max(
-                self.standards, key=lambda entry: entry[0] if entry[0] < 90 else entry[0] - 100
-            )
+            number, at, _, _ = max(self.standards, key=lambda entry: entry[0] if entry[0] < 90 else entry[0] - 100)
             standard = (number, at)
+            by_flag = all(entry[3] for entry in self.standards)
             default_only = all(entry[2] for entry in self.standards)
         return Build(
             project=self.project,

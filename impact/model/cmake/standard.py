@@ -46,8 +46,7 @@ def note_variable(run: Interpreter, name: str, text: str, item: Word) -> None:
     elif name.startswith("CMAKE_CXX_FLAGS"):
         number = flag_standard(text)
         if number:
-            # CMake writes what CXX_STANDARD and compile features ask for after these flags, so that goes over them.
-            run.add_standard(number, item.at, is_default(run), False)
+            run.add_standard(number, item.at, is_default(run), True)
 
 
 def note_options(run: Interpreter, items: Iterable[Word]) -> None:

@@ -3,14 +3,19 @@
 What it does
     Reports packages whose headers compiled code includes, or whose CMake variables and targets are used, when no
     find_package (or catkin component, pkg_check_modules, ament_auto) of the package asks for them and none that is
-    asked for brings them.
+    asked for brings them. What is found for the tests alone counts for the tests alone. Also components of catkin that
+    are system libraries on the target, libraries that their vendor package no longer finds, and pkg_check_modules
+    whose first argument, the prefix of its variables, is REQUIRED, and programs that include a client library and are
+    linked to nothing.
 
 Why it breaks
     The compiler misses the include path, or the linker the library, unless another package happens to add them.
 
 Severity
-    error where a target is linked or an include path used under a name that only the missing find_package defines;
-    warning for includes, since an include path may come along by accident.
+    error where a target is linked or an include path used under a name that only the missing find_package defines,
+    where catkin is asked for a system library, for a program that is linked to nothing, and, since Kinetic, where no
+    target gets ROS's include folder; warning for includes, since an include path may come along by accident, and for
+    variables that nothing sets.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -26,6 +31,7 @@ import re
 from functools import lru_cache
 
 from ...model.view import View, interface_of
+from ...targets.version import at_least
 from ..rule import Hit, rule
 
 _SYSTEM_BY_DEFAULT = (
@@ -53,10 +59,20 @@ def missing_find_package(view: View):
         yield from _no_components(view, package)
         yield from _directories_not_given(view, package)
         yield from _not_given(view, package)
+        yield from _only_placed(view, package)
+        yield from _never_set(view, package)
+        yield from _no_prefix(view, package)
+        yield from _linked_to_nothing(view, package)
         found = found_names(view, package)
         if found is None:
             continue
         reachable = view.spread(found)
+        for_tests = {f.name for f in package.build.found if _for_tests(f) and f.name in found}
+        outside = {f.name for f in package.build.found if not _for_tests(f)}
+        built = (
+            view.spread(n for n in found if n in outside or n not in for_tests) if for_tests - outside else reachable
+        )
+        shipped = {t.name for t in package.build.targets if t.kind != "test" and not _for_tests(t)}
         closure = view.closure(package)
         told = set()
         for at, name in _given_to_targets(view, package):
@@ -71,12 +87,13 @@ def missing_find_package(view: View):
                 package.name,
                 severity="error",
             )
-        sought = {_folded(f.name) for f in package.build.found}
+        sought = {_folded(f.name) for f in package.build.found if f.name in outside}
         linked = {_folded(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
         for need in view.weighed(package):
             if need.how != "include" or need.role != "build" or not need.certain:
                 continue
-            if view.answered(need.providers, reachable) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
+            reached = built if shipped.intersection(need.targets) else reachable
+            if view.answered(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
                 continue
             name = next((p.name for p in need.providers if p.name in closure), None)
             if name is None or name in told or name == package.name:
@@ -223,6 +240,8 @@ def _directories_not_given(view: View, package):
     )
     if "catkin_INCLUDE_DIRS" in given or "/opt/ros" in given:
         return
+    if any(f"{f.name}_INCLUDE_DIRS" in given for f in build.found if f.how == "catkin"):
+        return  # all of /opt/ros lies in one folder
     for target in build.targets:
         if target.kind not in ("executable", "library") or not view.certain(target.conditions):
             continue
@@ -243,8 +262,13 @@ def _directories_not_given(view: View, package):
                 f"`{include.path}` is included by `{target.name}`, which does not get catkin_INCLUDE_DIRS",
                 "include_directories(${catkin_INCLUDE_DIRS})",
                 package.name,
+                severity="warning" if view.target.distro in _WITH_CPATH else "error",
             )
             return
+
+
+# Distros whose setup files put the include folder of ROS into CPATH. Source: catkin's change log, 0.7.0.
+_WITH_CPATH = ("groovy", "hydro", "indigo", "jade")
 
 
 def _no_components(view: View, package):
@@ -253,22 +277,145 @@ def _no_components(view: View, package):
         name = found.name
         if found.how != "catkin" or name == "catkin" or not view.certain(found.conditions):
             continue
-        if (
-            name in view.workspace.packages
-            or view.target.version(name) is not None
-            or view.target.resolve(name) is None
-        ):
+        if name in view.workspace.packages or view.target.version(name) is not None or view.private(name):
             continue
-        if view.providers.cmake_platforms(name) or any(p.kind == "system" for p in view.cmake(name)):
-            continue  # a plain CMake package of the system answers, and catkin takes it
+        key = view.target.resolve(name) is not None
+        if not key and not any(p.kind == "system" and view.target.resolve(p.name) for p in view.cmake(name)):
+            continue
         yield Hit(
             found.at,
             name,
             f"`{name}` is a system library in {view.target.distro} and no catkin component",
             f"find_package({name} REQUIRED), or pkg-config, on its own",
             package.name,
-            severity="warning",
+            severity="error" if key and found.required and not view.underlaid else "warning",
         )
+
+
+# Headers of client libraries, whose compiled part every program needs that includes them.
+_CLIENTS = {"ros/ros.h": ("roscpp", "${catkin_LIBRARIES}"), "rclcpp/rclcpp.hpp": ("rclcpp", "rclcpp::rclcpp")}
+
+
+def _linked_to_nothing(view: View, package):
+    """Programs that include a client library and are given nothing to link."""
+    build = package.build
+    if build.unresolved or build.links or package.build_type == "ament_cmake_auto":
+        return
+    linked = {t.name for t in build.targets if any(link.how in ("link", "ament") for link in t.links)}
+    programs = {
+        t.name: t
+        for t in build.targets
+        if t.kind == "executable" and t.name not in linked and t.sources and view.certain(t.conditions)
+    }
+    for include in package.digest.includes if programs else ():
+        client, item = _CLIENTS.get(include.path, ("", ""))
+        if not client or client in view.workspace.packages or not view.certain(include.conditions):
+            continue
+        if include.role != "build":
+            continue  # such as a test's program that `make all` leaves out
+        for name in include.targets:
+            target = programs.pop(name, None)
+            if target is not None:
+                yield Hit(
+                    target.at,
+                    client,
+                    f"`{name}` includes `{include.path}` and is linked to nothing",
+                    f"target_link_libraries({name} {item})",
+                    package.name,
+                    severity="error",
+                )
+
+
+# Vendor packages that only tell CMake where the library's configuration is, from which version on: package, version,
+# CMake package, how its include paths begin. Source: the vendor packages' `-extras.cmake.in`.
+_PLACING = (("yaml_cpp_vendor", "9.0.0", "yaml-cpp", "yaml-cpp/"),)
+
+
+def _only_placed(view: View, package):
+    """Libraries whose vendor package is found and no longer finds them."""
+    found = {f.name: f for f in package.build.found}
+    for vendor, since, library, root in _PLACING:
+        version = view.target.version(vendor)
+        asked = found.get(vendor)
+        if asked is None or library in found or not version or not at_least(version, since):
+            continue
+        linked = {_folded(link.item) for t in package.build.targets for link in t.links}
+        if _folded(library) in linked:
+            continue
+        use = next((i for i in package.digest.includes if i.path.startswith(root) and i.targets), None)
+        if use is None or not view.certain(use.conditions):
+            continue
+        others = view.spread(name for name in found if name != vendor)
+        if vendor in others or library in others:
+            continue  # it may come along with those
+        yield Hit(
+            asked.at,
+            library,
+            f"`{use.path}` is included, and {vendor} {version} no longer finds `{library}`",
+            f"add find_package({library} REQUIRED) and link it",
+            package.name,
+            severity="error" if asked.required else "warning",
+        )
+
+
+_LIBRARIES = re.compile(r"(.+)_(?:LIBRARIES|LIBRARY|LIBS)\Z")
+# Variables that other things than a find_package of their own name set: test macros, Python, Qt, catkin itself, what
+# PCL, gazebo and rviz find along.
+_SET_ALONG = re.compile(
+    r"(?i)(gtest|gmock|python|pythonlibs|qt|qt\d?\w*|catkin|boost\w*|rviz.*|ogre\w*|eigen\d?|opengl|gl|x11|openmp\w*|"
+    r"threads|sdformat|protobuf|vtk|openssl\w*|tinyxml\d?|console_bridge|urdfdom\w*|mpi|cuda\w*|.*_cuda|dl|m|rt)\Z"
+)
+
+
+def _never_set(view: View, package):
+    """`${X_LIBRARIES}` that a target links and nothing sets: the linker then misses the library."""
+    build = package.build
+    if build.unresolved or any("$" in f.name for f in build.found):
+        return
+    sought = {_folded(n) for f in build.found for n in (f.name, f.prefix) if n}
+    reachable = {_folded(name) for name in view.spread(f.name for f in build.found)}
+    told = set()
+    for use in build.uses:
+        match = (
+            _LIBRARIES.match(use.name) if use.kind == "variable" and use.context == "target_link_libraries" else None
+        )
+        if match is None or use.name in told or not view.certain(use.conditions):
+            continue
+        stem = match.group(1)
+        folded = _folded(stem)
+        if not folded or _SET_ALONG.match(stem) or view._is_package(stem):
+            continue
+        if any(folded in other or other in folded for other in (*sought, *reachable) if len(other) > 2):
+            continue
+        told.add(use.name)
+        module = next((m for m in (stem, f"lib{stem}") if view.providers.pkgconfig(m)), "")
+        known = module or (stem if view.cmake(stem) else "")
+        if not known:
+            continue
+        yield Hit(
+            use.at,
+            known,
+            f"`{use.name}` is linked, and nothing sets it",
+            f"pkg_check_modules({stem} REQUIRED {module})" if module else f"find_package({stem} REQUIRED)",
+            package.name,
+        )
+
+
+def _no_prefix(view: View, package):
+    """pkg_check_modules(REQUIRED x): its first argument names the variables, so that x is not required."""
+    for found in package.build.found:
+        if found.how == "pkg_check_modules" and found.prefix in ("REQUIRED", "QUIET"):
+            yield Hit(
+                found.at,
+                found.name,
+                f"`{found.prefix}` is taken as the prefix of the variables, so `{found.name}` is not {found.prefix}",
+                f"pkg_check_modules({found.name.upper().replace('-', '_')} {found.prefix} {found.name})",
+                package.name,
+            )
+
+
+def _for_tests(made) -> bool:
+    return any("TESTING" in c.text for c in made.conditions)
 
 
 @lru_cache(maxsize=10000)

@@ -3,8 +3,8 @@
 What it does
     Reports names in find_package, catkin COMPONENTS, ament_export_dependencies, ament_target_dependencies and
     catkin_package that nobody provides and that are two known names run together, or one edit or a different case away
-    from a name the package declares or finds; and variables such as `Eigen3_INCLUDE_DIR` that no find module sets, one
-    edit or case away from one that is.
+    from a name the package declares or finds; names in find_package that are known in another case alone; and variables
+    such as `Eigen3_INCLUDE_DIR` that no find module sets, one edit or case away from one that is.
 
 Why it breaks
     CMake takes an unknown variable as empty and says nothing; an unknown package stops this build or a dependant's.
@@ -76,7 +76,32 @@ def misspelt_cmake_name(view: View):
                     severity="error" if required and view.certain(conditions) else "warning",
                     fix=(Replace(at.path, at.line, at.column, name, meant),),
                 )
+        yield from _wrong_case(view, package)
         yield from _variables(view, package, found)
+
+
+def _wrong_case(view: View, package):
+    """find_package names that are known in another case alone: CMake looks for files of this very name."""
+    own = {path.rpartition("/")[2] for other in view.workspace for path in other.files if path.endswith(".cmake")}
+    for f in package.build.found:
+        if f.how != "find_package" or not f.required or not view.certain(f.conditions) or view._is_package(f.name):
+            continue
+        if f.name.islower():
+            continue  # `x-config.cmake` answers to it, which no list of files need show
+        if {f"Find{f.name}.cmake", f"{f.name}Config.cmake"} & own or any(p.sure for p in view.cmake(f.name)):
+            continue
+        meant = [n for n in view.providers.spellings(f.name) if n != f.name]
+        if len(meant) != 1 or not view.cmake(f.name) or meant[0] == f.name.lower():
+            continue
+        yield Hit(
+            f.at,
+            f.name,
+            f"nobody provides `{f.name}`; CMake minds the case of `{meant[0]}`",
+            f"write `{meant[0]}`",
+            package.name,
+            severity="error" if view.target.platform in view.providers.platforms else "warning",
+            fix=(Replace(f.at.path, f.at.line, f.at.column, f.name, meant[0]),),
+        )
 
 
 def _named(package):

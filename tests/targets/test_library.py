@@ -1,0 +1,50 @@
+"""Which Boost headers need a compiled library, and which components a platform's version lacks."""
+
+import pytest
+from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.library import compiled_component, gone_component
+from rosimpact.impact.targets.providers import default_providers
+
+
+@pytest.mark.parametrize(
+    ("header", "boost", "component"),
+    [
+        ("boost/program_options.hpp", "1.83", "program_options"),
+        ("boost/filesystem/path.hpp", "1.54", "filesystem"),
+        ("boost/iostreams/filter/zlib.hpp", "1.71", "iostreams"),
+        ("boost/iostreams/stream.hpp", "1.71", None),
+        ("boost/archive/text_oarchive.hpp", "1.74", "serialization"),
+        ("boost/serialization/singleton.hpp", "1.74", None),
+        # Boost 1.76: Regex is headers alone; Boost 1.69: System is
+        ("boost/regex.hpp", "1.74", "regex"),
+        ("boost/regex.hpp", "1.83", None),
+        ("boost/asio.hpp", "1.65", "system"),
+        ("boost/asio.hpp", "1.71", None),
+        ("boost/thread/mutex.hpp", "1.65", "thread"),
+        ("boost/thread/mutex.hpp", "1.71", None),
+        ("boost/thread.hpp", "1.71", "thread"),
+        ("boost/bind.hpp", "1.54", None),
+        ("regex", "1.54", None),
+    ],
+)
+def test_the_compiled_library_of_a_header(header, boost, component):
+    assert compiled_component(header, boost) == component
+
+
+@pytest.mark.parametrize(
+    ("distro", "component", "gone"),
+    [
+        ("melodic", "signals", False),
+        ("noetic", "signals", True),
+        ("jazzy", "exception", False),  # Ubuntu still has its CMake configuration
+        ("lyrical", "exception", False),
+        ("jazzy", "system", False),
+        ("lyrical", "system", True),
+    ],
+)
+def test_a_component_that_is_gone(distro, component, gone):
+    target = DistroTarget(distro)
+    assert (gone_component(target, "Boost", component) is not None) is gone
+    known = default_providers()
+    if target.platform in known.cmake_platforms("boost_regex"):  # Boost brings configurations since 1.70
+        assert (target.platform not in known.cmake_platforms(f"boost_{component}")) is gone
