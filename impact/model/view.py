@@ -78,6 +78,7 @@ class View:
     def __init__(self, workspace: Workspace, target: Target, providers, config: Config = _UNCONFIGURED):
         self.workspace, self.target, self.providers, self.config = workspace, target, providers, config
         self._closures: dict[tuple[str, frozenset[str]], dict[str, str]] = {}
+        self._brought: dict[str, dict[str, str]] = {}
         self._needs: dict[str, tuple[Need, ...]] = {}
         self._headers: dict[str, tuple[Provider, ...]] = {}
         self._cmake: dict[str, tuple[Provider, ...]] = {}
@@ -413,6 +414,13 @@ class View:
     @cached_property
     def _direct(self) -> dict[str, tuple[str, ...]]:
         return {}
+
+    def brought_by(self, name: str) -> dict[str, str]:
+        """Everything that a single package or key brings along, itself included."""
+        known = self._brought.get(name)
+        if known is None:
+            known = self._brought[name] = self.spread([name])
+        return known
 
     def _installed_with(self, name: str) -> tuple[str, ...]:
         known = self._direct.get(name)

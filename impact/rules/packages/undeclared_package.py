@@ -26,7 +26,7 @@ Not reported
 """
 
 from ...model.spelling import folded, one_edit
-from ...model.view import Need, View, interface_of
+from ...model.view import Need, View
 from ..cure import Declare
 from ..evidence import circular, name_to_declare, present, weight
 from ..rule import Hit, rule
@@ -111,7 +111,6 @@ WITH_CLIENT = frozenset(
         "opencv3",
     ]
 )
-_MESSAGES = ("_msgs", "_srvs", "_interfaces")
 # Keys that most graphs of dependencies bring anyway.
 _COMMON_KEYS = frozenset(
     {
@@ -175,50 +174,54 @@ def undeclared_package(view: View):
 
 
 def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dict[str, str]):
-    """What built code uses and only a dependency of a dependency brings: it leaves when that one does."""
+    """What a package uses and a single declared dependency happens to bring: it leaves when that one drops it. What two
+    declared dependencies bring seldom does, and is told only where the configuration itself asks for it."""
+    told = []
+    declared = view.declared(package)
     for name, needs in borrowed.items():
-        if name in WITH_CLIENT or name.startswith(("ament_", "rosidl_", "rmw")) or name.endswith(_MESSAGES):
+        if name.startswith(("ament_", "rosidl_", "rmw")):
             continue
-        ours = name in view.workspace.packages
-        ros = ours or view.target.version(name) is not None
-        strong = [
-            n
-            for n in needs
-            if n.certain
-            and n.required
-            and (
-                (n.how in ("find_package", "component") and n.role == "build" and (ros or name not in _COMMON_KEYS))
-                or (
-                    n.how == "include"
-                    and n.role == "build"
-                    and n.targets
-                    and ros
-                    and interface_of(view, n.subject) is None
-                )
-                or (n.how == "import" and ours and n.role == "run")
-            )
-        ]
+        strong = [n for n in needs if n.certain and n.required and _leans(view, n, name)]
         if not strong:
             continue
         first = min(strong, key=weight)
+        sources = [d for d in declared if view.answered(first.providers, view.brought_by(d))]
+        if not 1 <= len(sources) <= _SOURCES[first.how]:
+            continue
         if (
-            ours
-            and first.how == "include"
+            first.how == "include"
+            and name in view.workspace.packages
             and closure.get(name, "") in view.workspace.packages
             and view.target.ros == 1
         ):
             continue  # one repository, built in its order
-        through = closure.get(name) or next((closure[p.name] for p in first.providers if p.name in closure), "")
+        told.append((len(sources), weight(first), name, sources, first))
+    for rank, (_, _, name, sources, first) in enumerate(sorted(told, key=lambda t: t[:3])):
+        tag = _tag(first, package.manifest.format)
         yield Hit(
             first.at,
             name,
-            f"{_how(first)}, and `{name}` only comes along with `{through}`",
-            f"add `<{_tag(first, package.manifest.format)}>{name}</{_tag(first, package.manifest.format)}>` to "
-            f"{package.digest.manifest_path}",
+            f"{_how(first)}, and `{name}` only comes along with {' and '.join(f'`{s}`' for s in sources)}",
+            f"add `<{tag}>{name}</{tag}>` to {package.digest.manifest_path}",
             package.name,
-            severity="warning",
-            fix=_cure(view, package, first, name),
+            severity="warning" if rank < _LOUD else "note",
+            fix=_cure(view, package, first, name) if rank < _LOUD else (),
         )
+
+
+# By how many declared dependencies something may come along and still be told.
+_SOURCES = {"include": 1, "import": 1, "find_package": 2, "component": 3}
+
+
+def _leans(view: View, need: Need, name: str) -> bool:
+    """True where losing a dependency that only comes along would stop the build, or an import of the workspace's own."""
+    ours = name in view.workspace.packages
+    ros = ours or view.target.version(name) is not None
+    if need.how == "import":
+        return ours and need.role == "run"
+    if need.role != "build" or name in WITH_CLIENT or (not ros and name in _COMMON_KEYS):
+        return False
+    return need.how in ("find_package", "component") or (need.how == "include" and bool(need.targets))
 
 
 def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
