@@ -17,7 +17,7 @@ from ..targets.changes import transitive_includes
 from ..targets.library import include_roots
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
-from .build import At
+from .build import At, Found
 from .conditions import Environment, all_hold
 from .package import role_of_folder
 from .spelling import Names
@@ -38,9 +38,9 @@ _ALWAYS = frozenset({
 class Need(NamedTuple):
     """Something a package uses of somebody else.
 
-    how: find_package, component, include, import, launch, plugin or shell. subject: as written. providers: who could
-    give it, best first. role: build, test, run or aside. certain: stands under no condition that is unknown on the
-    target. required: its absence stops the configuration (find_package) or the program.
+    how: find_package, component, pkg-config, include, import, launch, plugin or shell. subject: as written.
+    providers: who could give it, best first. role: build, test, run or aside. certain: stands under no condition that
+    is unknown on the target. required: its absence stops the configuration (find_package) or the program.
     """
 
     how: str
@@ -576,6 +576,8 @@ class View:
     def _collect(self, package: Package) -> Iterator[Need]:
         digest = package.digest
         for found in package.build.found:
+            if found.how == "pkg_check_modules" and self.active(found.conditions):
+                yield from self._modules_asked(found)
             if found.how not in ("find_package", "catkin") or not self.active(found.conditions):
                 continue
             if found.name in ("catkin", package.name) or package.name in self.workspace.find_modules.get(
@@ -639,6 +641,23 @@ class View:
                 not reference.conditional,
                 not reference.conditional,
             )
+
+
+    def _modules_asked(self, found: Found) -> Iterator[Need]:
+        """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
+        providers = tuple(self.providers.pkgconfig(re.split(r"[<>=]", found.name)[0]))
+        if not providers or found.name in self.workspace.packages:
+            return
+        testing = any("TESTING" in c.text for c in found.conditions)
+        yield Need(
+            "pkg-config",
+            found.name,
+            providers,
+            found.at,
+            "test" if testing else "build",
+            self.certain(found.conditions),
+            found.required,
+        )
 
 
 @lru_cache(maxsize=10000)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from ..model.view import Need, View
 from ..model.workspace import Package
 
-_HOW = {"find_package": 0, "component": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5}
+_HOW = {
+    "find_package": 0, "component": 0, "pkg-config": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5,
+}  # fmt: skip
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
 
 

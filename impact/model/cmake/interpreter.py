@@ -58,6 +58,10 @@ class _TooMuch(Exception):
     """The package asks for more work than any real one."""
 
 
+# Commands that name targets of the package.
+_ON_TARGETS = frozenset({"add_dependencies", "add_executable", "add_library", "target_link_libraries"})
+
+
 class Interpreter:
     """One run over one package. Command handlers read and write it; run() gives the Build."""
 
@@ -211,6 +215,16 @@ class Interpreter:
             unresolved=tuple(self.unresolved),
             files=tuple(self.files),
             message_files=tuple(self.message_files),
+            project_by_variable=self._project_by_variable(),
+        )
+
+    def _project_by_variable(self) -> bool:
+        facts = self.read(posixpath.join(self.package_path, "CMakeLists.txt"))
+        return facts is not None and any(
+            "${PROJECT_NAME}" in argument.text
+            for command in facts.commands
+            if command.name in _ON_TARGETS
+            for argument in command.arguments
         )
 
     def load(self, path: str) -> list[Call | Block] | None:

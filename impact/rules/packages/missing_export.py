@@ -25,13 +25,14 @@ Not reported
 """
 
 import posixpath
+import re
 
 from ...model.view import View
 from ...targets.library import variables
 from ..evidence import weight
 from ..rule import Hit, rule
 from .missing_find_package import found_names
-from .undeclared_package import WITH_CLIENT
+from .undeclared_package import LOUD, WITH_CLIENT, WITH_TESTS
 
 
 @rule(severity="warning")
@@ -128,7 +129,9 @@ def _ament(view: View, package):
             ]
             if libraries and any("/include/" in f"/{h}" for h in package.digest.public_headers):
                 first = package.build.ament_package
-                if package.name not in view.workspace.includers:
+                # Plugins of a base class of its own: it is there for others to include.
+                own_base = any(e.how == "plugin_description" and e.context == package.name for e in exports)
+                if package.name not in view.workspace.includers and not own_base:
                     return
                 yield Hit(
                     first,
@@ -143,19 +146,24 @@ def _ament(view: View, package):
     ):
         return
     yield from _linked(view, package, exports)
+    yield from _never_built(view, package, exports)
     exported = set()
     for export in exports:
         if export.how == "ament_export_dependencies":
             exported.add(export.item)
             exported.update(p.name for p in view.cmake(export.item))
     reach = view.spread(exported)
+    yield from _off_path(view, package, exports, reach)
     found = found_names(view, package) or set()
     told = set()
     # Until Galactic all headers lay in one folder, so a missing export went unnoticed.
     apart = view.target.distro not in ("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic")
     includers = view.workspace.includers.get(package.name)
+    spoken = 0
     for need in sorted(view.needs(package), key=weight):
         if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, reach):
+            continue
+        if need.subject.startswith(WITH_TESTS):
             continue
         name = next((p.name for p in need.providers if p.name in found), None)
         if name is None or name in told or name == package.name or need.providers[0].kind != "ros":
@@ -168,6 +176,9 @@ def _ament(view: View, package):
             and (includers or "ament_export_libraries" in hows or "ament_export_targets" in hows)
             else "note"
         )
+        # A package that exports little is told so by the first few; the rest follow as notes.
+        spoken += severity == "warning"
+        severity = severity if spoken <= LOUD else "note"
         yield Hit(
             need.at,
             name,
@@ -175,6 +186,53 @@ def _ament(view: View, package):
             f"add `{name}` to ament_export_dependencies",
             package.name,
             severity=severity,
+        )
+
+
+# System libraries whose headers lie in a folder of their own that the compiler does not search by itself.
+_OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "libpcl-dev", "libogre-dev", "libxml2"})
+
+
+def _off_path(view: View, package, exports, reach):
+    """Header-only packages that leave the include folder of a system library out."""
+    if any(e.how == "cfg_extras" for e in exports) or _installed(package):
+        return
+    told = set()
+    for need in sorted(view.needs(package), key=weight):
+        name = need.providers[0].name
+        if need.how != "include" or not need.public or not need.certain or name not in _OFF_PATH or name in told:
+            continue
+        if view.answered(need.providers, reach) or any("$" in e.item for e in exports if "include" in e.how):
+            continue
+        told.add(name)
+        yield Hit(
+            need.at,
+            name,
+            f"an installed header includes `{need.subject}` and the include folder of `{name}` is not exported",
+            "export its package, or its include directories",
+            package.name,
+            severity="warning",
+        )
+
+
+def _never_built(view: View, package, exports):
+    """ament_export_libraries() of what no command makes: find_package(this package) stops when it looks for it."""
+    names = {n for t in package.build.targets for n in (t.name, t.output_name) if t.kind != "unknown"}
+    if package.build.unresolved or any("$" in name for name in names):
+        return
+    for export in exports:
+        item = export.item
+        if export.how != "ament_export_libraries" or item in names or re.search(r"[$/.:]|^-", item):
+            continue
+        if not view.certain(export.conditions) or (view.cmake(item) and item != package.name):
+            continue
+        yield Hit(
+            export.at,
+            item,
+            f"the exported library `{item}` is never built, so find_package({package.name}) stops",
+            "export what the package builds, or drop it",
+            package.name,
+            severity="warning",
         )
 
 

@@ -163,16 +163,16 @@ def _catkin_generation(view: View, package):
         return
     found = {f.name for f in package.build.found}
     if "message_generation" not in found and "genmsg" not in found:
-        at = generated[0].at
         reach = view.spread(found)
-        if "message_generation" not in reach and "genmsg" not in reach:
-            yield Hit(
-                at,
-                "message_generation",
-                "messages are generated and `message_generation` is never found",
-                "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)",
-                package.name,
-            )
+        name = next((n for n in ("message_generation", "genmsg") if n in reach), None)
+        yield Hit(
+            generated[0].at,
+            "message_generation",
+            "messages are generated and `message_generation` is never found"
+            + (f", but for `{reach[name]}` that brings it" if name else ""),
+            "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)",
+            package.name,
+        )
 
 
 def _orders(package) -> dict[str, set[str]]:
@@ -229,10 +229,11 @@ def _catkin_order(view: View, package):
         include, target = min(uses, key=lambda u: (u[1].at.path, u[1].at.line, u[0].at.path, u[0].at.line))
         own = head == package.name
         cure = "${" + (f"{package.name}" if own else "catkin") + "_EXPORTED_TARGETS}"
+        maker = "${PROJECT_NAME}" if own and package.build.project_by_variable else head
         names = sorted({t.name for _, t in uses})
         yield Hit(
             target.at,
-            f"${{PROJECT_NAME}}_{kind}" if own else f"{head}_{kind}",
+            f"{maker}_{kind}",
             f"{_several(names)} `{include.path}` and may be built before it is generated",
             f"add_dependencies({names[0]} {cure})",
             package.name,

@@ -25,6 +25,10 @@ Not reported
     switched off on the target; names that nobody is known to provide (they are counted as unresolved).
 """
 
+import posixpath
+import re
+
+from ...model.build import At
 from ...model.spelling import folded, one_edit
 from ...model.view import Need, View
 from ..cure import Declare
@@ -58,9 +62,9 @@ _ON_THE_DESK = frozenset(
     ]
 )
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
-_LOUD = 2
+LOUD = 2
 # The macros that make tests bring these headers.
-_WITH_TESTS = ("gtest/", "gmock/")
+WITH_TESTS = ("gtest/", "gmock/")
 # Whoever starts a launch file has these: the launch tool itself brings them.
 _LAUNCHING = frozenset(
     {"launch", "launch_ros", "launch_xml", "launch_yaml", "roslaunch", "launch_testing", "launch_testing_ros"}
@@ -139,7 +143,7 @@ def undeclared_package(view: View):
         borrowed: dict[str, list[Need]] = {}
         for need in view.needs(package):
             if view.answered(need.providers, declared) or (
-                need.subject.startswith(_WITH_TESTS) and need.role == "test"
+                need.subject.startswith(WITH_TESTS) and need.role == "test"
             ):
                 continue
             name = name_to_declare(view, need)
@@ -147,20 +151,21 @@ def undeclared_package(view: View):
                 continue
             (borrowed if view.answered(need.providers, closure) else missing).setdefault(name, []).append(need)
         yield from _borrowed(view, package, borrowed, closure)
+        yield from _test_commands(view, package)
+        yield from _left_out(view, package)
         if not missing:
             continue
         blind = bool(view.blind(package))
         spoken = 0
-        for name, needs in missing.items():
-            needs.sort(key=lambda n: weight(n))
-            first = needs[0]
-            severity = _severity(view, first, name, blind)
+        firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
+        for first, name in firsts:
+            severity = _severity(view, package, first, name, blind)
             if severity is None:
                 continue
             if severity == "warning" and first.how in ("launch", "plugin", "shell", "import"):
                 # A package that leaves out many is told so by the first few; the rest follow as notes.
                 spoken += 1
-                severity = "warning" if spoken <= _LOUD else "note"
+                severity = "warning" if spoken <= LOUD else "note"
             yield Hit(
                 at=first.at,
                 subject=name,
@@ -204,35 +209,106 @@ def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dic
             f"{_how(first)}, and `{name}` only comes along with {' and '.join(f'`{s}`' for s in sources)}",
             f"add `<{tag}>{name}</{tag}>` to {package.digest.manifest_path}",
             package.name,
-            severity="warning" if rank < _LOUD else "note",
-            fix=_cure(view, package, first, name) if rank < _LOUD else (),
+            severity="warning" if rank < LOUD else "note",
+            fix=_cure(view, package, first, name) if rank < LOUD else (),
         )
 
 
+# Commands that tests are made with, and the packages they come from (their CMake extras in ament_cmake, launch and
+# ament_cmake_ros).
+_COMMANDS = {
+    "ament_add_gtest": "ament_cmake_gtest",
+    "ament_add_gtest_executable": "ament_cmake_gtest",
+    "ament_add_gmock": "ament_cmake_gmock",
+    "ament_add_gmock_executable": "ament_cmake_gmock",
+    "ament_add_pytest_test": "ament_cmake_pytest",
+    "ament_add_google_benchmark": "ament_cmake_google_benchmark",
+    "ament_add_nose_test": "ament_cmake_nose",
+    "add_launch_test": "launch_testing_ament_cmake",
+}
+
+
+def _test_commands(view: View, package):
+    """Commands that make tests, where neither find_package nor ament_lint_auto, which finds what is declared for tests,
+    can have brought them."""
+    if not package.build_type.startswith("ament"):
+        return
+    declared = view.declared(package)
+    told = set()
+    for use in package.build.uses:
+        name = _COMMANDS.get(use.name) if use.kind == "command" else None
+        if name is None or name in told or not view.active(use.conditions) or not present(view, name):
+            continue
+        told.add(name)
+        if name in view.closure(package) or name in view.spread(f.name for f in package.build.found):
+            continue
+        yield Hit(
+            use.at,
+            name,
+            f"`{use.name}` comes from `{name}`, and nothing that `{package.name}` declares brings it",
+            f"add `<test_depend>{name}</test_depend>` to {package.digest.manifest_path}, and "
+            f"find_package({name} REQUIRED)",
+            package.name,
+            severity="warning",
+            fix=() if declared.get(name) else (Declare(package.digest.manifest_path, name, "test_depend"),),
+        )
+
+
+def _left_out(view: View, package):
+    """The one package of its repository that a metapackage forgets."""
+    if not package.manifest.metapackage:
+        return
+    declared = view.declared(package)
+    folder = posixpath.dirname(package.path)
+    members = {p.name for p in view if not p.manifest.metapackage and posixpath.dirname(p.path) == folder}
+    missing = [name for name in members - declared.keys() if not _APART.search(name)]
+    if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS or missing[0] == package.name:
+        return
+    tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
+    yield Hit(
+        At(package.digest.manifest_path, 1),
+        missing[0],
+        f"the metapackage `{package.name}` brings every package of its repository except `{missing[0]}`",
+        f"add `<{tag}>{missing[0]}</{tag}>`, if that is not meant",
+        package.name,
+        severity="warning",
+    )
+
+
+# A metapackage that brings fewer packages says nothing of what it should.
+_MEMBERS = 3
+_APART = re.compile(
+    r"(^|_)(tests?|testing|examples?|demos?|tutorials?|benchmarks?|experimental|data|dev|simulation|gazebo)(_|$)"
+)
+
+
 # By how many declared dependencies something may come along and still be told.
-_SOURCES = {"include": 1, "import": 1, "find_package": 2, "component": 3}
+_SOURCES = {"include": 1, "import": 1, "find_package": 2, "component": 3, "pkg-config": 1}
 
 
 def _leans(view: View, need: Need, name: str) -> bool:
-    """True where losing a dependency that only comes along would stop the build, or an import of the workspace's own."""
+    """True where losing what only comes along would stop the build, or an import of the workspace's own."""
     ours = name in view.workspace.packages
     ros = ours or view.target.version(name) is not None
     if need.how == "import":
         return ours and need.role == "run"
     if need.role != "build" or name in WITH_CLIENT or (not ros and name in _COMMON_KEYS):
         return False
-    return need.how in ("find_package", "component") or (need.how == "include" and bool(need.targets))
+    return need.how in ("find_package", "component", "pkg-config") or (need.how == "include" and bool(need.targets))
 
 
-def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
+def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | None:
     if need.role == "aside":
         return "note"
     if not present(view, name):
         return None  # unreleased-package says it
-    if need.how in ("find_package", "component") and (not need.required or not any(p.sure for p in need.providers)):
+    asked = need.how in ("find_package", "component", "pkg-config")
+    if asked and (not need.required or not any(p.sure for p in need.providers)):
         return "note"
     if need.how in ("launch", "plugin", "shell") or name in _LAUNCHING:
-        loud = need.required and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
+        # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
+        wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
+        loud = wanted and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
         return "warning" if loud else "note"
     if need.role == "test" or need.how == "import":
         return (
@@ -243,7 +319,14 @@ def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
     if not need.certain:
         return "note"
     if need.how == "include" and not need.targets:
-        return "note"
+        # Nothing here compiles an installed header on its own; whoever includes it needs what it includes.
+        passed_on = (
+            need.public
+            and need.providers[0].kind == "ros"
+            and name not in WITH_CLIENT
+            and not need.subject.startswith(WITH_TESTS)
+        )
+        return "warning" if passed_on and not circular(view, package, name) else "note"
     if blind or not view.target.knows_manifests:
         return "warning"
     return "error"
@@ -253,6 +336,7 @@ def _how(need: Need) -> str:
     return {
         "find_package": f"CMake looks for `{need.subject}`",
         "component": f"CMake asks catkin for `{need.subject}`",
+        "pkg-config": f"pkg-config is asked for `{need.subject}`",
         "include": f"`{need.subject}` is included",
         "import": f"`{need.subject}` is imported",
         "launch": f"`{need.subject}` is "

@@ -23,6 +23,8 @@ Not reported
     What another declared dependency brings as the right kind.
 """
 
+import re
+
 from ...model.view import View
 from ..cure import Declare, Remove
 from ..evidence import circular, weight
@@ -38,6 +40,8 @@ def wrong_dependency_kind(view: View):
         declared = view.declared(package)
         build, exported, run = None, None, None
         told = set()
+        yield from _linked_on(view, package, declared)
+        yield from _without_headers(view, package, declared)
         for need in sorted(view.needs(package), key=weight):
             own = [p.name for p in need.providers if p.name in declared]
             if not own or not need.certain or not need.required or any(n in told for n in own):
@@ -100,6 +104,78 @@ def wrong_dependency_kind(view: View):
                     severity="warning" if kinds != {"test"} else "note",
                     fix=_cure(view, package, name, "exec_depend", kinds),
                 )
+
+
+def _linked_on(view: View, package, declared):
+    """System libraries that an exported library hands on to whoever links it, declared for building only."""
+    installed = {item for rule_ in package.build.installs if rule_.kind == "targets" for item in rule_.items}
+    linked = {
+        link.item: link
+        for target in package.build.targets
+        if target.name in installed and target.kind in ("library", "interface")
+        for link in target.links
+        if link.how == "link" and link.visibility != "PRIVATE" and view.active((*target.conditions, *link.conditions))
+    }
+    exported = None
+    for name, kinds in declared.items():
+        if "build" not in kinds or kinds & {"build_export", "exec"}:
+            continue
+        item = next((i for i in linked if view.debian(name) & {f"lib{i}-dev", f"{i}-dev"}), None)
+        if item is None:
+            continue
+        exported = exported if exported is not None else view.spread(n for n, k in declared.items() if k & _FOR_RUN)
+        if name in exported:
+            continue
+        place = next(d for d in package.manifest.dependencies if d.name == name)
+        yield Hit(
+            view.manifest_place(package, place),
+            name,
+            f"dependants link `{item}` along with the exported library, and do not get `{name}`",
+            f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
+            package.name,
+            fix=_cure(view, package, name, "depend", kinds),
+        )
+
+
+def _without_headers(view: View, package, declared):
+    """Keys that install a library without its headers, where built code wants the headers."""
+    bare = {
+        name: debian
+        for name in declared
+        if name.startswith("lib") and (debian := view.debian(name)) and not any(d.endswith("-dev") for d in debian)
+    }
+    told = set()
+    for need in sorted(view.needs(package), key=weight) if bare else ():
+        if need.how not in ("find_package", "component", "include", "pkg-config") or need.role != "build":
+            continue
+        if not need.certain or view.answered(need.providers, declared) or need.providers[0].name in told:
+            continue
+        wanted = {
+            re.sub(r"(-all)?-dev\Z", "", debian)
+            for provider in need.providers
+            if provider.kind == "system"
+            for debian in view.debian(provider.name)
+            if debian.endswith("-dev")
+        }
+        name = next((n for n, debian in bare.items() if any(_same_library(d, w) for d in debian for w in wanted)), None)
+        right = next((p.name for p in need.providers if view.available(p.name)), None)
+        if name is None or right is None:
+            continue
+        told.add(need.providers[0].name)
+        place = next(d for d in package.manifest.dependencies if d.name == name)
+        yield Hit(
+            view.manifest_place(package, place),
+            right,
+            f"`{name}` brings no headers, and `{need.subject}` needs those of `{right}`",
+            f"declare `{right}`",
+            package.name,
+        )
+
+
+def _same_library(installed: str, stem: str) -> bool:
+    """True when a package without headers belongs to the library: `libboost-thread1.71.0` to `libboost`."""
+    rest = installed[len(stem) :]
+    return len(stem) > 4 and installed.startswith(stem) and (not rest or rest[0] in "-0123456789.")
 
 
 def _cure(view: View, package, name: str, tag: str, kinds: set[str]) -> tuple[Declare | Remove, ...]:
