@@ -434,6 +434,7 @@ class View:
         return [
             n for n in self.closure(package)
             if n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
+            and not target.known_key(n)  # a key that the platform lacks brings nothing
             and target.dependencies(n) is None and target.similar_dependencies(n) is None
         ]  # fmt: skip
 

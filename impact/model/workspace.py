@@ -22,7 +22,7 @@ from .discovery import Discovered, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
 # Raise with every change of what a digest or the CMake interpreter says.
-DIGEST_VERSION = "11.1"
+DIGEST_VERSION = "12"
 _VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 

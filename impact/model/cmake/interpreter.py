@@ -820,7 +820,9 @@ class Interpreter:
 
     def use_variable(self, name: str, at: At) -> None:
         """Notes a variable that is read and that nothing sets, when its name tells that a package should."""
-        if self.silent or not name.endswith(READ_SUFFIXES) or name.startswith("CMAKE_"):
+        if self.silent or name.startswith("CMAKE_"):
+            return
+        if not name.endswith(READ_SUFFIXES) and not (name.startswith("CATKIN_") and self.command == "install"):
             return
         self.uses[Use("variable", name, self.place(at), self.command, self.conditions)] = None
 

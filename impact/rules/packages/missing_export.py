@@ -88,6 +88,7 @@ def _catkin(view: View, package):
                 f"the exported library `{export.item}` is no target of `{package.name}`",
                 "export the library's target name",
                 package.name,
+                severity=_of_dependants(view, package, export),
             )
         elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
             near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
@@ -232,8 +233,22 @@ def _never_built(view: View, package, exports):
             f"the exported library `{item}` is never built, so find_package({package.name}) stops",
             "export what the package builds, or drop it",
             package.name,
-            severity="warning",
+            severity=_of_dependants(view, package, export),
         )
+
+
+def _of_dependants(view: View, package, export) -> str:
+    """error where a package of the workspace is sure to look for one whose configuration cannot be read."""
+    sought = any(
+        found.name == package.name
+        and found.how in ("find_package", "catkin")
+        and (found.required or found.how == "catkin")
+        and view.certain(found.conditions)
+        for other in view
+        if other.name != package.name
+        for found in other.build.found
+    )
+    return "error" if sought and view.certain(export.conditions) else "warning"
 
 
 def _installed(package) -> set[str]:

@@ -163,11 +163,17 @@ def _under_another_name(view: View, package, installs):
             )
 
 
+# What catkin itself sets that may name a place (catkin's all.cmake and catkin_package.cmake).
+_PLACES = frozenset({"CATKIN_DEVEL_PREFIX", "CATKIN_TEST_RESULTS_DIR", "CATKIN_ENV"})
+
+
 def _variables(view: View, package):
     """Catkin's variables for places, misspelt or of a time before Groovy."""
     told = set()
     for use in package.build.uses:
         if use.kind != "variable" or use.context != "install" or not use.name.startswith("CATKIN_"):
+            continue
+        if not use.name.endswith(("_PREFIX", "_DESTINATION", "_DIR")) or use.name in _PLACES:
             continue
         if use.name in told or package.build_type != "catkin" or not view.certain(use.conditions):
             continue
@@ -175,9 +181,10 @@ def _variables(view: View, package):
         yield Hit(
             use.at,
             use.name,
-            f"nothing sets `{use.name}`, so files are looked for, or installed, in a wrong place",
+            f"nothing sets `{use.name}`, so what is installed is looked for, or put, in a wrong place",
             "write `${CATKIN_DEVEL_PREFIX}`" if use.name == "CATKIN_BUILD_PREFIX" else "correct the variable's name",
             package.name,
+            severity="error",
         )
 
 

@@ -172,6 +172,7 @@ def _catkin_generation(view: View, package):
             + (f", but for `{reach[name]}` that brings it" if name else ""),
             "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)",
             package.name,
+            severity="warning" if name or view.blind(package) or not view.target.knows_manifests else "error",
         )
 
 
@@ -229,7 +230,9 @@ def _catkin_order(view: View, package):
         include, target = min(uses, key=lambda u: (u[1].at.path, u[1].at.line, u[0].at.path, u[0].at.line))
         own = head == package.name
         cure = "${" + (f"{package.name}" if own else "catkin") + "_EXPORTED_TARGETS}"
-        maker = "${PROJECT_NAME}" if own and package.build.project_by_variable else head
+        # As the file itself spells it; what dynamic_reconfigure makes is named by the variable everywhere.
+        variable = own and (package.build.project_by_variable or kind == "gencfg")
+        maker = "${PROJECT_NAME}" if variable else head
         names = sorted({t.name for _, t in uses})
         yield Hit(
             target.at,

@@ -142,7 +142,8 @@ def undeclared_package(view: View):
         missing: dict[str, list[Need]] = {}
         borrowed: dict[str, list[Need]] = {}
         for need in view.needs(package):
-            if view.answered(need.providers, declared) or (
+            direct = view.answered(need.providers, declared)
+            if (direct and not _by_chance(view, need, declared, closure)) or (
                 need.subject.startswith(WITH_TESTS) and need.role == "test"
             ):
                 continue
@@ -150,12 +151,12 @@ def undeclared_package(view: View):
             if name is None or name == package.name:
                 continue
             (borrowed if view.answered(need.providers, closure) else missing).setdefault(name, []).append(need)
+        blind = bool(view.blind(package))
         yield from _borrowed(view, package, borrowed, closure)
-        yield from _test_commands(view, package)
+        yield from _test_commands(view, package, blind)
         yield from _left_out(view, package)
         if not missing:
             continue
-        blind = bool(view.blind(package))
         spoken = 0
         firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
         for first, name in firsts:
@@ -176,6 +177,26 @@ def undeclared_package(view: View):
                 severity=severity,
                 fix=_cure(view, package, first, name) if severity != "note" else (),
             )
+
+
+def _by_chance(view: View, need: Need, declared, closure) -> bool:
+    """True where nothing brings the system library itself, only a key of another one that depends on it somewhere."""
+    first = need.providers[0]
+    if need.how not in ("find_package", "include") or first.kind != "system" or not first.name:
+        return False
+    itself = tuple(
+        p for p in need.providers if p.kind == "ros" or first.package in (p.package, *view.debian(p.name))
+    )
+    if view.answered(itself, closure):
+        return False
+    # `geos` is libgeos++-dev's, whatever it installs here
+    return not any(
+        _bare(name) in _bare(first.name) for name in declared if view.answered(need.providers, {name: name})
+    )
+
+
+def _bare(key: str) -> str:
+    return re.sub(r"^lib|-dev$|^python3?-|[\d.]+$", "", key)
 
 
 def _borrowed(view: View, package, borrowed: dict[str, list[Need]], closure: dict[str, str]):
@@ -228,7 +249,7 @@ _COMMANDS = {
 }
 
 
-def _test_commands(view: View, package):
+def _test_commands(view: View, package, blind: bool):
     """Commands that make tests, where neither find_package nor ament_lint_auto, which finds what is declared for tests,
     can have brought them."""
     if not package.build_type.startswith("ament"):
@@ -240,6 +261,7 @@ def _test_commands(view: View, package):
         if name is None or name in told or not view.active(use.conditions) or not present(view, name):
             continue
         told.add(name)
+        sure = use.conditions and all("TESTING" in c.text for c in use.conditions)
         if name in view.closure(package) or name in view.spread(f.name for f in package.build.found):
             continue
         yield Hit(
@@ -249,7 +271,7 @@ def _test_commands(view: View, package):
             f"add `<test_depend>{name}</test_depend>` to {package.digest.manifest_path}, and "
             f"find_package({name} REQUIRED)",
             package.name,
-            severity="warning",
+            severity="error" if view.target.knows_manifests and not blind and sure else "warning",
             fix=() if declared.get(name) else (Declare(package.digest.manifest_path, name, "test_depend"),),
         )
 

@@ -75,7 +75,6 @@ def unresolvable_key(view: View):
                     f"`{name}` is no package or rosdep key, while {' and '.join(f'`{n}`' for n in longer[:2])} are",
                     "declare those of its packages that are used",
                     package.name,
-                    severity="warning",
                 )
             else:
                 yield Hit(

@@ -146,6 +146,8 @@ def _without_headers(view: View, package, declared):
     }
     told = set()
     for need in sorted(view.needs(package), key=weight) if bare else ():
+        if need.how == "include" and need.public and need.certain:
+            yield from _handed_on_bare(view, package, declared, bare, need, told)
         if need.how not in ("find_package", "component", "include", "pkg-config") or need.role != "build":
             continue
         if not need.certain or view.answered(need.providers, declared) or need.providers[0].name in told:
@@ -170,6 +172,29 @@ def _without_headers(view: View, package, declared):
             f"declare `{right}`",
             package.name,
         )
+
+
+def _handed_on_bare(view: View, package, declared, bare, need, told):
+    """A library whose headers are declared for building, and without headers for whoever includes the public header."""
+    right = next((p.name for p in need.providers if declared.get(p.name) == {"build"}), None)
+    if right is None or right in told:
+        return
+    stems = {re.sub(r"(-all)?-dev\Z", "", debian) for debian in view.debian(right)}
+    name = next(
+        (n for n, installed in bare.items() if any(_same_library(d, s) for d in installed for s in stems)), None
+    )
+    if name is None or name.startswith("libboost") or not declared[name] & _FOR_RUN:
+        return
+    told.add(right)
+    place = next(d for d in package.manifest.dependencies if d.name == name)
+    yield Hit(
+        view.manifest_place(package, place),
+        right,
+        f"an installed header includes `{need.subject}`, and dependants get `{name}`, which has no headers",
+        f"declare `{right}` as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
+        package.name,
+        fix=_cure(view, package, right, "depend", declared[right]),
+    )
 
 
 def _same_library(installed: str, stem: str) -> bool:
