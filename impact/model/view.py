@@ -643,7 +643,6 @@ class View:
                 not reference.conditional,
             )
 
-
     def _modules_asked(self, found: Found) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
         providers = tuple(self.providers.pkgconfig(re.split(r"[<>=]", found.name)[0]))

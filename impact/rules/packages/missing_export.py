@@ -2,16 +2,17 @@
 
 What it does
     Compares what a package exports with what is there: include directories and libraries that do not exist, system
-    libraries exported under a name whose variables nobody sets, and packages that installed headers include and that
-    are not exported.
+    libraries exported under a name whose variables nobody sets, packages that installed headers include and that are
+    not exported, and include directories of its own headers or of system libraries off the compiler's path.
 
 Why it breaks
     The package builds, and every package that depends on it fails: the header's own includes are not found, or the
     exported configuration names a library that was never built.
 
 Severity
-    error where the package's own configuration stops (an include directory that does not exist); warning where a
-    dependant of the workspace, or an exported target or library, needs what is missing; note otherwise.
+    error where the package's own configuration stops (an include directory that does not exist), or that of a package
+    of the workspace that looks for it (a library that is never built); warning where a dependant of the workspace, or
+    an exported target or library, needs what is missing; note otherwise, and for all but the first few of a package.
 
 Example
     ament_export_dependencies(rclcpp)           # and include/p/p.hpp includes angles/angles.h

@@ -3,13 +3,14 @@
 What it does
     Compares the install rules of CMake with what the package offers: executables and libraries, plugin libraries and
     their descriptions, launch files and scripts that something of the workspace starts or opens; and finds install
-    rules whose file or folder does not exist.
+    rules whose file or folder does not exist, that name a place by a variable that catkin does not set, that install
+    scripts as plain files, or headers under another name than they are included by.
 
 Why it breaks
     Everything works from the build tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
 
 Severity
-    error for an install rule of something that does not exist; warning otherwise.
+    error for an install rule of something that does not exist, or with a variable that nothing sets; warning otherwise.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)

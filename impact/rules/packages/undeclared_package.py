@@ -1,18 +1,21 @@
 """undeclared-package: something of another package is used and no dependency brings it.
 
 What it does
-    Reports packages and system libraries that CMake looks for, sources include, Python imports, launch files or scripts
-    start, when neither the manifest nor anything it declares brings them, directly or in turn.
+    Reports packages and system libraries that CMake or pkg-config is asked for, sources include, Python imports, launch
+    files or scripts start, when neither the manifest nor anything it declares brings them, directly or in turn; or when
+    a single declared package happens to bring them. Reports commands that make tests and that no declared package
+    brings, and the one package of its repository that a metapackage leaves out.
 
 Why it breaks
     The build works on the machine of whoever happens to have the package. On a machine that has just what the manifest
     declares (a build farm, a new colleague, the robot) the configuration, the compiler, or the node stops.
 
 Severity
-    error: an unconditional find_package(REQUIRED), catkin component or include of compiled code that is sure to miss
-    its package on the target. warning: tests, imports, launch files, what only comes along with another dependency, or
-    where the manifests that would settle it are not known for the target. note: conditional code, examples,
-    documentation, files that nothing compiles, and all but the first few imports and launch references of a package.
+    error: an unconditional find_package(REQUIRED), catkin component, pkg_check_modules(REQUIRED), include of compiled
+    code or test command that is sure to miss its package on the target. warning: tests, imports, launch files,
+    installed headers that nothing here compiles, what only comes along with another dependency, or where the manifests
+    that would settle it are not known for the target. note: conditional code, examples, documentation, files that
+    nothing compiles, and all but the first few imports, launch references and borrowed packages of a package.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -21,8 +24,9 @@ Use instead
     <depend>tf2_eigen</depend>
 
 Not reported
-    Messages, client libraries and common system libraries that come through another declared package; code that is
-    switched off on the target; names that nobody is known to provide (they are counted as unresolved).
+    What several declared packages bring; client libraries and common system libraries that come through another
+    declared package; code that is switched off on the target; nodes of other workspaces that start only under an
+    argument; names that nobody is known to provide (they are counted as unresolved).
 """
 
 import posixpath
@@ -184,15 +188,11 @@ def _by_chance(view: View, need: Need, declared, closure) -> bool:
     first = need.providers[0]
     if need.how not in ("find_package", "include") or first.kind != "system" or not first.name:
         return False
-    itself = tuple(
-        p for p in need.providers if p.kind == "ros" or first.package in (p.package, *view.debian(p.name))
-    )
+    itself = tuple(p for p in need.providers if p.kind == "ros" or first.package in (p.package, *view.debian(p.name)))
     if view.answered(itself, closure):
         return False
     # `geos` is libgeos++-dev's, whatever it installs here
-    return not any(
-        _bare(name) in _bare(first.name) for name in declared if view.answered(need.providers, {name: name})
-    )
+    return not any(_bare(name) in _bare(first.name) for name in declared if view.answered(need.providers, {name: name}))
 
 
 def _bare(key: str) -> str:

@@ -2,8 +2,8 @@
 
 What it does
     Reports dependencies of a manifest that are not in the workspace, not released on the target, and that rosdep cannot
-    turn into something installable on the target's platform, although the name is known elsewhere or is one edit away
-    from a known one.
+    turn into something installable on the target's platform, although the name is known elsewhere, is one edit away
+    from a known one, or is that of a repository whose packages are called after it.
 
 Why it breaks
     `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package.

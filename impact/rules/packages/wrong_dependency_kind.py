@@ -2,12 +2,14 @@
 
 What it does
     Reports packages that built code needs and the manifest declares only for tests or for running, packages that an
-    installed header includes and the manifest does not pass on to dependants, and packages needed at run time that are
-    declared for building only.
+    installed header includes, or an exported library links, and the manifest does not pass on to dependants, packages
+    needed at run time that are declared for building only, and keys that bring a library without the headers that are
+    used.
 
 Why it breaks
     A build without tests, or a machine that only builds, lacks the package. A dependant that includes the public header
-    finds the header's own includes missing. An installed robot lacks what the node imports.
+    finds the header's own includes missing, or links a library that it does not have. An installed robot lacks what the
+    node imports.
 
 Severity
     warning; note where rosdep installs the package all the same (declared for running, needed to build), and where what
