@@ -253,6 +253,19 @@ ROWS = {
         ("sled/CMakeLists.txt", "ament_export_dependencies(Eigen3)", ""),
         ("warning", "eigen"),
     ),
+    "a compiled part of Boost, kept private": Row(
+        "missing-export",
+        "humble",
+        ament(
+            "sled",
+            "find_package(Boost REQUIRED COMPONENTS filesystem)\n" + LIBRARY + "target_link_libraries(sled PRIVATE "
+            "Boost::filesystem)\nament_export_targets(sled)\nament_export_dependencies(Boost)",
+            "libboost-filesystem-dev",
+            sled_cpp="int f;\n",
+        ),
+        ("sled/CMakeLists.txt", "PRIVATE", "PUBLIC"),
+        ("warning", "Boost"),
+    ),
     "an exported dependency, beside linters": Row(
         "missing-export",
         "humble",
@@ -328,6 +341,31 @@ ROWS = {
 }  # fmt: skip
 
 
+# What is a warning at most, since the evidence is not complete.
+UNSURE = {
+    "a header that is installed in any case and compiled under a condition": (
+        ament(
+            "sled",
+            HEADERS + "find_package(ice QUIET)\nif(ice_FOUND)\n  add_executable(run run.cpp)\nendif()",
+            run_cpp="#include <sled/sled.hpp>\n" + MAIN,
+            include__sled__sled_hpp="#pragma once\n" + ANGLES,
+        ),
+        "if(ice_FOUND)",
+        "if(TRUE)",
+    ),
+    "a group, of which any member may bring it": (
+        {
+            path: text.replace("</license>", "</license>\n<group_depend>drivers</group_depend>").replace(
+                'format="2"', 'format="3"'
+            )
+            for path, text in ament("sled", "find_package(angles REQUIRED)").items()
+        },
+        "<group_depend>drivers</group_depend>",
+        "",
+    ),
+}
+
+
 @pytest.fixture(scope="module")
 def store(tmp_path_factory) -> Path:
     return tmp_path_factory.mktemp("cache")
@@ -354,3 +392,10 @@ def test_the_rule_is_content_until_it_is_spoilt(row: Row, said: Said):
     path, old, new = row.spoilt
     assert old in row.files[path]
     assert row.told in said({path: row.files[path].replace(old, new)}, row.target, row.rule)
+
+
+@pytest.mark.parametrize(("files", "old", "new"), UNSURE.values(), ids=UNSURE)
+def test_no_error_without_all_the_evidence(files: Files, old: str, new: str, said: Said):
+    assert ("warning", "angles") in said(files, "humble", "undeclared-package")
+    sure = {path: text.replace(old, new) for path, text in files.items()}
+    assert ("error", "angles") in said(sure, "humble", "undeclared-package")

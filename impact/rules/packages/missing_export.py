@@ -149,6 +149,7 @@ def _ament(view: View, package):
         return
     yield from _linked(view, package, exports)
     yield from _never_built(view, package, exports)
+    yield from _components(view, package, exports)
     exported = set()
     for export in exports:
         if export.how == "ament_export_dependencies":
@@ -215,6 +216,38 @@ def _off_path(view: View, package, exports, reach):
             package.name,
             severity="warning",
         )
+
+
+def _components(view: View, package, exports):
+    """Compiled parts of Boost that an exported target passes on: the find_package(Boost) of ament_export_dependencies
+    defines no targets for them."""
+    if not any(e.how == "ament_export_targets" for e in exports) or any(e.how == "cfg_extras" for e in exports):
+        return
+    if not any(e.how == "ament_export_dependencies" and e.item == "Boost" for e in exports):
+        return
+    asked = {name for f in package.build.found if f.name == "Boost" for name, _ in f.components} - _HEADERS_ALONE
+    installed = _installed(package)
+    for target in package.build.targets:
+        if target.name not in installed or target.kind != "library" or not view.certain(target.conditions):
+            continue
+        for link in target.links:
+            head, _, rest = link.item.partition("::")
+            if head != "Boost" or link.visibility == "PRIVATE" or link.how not in ("link", "ament"):
+                continue
+            names = {rest} & asked if rest else asked if link.how == "ament" else set()
+            if not names:
+                continue
+            yield Hit(
+                link.at,
+                "Boost",
+                f"`{target.name}` passes `Boost::{min(names)}` on, and dependants find Boost without components",
+                "find it with its components in a file given to ament_package(CONFIG_EXTRAS ...)",
+                package.name,
+            )
+            return
+
+
+_HEADERS_ALONE = frozenset({"boost", "headers"})
 
 
 def _never_built(view: View, package, exports):

@@ -155,7 +155,8 @@ def undeclared_package(view: View):
             if name is None or name == package.name:
                 continue
             (borrowed if view.answered(need.providers, closure) else missing).setdefault(name, []).append(need)
-        blind = bool(view.blind(package))
+        # Whichever member of a group is there can bring anything.
+        blind = any(d.kind == "group" for d in package.manifest.dependencies) or bool(view.blind(package))
         yield from _borrowed(view, package, borrowed, closure)
         yield from _test_commands(view, package, blind)
         yield from _left_out(view, package)
@@ -351,6 +352,10 @@ def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | 
         return "warning" if passed_on and not circular(view, package, name) else "note"
     if blind or not view.target.knows_manifests:
         return "warning"
+    if need.how == "include" and not any(
+        view.certain(target.conditions) for target in package.build.targets if target.name in need.targets
+    ):
+        return "warning"  # installed in any case, and compiled only under a condition
     return "error"
 
 
