@@ -305,6 +305,23 @@ ROWS = {
         ("sled/CMakeLists.txt", "COMPONENTS message_generation", ""),
         ("error", "message_generation"),
     ),
+    "order behind the messages that are included": Row(
+        "missing-interface-wiring",
+        "noetic",
+        {
+            **catkin("sled", "COMPONENTS message_generation", GENERATED, "message_generation", "message_runtime"),
+            **FLOE,
+            **catkin(
+                "dogs",
+                "COMPONENTS sled",
+                "catkin_package()\nadd_executable(run run.cpp)\nadd_dependencies(run sled_gencpp)",
+                "sled",
+                run_cpp="#include <sled/Floe.h>\n" + MAIN,
+            ),
+        },
+        ("dogs/CMakeLists.txt", "(run sled_gencpp)", "(run nav_msgs_gencpp)"),
+        ("warning", "sled_generate_messages_cpp"),
+    ),
     "order by the project's own name": Row(
         "missing-interface-wiring",
         "noetic",

@@ -23,6 +23,8 @@ Not reported
     Targets that wait through another target of the package, or through `${catkin_EXPORTED_TARGETS}`.
 """
 
+import re
+
 from ...model.view import View
 from ..cure import Declare, Insert
 from ..rule import Hit, rule
@@ -284,6 +286,6 @@ def _waits(items, head: str, kind: str, package: str) -> bool:
             if kind != "gencfg" and text.endswith("_gencfg"):
                 continue
             return True
-        if "PROJECT_NAME" in text or "GENCPP" in text.upper():
+        if "PROJECT_NAME" in text or re.search("ROSBUILD|GENCPP", text):
             return True
     return False
