@@ -156,8 +156,24 @@ def _root(data: bytes) -> str:
     return ""
 
 
+_ARGUMENT = re.compile(r"\s*\$\((?:arg|var)\s+([\w.-]+)\s*\)\s*\Z")
+
+
 def _conditional(document: Document) -> list[bool]:
-    """For each element, whether it or one around it stands under if or unless."""
+    """For each element, whether it or one around it stands under an if or unless that keeps it from running when the
+    file is started without arguments, or that cannot be told."""
+    defaults: dict[str, set[str]] = {}
+    for element in document.elements:
+        if element.name == "arg" and (preset := _attribute(element, "default", "value")) is not None:
+            plain = element.parent < 0 or document.elements[element.parent].name == "launch"
+            if plain and not any(a.name in ("if", "unless") for a in element.attributes):
+                defaults.setdefault(element.get("name"), set()).add(preset.value)
+
+    def meant(text: str) -> str:
+        argument = _ARGUMENT.match(text)
+        values = defaults.get(argument.group(1), set()) if argument is not None else {text}
+        return next(iter(values)).strip().lower() if len(values) == 1 else ""
+
     flags: list[bool] = []
     for element in document.elements:
         flag = element.parent >= 0 and flags[element.parent]
@@ -166,8 +182,8 @@ def _conditional(document: Document) -> list[bool]:
                 flag = element.get("value").strip().lower() not in ("true", "1", "${true}")
             else:
                 flag = any(
-                    (a.name == "if" and a.value.strip().lower() not in ("true", "1"))
-                    or (a.name == "unless" and a.value.strip().lower() not in ("false", "0"))
+                    (a.name == "if" and meant(a.value) not in ("true", "1"))
+                    or (a.name == "unless" and meant(a.value) not in ("false", "0"))
                     for a in element.attributes
                 )
         flags.append(flag)

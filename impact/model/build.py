@@ -143,6 +143,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with its
     place. standard_default_only: it is only set where the user or a toolchain has not chosen one. standard_by_flag: by
     -std= flags alone, so that CMake adds what linked targets ask for only where the compiler's default is lower.
+    project_by_variable: its CMakeLists.txt calls targets after ${PROJECT_NAME} rather than by the project's name.
     message_files: (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told.
     files: the CMake files read, relative to the root."""
 
@@ -164,6 +165,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files: tuple[str, ...] = ()
     standard_by_flag: bool = False
     message_files: tuple[tuple[str, At], ...] = ()
+    project_by_variable: bool = False
 
 
 class Declared(msgspec.Struct, frozen=True, gc=False):

@@ -21,7 +21,7 @@ from ..targets.includes import Machine, machine_of
 from ..targets.library import include_roots
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
-from .build import At
+from .build import At, Found
 from .conditions import Environment, all_hold
 from .package import MemberUse, role_of_folder
 from .spelling import Names
@@ -42,9 +42,9 @@ _ALWAYS = frozenset({
 class Need(NamedTuple):
     """Something a package uses of somebody else.
 
-    how: find_package, component, include, import, launch, plugin or shell. subject: as written. providers: who could
-    give it, best first. role: build, test, run or aside. certain: stands under no condition that is unknown on the
-    target. required: its absence stops the configuration (find_package) or the program.
+    how: find_package, component, pkg-config, include, import, launch, plugin or shell. subject: as written.
+    providers: who could give it, best first. role: build, test, run or aside. certain: stands under no condition that
+    is unknown on the target. required: its absence stops the configuration (find_package) or the program.
     """
 
     how: str
@@ -58,7 +58,9 @@ class Need(NamedTuple):
     targets: tuple[str, ...] = ()
 
 
-_HOW = {"find_package": 0, "component": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5}
+_HOW = {
+    "find_package": 0, "component": 0, "pkg-config": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5,
+}  # fmt: skip
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
 
 
@@ -669,6 +671,7 @@ class View:
         target = self.target
         return any(
             n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
+            and not target.known_key(n)  # a key that the platform lacks brings nothing
             and target.dependencies(n) is None and target.similar_dependencies(n) is None
             for n in self.closure(package)
         )  # fmt: skip
@@ -841,6 +844,8 @@ class View:
     def _collect(self, package: Package) -> Iterator[Need]:
         digest = package.digest
         for found in package.build.found:
+            if found.how == "pkg_check_modules" and self.active(found.conditions):
+                yield from self._modules_asked(found)
             if found.how not in ("find_package", "catkin") or not self.active(found.conditions):
                 continue
             if found.name in ("catkin", package.name) or package.name in self.workspace.find_modules.get(
@@ -904,6 +909,22 @@ class View:
                 not reference.conditional,
                 not reference.conditional,
             )
+
+    def _modules_asked(self, found: Found) -> Iterator[Need]:
+        """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
+        providers = tuple(self.providers.pkgconfig(re.split(r"[<>=]", found.name)[0]))
+        if not providers or found.name in self.workspace.packages:
+            return
+        testing = any("TESTING" in c.text for c in found.conditions)
+        yield Need(
+            "pkg-config",
+            found.name,
+            providers,
+            found.at,
+            "test" if testing else "build",
+            self.certain(found.conditions),
+            found.required,
+        )
 
 
 def _told(use: MemberUse) -> str:

@@ -73,6 +73,13 @@ CONDITIONS = [
     ('<node pkg="a" type="b" unless="0"/>', False),
     ('<group if="$(arg x)"><group><node pkg="a" type="b"/></group></group>', True),
     ('<group if="$(arg x)"></group><node pkg="a" type="b"/>', False),
+    ('<arg name="x" default="true"/><node pkg="a" type="b" if="$(arg x)"/>', False),
+    ('<arg name="x" default="false"/><node pkg="a" type="b" if="$(var x)"/>', True),
+    ('<arg name="x" value="0"/><node pkg="a" type="b" unless="$(arg x)"/>', False),
+    ('<arg name="x"/><node pkg="a" type="b" if="$(arg x)"/>', True),
+    ('<arg name="x" default="1"/><arg name="x" default="0"/><node pkg="a" type="b" if="$(arg x)"/>', True),
+    ('<arg name="x" default="1" if="$(arg y)"/><node pkg="a" type="b" if="$(arg x)"/>', True),
+    ('<group><arg name="x" default="1"/></group><node pkg="a" type="b" if="$(arg x)"/>', True),
 ]
 
 

@@ -380,5 +380,5 @@ def _wrapper_standard(run: Interpreter, call: Call, number: int) -> None:
 def ament_lint_auto_find_test_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
     """ament_lint_auto_find_test_dependencies(): finds every declared test dependency."""
     for name in run.declared.test:
-        run.add_found(Found(name, "ament_auto", run.place(call.at), conditions=run.conditions))
+        run.add_found(Found(name, "ament_lint_auto", run.place(call.at), conditions=run.conditions))
         run.extend(name, call.at)

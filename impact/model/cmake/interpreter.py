@@ -58,6 +58,10 @@ class _TooMuch(Exception):
     """The package asks for more work than any real one."""
 
 
+# Commands that name targets of the package.
+_ON_TARGETS = frozenset({"add_dependencies", "add_executable", "add_library", "target_link_libraries"})
+
+
 class Interpreter:
     """One run over one package. Command handlers read and write it; run() gives the Build."""
 
@@ -210,6 +214,16 @@ class Interpreter:
             unresolved=tuple(self.unresolved),
             files=tuple(self.files),
             message_files=tuple(self.message_files),
+            project_by_variable=self._project_by_variable(),
+        )
+
+    def _project_by_variable(self) -> bool:
+        facts = self.read(posixpath.join(self.package_path, "CMakeLists.txt"))
+        return facts is not None and any(
+            "${PROJECT_NAME}" in argument.text
+            for command in facts.commands
+            if command.name in _ON_TARGETS
+            for argument in command.arguments
         )
 
     def load(self, path: str) -> list[Call | Block] | None:
@@ -805,7 +819,9 @@ class Interpreter:
 
     def use_variable(self, name: str, at: At) -> None:
         """Notes a variable that is read and that nothing sets, when its name tells that a package should."""
-        if self.silent or not name.endswith(READ_SUFFIXES) or name.startswith("CMAKE_"):
+        if self.silent or name.startswith("CMAKE_"):
+            return
+        if not name.endswith(READ_SUFFIXES) and not (name.startswith("CATKIN_") and self.command == "install"):
             return
         self.uses[Use("variable", name, self.place(at), self.command, self.conditions)] = None
 

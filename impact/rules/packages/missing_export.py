@@ -2,16 +2,17 @@
 
 What it does
     Compares what a package exports with what is there: include directories and libraries that do not exist, system
-    libraries exported under a name whose variables nobody sets, and packages that installed headers include and that
-    are not exported.
+    libraries exported under a name whose variables nobody sets, packages that installed headers include and that are
+    not exported, and include directories of its own headers or of system libraries off the compiler's path.
 
 Why it breaks
     The package builds, and every package that depends on it fails: the header's own includes are not found, or the
     exported configuration names a library that was never built.
 
 Severity
-    error where the package's own configuration stops (an include directory that does not exist); warning where a
-    dependant of the workspace, or an exported target or library, needs what is missing; note otherwise.
+    error where the package's own configuration stops (an include directory that does not exist), or that of a package
+    of the workspace that looks for it (a library that is never built); warning where a dependant of the workspace, or
+    an exported target or library, needs what is missing; note otherwise, and for all but the first few of a package.
 
 Example
     ament_export_dependencies(rclcpp)           # and include/p/p.hpp includes angles/angles.h
@@ -25,12 +26,13 @@ Not reported
 """
 
 import posixpath
+import re
 
 from ...model.view import View
 from ...targets.library import variables
 from ..rule import Hit, rule
 from .missing_find_package import found_names
-from .undeclared_package import WITH_CLIENT
+from .undeclared_package import LOUD, WITH_CLIENT, WITH_TESTS
 
 
 @rule(severity="warning")
@@ -86,6 +88,7 @@ def _catkin(view: View, package):
                 f"the exported library `{export.item}` is no target of `{package.name}`",
                 "export the library's target name",
                 package.name,
+                severity=_of_dependants(view, package, export),
             )
         elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
             near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
@@ -127,7 +130,9 @@ def _ament(view: View, package):
             ]
             if libraries and any("/include/" in f"/{h}" for h in package.digest.public_headers):
                 first = package.build.ament_package
-                if package.name not in view.workspace.includers:
+                # Plugins of a base class of its own: it is there for others to include.
+                own_base = any(e.how == "plugin_description" and e.context == package.name for e in exports)
+                if package.name not in view.workspace.includers and not own_base:
                     return
                 yield Hit(
                     first,
@@ -142,19 +147,25 @@ def _ament(view: View, package):
     ):
         return
     yield from _linked(view, package, exports)
+    yield from _never_built(view, package, exports)
+    yield from _components(view, package, exports)
     exported = set()
     for export in exports:
         if export.how == "ament_export_dependencies":
             exported.add(export.item)
             exported.update(p.name for p in view.cmake(export.item))
     reach = view.spread(exported)
+    yield from _off_path(view, package, exports, reach)
     found = found_names(view, package) or set()
     told = set()
     # Until Galactic all headers lay in one folder, so a missing export went unnoticed.
     apart = view.target.distro not in ("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic")
     includers = view.workspace.includers.get(package.name)
+    spoken = 0
     for need in view.weighed(package):
         if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, reach):
+            continue
+        if need.subject.startswith(WITH_TESTS):
             continue
         name = next((p.name for p in need.providers if p.name in found), None)
         if name is None or name in told or name == package.name or need.providers[0].kind != "ros":
@@ -167,6 +178,9 @@ def _ament(view: View, package):
             and (includers or "ament_export_libraries" in hows or "ament_export_targets" in hows)
             else "note"
         )
+        # A package that exports little is told so by the first few; the rest follow as notes.
+        spoken += severity == "warning"
+        severity = severity if spoken <= LOUD else "note"
         yield Hit(
             need.at,
             name,
@@ -175,6 +189,99 @@ def _ament(view: View, package):
             package.name,
             severity=severity,
         )
+
+
+# System libraries whose headers lie in a folder of their own that the compiler does not search by itself.
+_OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "libpcl-dev", "libogre-dev", "libxml2"})
+
+
+def _off_path(view: View, package, exports, reach):
+    """Header-only packages that leave the include folder of a system library out."""
+    if any(e.how == "cfg_extras" for e in exports) or _installed(package):
+        return
+    told = set()
+    for need in view.weighed(package):
+        name = need.providers[0].name
+        if need.how != "include" or not need.public or not need.certain or name not in _OFF_PATH or name in told:
+            continue
+        if view.answered(need.providers, reach) or any("$" in e.item for e in exports if "include" in e.how):
+            continue
+        told.add(name)
+        yield Hit(
+            need.at,
+            name,
+            f"an installed header includes `{need.subject}` and the include folder of `{name}` is not exported",
+            "export its package, or its include directories",
+            package.name,
+            severity="warning",
+        )
+
+
+def _components(view: View, package, exports):
+    """Compiled parts of Boost that an exported target passes on: the find_package(Boost) of ament_export_dependencies
+    defines no targets for them."""
+    if not any(e.how == "ament_export_targets" for e in exports) or any(e.how == "cfg_extras" for e in exports):
+        return
+    if not any(e.how == "ament_export_dependencies" and e.item == "Boost" for e in exports):
+        return
+    asked = {name for f in package.build.found if f.name == "Boost" for name, _ in f.components} - _HEADERS_ALONE
+    installed = _installed(package)
+    for target in package.build.targets:
+        if target.name not in installed or target.kind != "library" or not view.certain(target.conditions):
+            continue
+        for link in target.links:
+            head, _, rest = link.item.partition("::")
+            if head != "Boost" or link.visibility == "PRIVATE" or link.how not in ("link", "ament"):
+                continue
+            names = {rest} & asked if rest else asked if link.how == "ament" else set()
+            if not names:
+                continue
+            yield Hit(
+                link.at,
+                "Boost",
+                f"`{target.name}` passes `Boost::{min(names)}` on, and dependants find Boost without components",
+                "find it with its components in a file given to ament_package(CONFIG_EXTRAS ...)",
+                package.name,
+            )
+            return
+
+
+_HEADERS_ALONE = frozenset({"boost", "headers"})
+
+
+def _never_built(view: View, package, exports):
+    """ament_export_libraries() of what no command makes: find_package(this package) stops when it looks for it."""
+    names = {n for t in package.build.targets for n in (t.name, t.output_name) if t.kind != "unknown"}
+    if package.build.unresolved or any("$" in name for name in names):
+        return
+    for export in exports:
+        item = export.item
+        if export.how != "ament_export_libraries" or item in names or re.search(r"[$/.:]|^-", item):
+            continue
+        if not view.certain(export.conditions) or (view.cmake(item) and item != package.name):
+            continue
+        yield Hit(
+            export.at,
+            item,
+            f"the exported library `{item}` is never built, so find_package({package.name}) stops",
+            "export what the package builds, or drop it",
+            package.name,
+            severity=_of_dependants(view, package, export),
+        )
+
+
+def _of_dependants(view: View, package, export) -> str:
+    """error where a package of the workspace is sure to look for one whose configuration cannot be read."""
+    sought = any(
+        found.name == package.name
+        and found.how in ("find_package", "catkin")
+        and (found.required or found.how == "catkin")
+        and view.certain(found.conditions)
+        for other in view
+        if other.name != package.name
+        for found in other.build.found
+    )
+    return "error" if sought and view.certain(export.conditions) else "warning"
 
 
 def _installed(package) -> set[str]:

@@ -185,7 +185,9 @@ def _not_given(view: View, package):
         for target in include.targets:
             if target not in reach:
                 given = _given(view, targets, target)
-                reach[target] = None if given is None else view.spread(n for n in (*given, *everywhere) if n)
+                # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
+                names = {s for n in (*(given or ()), *everywhere) if n for s in (n, n.lower())}
+                reach[target] = None if given is None else view.spread(names)
             brought = reach[target]
             if brought is None or name in brought:
                 continue

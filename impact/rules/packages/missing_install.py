@@ -3,13 +3,14 @@
 What it does
     Compares the install rules of CMake with what the package offers: executables and libraries, plugin libraries and
     their descriptions, launch files and scripts that something of the workspace starts or opens; and finds install
-    rules whose file or folder does not exist.
+    rules whose file or folder does not exist, that name a place by a variable that catkin does not set, that install
+    scripts as plain files, or headers under another name than they are included by.
 
 Why it breaks
     Everything works from the build tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
 
 Severity
-    error for an install rule of something that does not exist; warning otherwise.
+    error for an install rule of something that does not exist, or with a variable that nothing sets; warning otherwise.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
@@ -43,6 +44,8 @@ def missing_install(view: View):
         yield from _absent(view, package, installs)
         yield from _doubled(view, package, installs)
         yield from _not_executable(view, package, installs)
+        yield from _under_another_name(view, package, installs)
+        yield from _variables(view, package)
         if not installs and package.build_type == "catkin" and not package.build.targets:
             yield from _nothing(view, package)
             continue
@@ -114,13 +117,17 @@ def _doubled(view: View, package, installs):
 
 
 def _not_executable(view: View, package, installs):
-    """Scripts that are installed as data, where programs belong."""
+    """Scripts that are installed as data, where programs belong, or that no other rule installs as programs."""
+    programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
     for install in installs:
-        if install.kind != "files" or not re.search(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION", install.destination):
+        if install.kind != "files":
             continue
+        among_programs = re.search(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION", install.destination)
         for item in install.items:
             path = posixpath.normpath(item)
-            if path in package.digest.scripts:
+            inside = path[len(package.path) :].lstrip("/")
+            started = among_programs or inside.split("/")[0] in ("scripts", "nodes", "bin")
+            if path in package.digest.scripts and started and path not in programs and not inside.endswith(_RUN_BY):
                 name = posixpath.basename(path)
                 yield Hit(
                     install.at,
@@ -129,6 +136,57 @@ def _not_executable(view: View, package, installs):
                     "install(PROGRAMS ...)",
                     package.name,
                 )
+
+
+# Scripts that other programs run, as data.
+_RUN_BY = (".launch.py", "setup.py", "conftest.py")
+
+
+def _under_another_name(view: View, package, installs):
+    """Folders of headers whose name is lost: include/a/ installed into include/b while sources include <a/...>."""
+    for install in installs:
+        if install.kind != "directory":
+            continue
+        root, _, tail = install.destination.rstrip("/").rpartition("include")
+        for item in install.items:
+            folder = re.search(r"(?:^|/)include/([\w-]+)/\Z", item)
+            if folder is None or root or tail in ("", "/" + folder.group(1)) or tail.count("/") != 1:
+                continue
+            name = folder.group(1)
+            catkin = tail == "/" + package.name and package.build_type == "catkin"
+            yield Hit(
+                install.at,
+                "CATKIN_PACKAGE_INCLUDE_DESTINATION" if catkin else install.destination,
+                f"headers that are included as `{name}/...` are installed into `{install.destination}`",
+                "install them into "
+                + (f"${{CATKIN_GLOBAL_INCLUDE_DESTINATION}}/{name}" if catkin else f"`include/{name}`"),
+                package.name,
+            )
+
+
+# What catkin itself sets that may name a place (catkin's all.cmake and catkin_package.cmake).
+_PLACES = frozenset({"CATKIN_DEVEL_PREFIX", "CATKIN_TEST_RESULTS_DIR", "CATKIN_ENV"})
+
+
+def _variables(view: View, package):
+    """Catkin's variables for places, misspelt or of a time before Groovy."""
+    told = set()
+    for use in package.build.uses:
+        if use.kind != "variable" or use.context != "install" or not use.name.startswith("CATKIN_"):
+            continue
+        if not use.name.endswith(("_PREFIX", "_DESTINATION", "_DIR")) or use.name in _PLACES:
+            continue
+        if use.name in told or package.build_type != "catkin" or not view.certain(use.conditions):
+            continue
+        told.add(use.name)
+        yield Hit(
+            use.at,
+            use.name,
+            f"nothing sets `{use.name}`, so what is installed is looked for, or put, in a wrong place",
+            "write `${CATKIN_DEVEL_PREFIX}`" if use.name == "CATKIN_BUILD_PREFIX" else "correct the variable's name",
+            package.name,
+            severity="error",
+        )
 
 
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")

@@ -1,18 +1,21 @@
 """undeclared-package: something of another package is used and no dependency brings it.
 
 What it does
-    Reports packages and system libraries that CMake looks for, sources include, Python imports, launch files or scripts
-    start, when neither the manifest nor anything it declares brings them, directly or in turn.
+    Reports packages and system libraries that CMake or pkg-config is asked for, sources include, Python imports, launch
+    files or scripts start, when neither the manifest nor anything it declares brings them, directly or in turn; or when
+    a single declared package happens to bring them. Reports commands that make tests and that no declared package
+    brings, and the one package of its repository that a metapackage leaves out.
 
 Why it breaks
     The build works on the machine of whoever happens to have the package. On a machine that has just what the manifest
     declares (a build farm, a new colleague, the robot) the configuration, the compiler, or the node stops.
 
 Severity
-    error: an unconditional find_package(REQUIRED), catkin component or include of compiled code that is sure to miss
-    its package on the target. warning: tests, imports, launch files, what only comes along with another dependency, or
-    where the manifests that would settle it are not known for the target. note: conditional code, examples,
-    documentation, files that nothing compiles, and all but the first few imports and launch references of a package.
+    error: an unconditional find_package(REQUIRED), catkin component, pkg_check_modules(REQUIRED), include of compiled
+    code or test command that is sure to miss its package on the target. warning: tests, imports, launch files,
+    installed headers that nothing here compiles, what only comes along with another dependency, or where the manifests
+    that would settle it are not known for the target. note: conditional code, examples, documentation, files that
+    nothing compiles, and all but the first few imports, launch references and borrowed packages of a package.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -21,12 +24,17 @@ Use instead
     <depend>tf2_eigen</depend>
 
 Not reported
-    Messages, client libraries and common system libraries that come through another declared package; code that is
-    switched off on the target; names that nobody is known to provide (they are counted as unresolved).
+    What several declared packages bring; client libraries and common system libraries that come through another
+    declared package; code that is switched off on the target; nodes of other workspaces that start only under an
+    argument; names that nobody is known to provide (they are counted as unresolved).
 """
 
+import posixpath
+import re
+
+from ...model.build import At
 from ...model.spelling import folded, one_edit
-from ...model.view import Need, View, interface_of
+from ...model.view import Need, View
 from ..cure import Declare
 from ..evidence import circular, name_to_declare, present, weight
 from ..rule import Hit, rule
@@ -58,9 +66,9 @@ _ON_THE_DESK = frozenset(
     ]
 )
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
-_LOUD = 2
+LOUD = 2
 # The macros that make tests bring these headers.
-_WITH_TESTS = ("gtest/", "gmock/")
+WITH_TESTS = ("gtest/", "gmock/")
 # Whoever starts a launch file has these: the launch tool itself brings them.
 _LAUNCHING = frozenset(
     {"launch", "launch_ros", "launch_xml", "launch_yaml", "roslaunch", "launch_testing", "launch_testing_ros"}
@@ -111,7 +119,6 @@ WITH_CLIENT = frozenset(
         "opencv3",
     ]
 )
-_MESSAGES = ("_msgs", "_srvs", "_interfaces")
 # Keys that most graphs of dependencies bring anyway.
 _COMMON_KEYS = frozenset(
     {
@@ -139,29 +146,32 @@ def undeclared_package(view: View):
         missing: dict[str, list[Need]] = {}
         borrowed: dict[str, list[Need]] = {}
         for need in view.needs(package):
-            if view.answered(need.providers, declared) or (
-                need.subject.startswith(_WITH_TESTS) and need.role == "test"
+            direct = view.answered(need.providers, declared)
+            if (direct and not _by_chance(view, need, declared, closure)) or (
+                need.subject.startswith(WITH_TESTS) and need.role == "test"
             ):
                 continue
             name = name_to_declare(view, need)
             if name is None or name == package.name:
                 continue
             (borrowed if view.answered(need.providers, closure) else missing).setdefault(name, []).append(need)
+        # Whichever member of a group is there can bring anything.
+        blind = any(d.kind == "group" for d in package.manifest.dependencies) or view.blind(package)
         yield from _borrowed(view, package, borrowed)
+        yield from _test_commands(view, package, blind)
+        yield from _left_out(view, package)
         if not missing:
             continue
-        blind = view.blind(package)
         spoken = 0
-        for name, needs in missing.items():
-            needs.sort(key=lambda n: weight(n))
-            first = needs[0]
-            severity = _severity(view, first, name, blind)
+        firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
+        for first, name in firsts:
+            severity = _severity(view, package, first, name, blind)
             if severity is None:
                 continue
             if severity == "warning" and first.how in ("launch", "plugin", "shell", "import"):
                 # A package that leaves out many is told so by the first few; the rest follow as notes.
                 spoken += 1
-                severity = "warning" if spoken <= _LOUD else "note"
+                severity = "warning" if spoken <= LOUD else "note"
             yield Hit(
                 at=first.at,
                 subject=name,
@@ -174,65 +184,155 @@ def undeclared_package(view: View):
             )
 
 
+def _by_chance(view: View, need: Need, declared, closure) -> bool:
+    """True where nothing brings the system library itself, only a key of another one that depends on it somewhere."""
+    first = need.providers[0]
+    if need.how not in ("find_package", "include") or first.kind != "system" or not first.name:
+        return False
+    itself = tuple(p for p in need.providers if p.kind == "ros" or first.package in (p.package, *view.debian(p.name)))
+    if view.answered(itself, closure):
+        return False
+    # `geos` is libgeos++-dev's, whatever it installs here
+    return not any(_bare(name) in _bare(first.name) for name in declared if view.answered(need.providers, {name: name}))
+
+
+def _bare(key: str) -> str:
+    return re.sub(r"^lib|-dev$|^python3?-|[\d.]+$", "", key)
+
+
 def _borrowed(view: View, package, borrowed: dict[str, list[Need]]):
-    """What built code uses and only a dependency of a dependency brings: it leaves when that one does."""
+    """What a package uses and a single declared dependency happens to bring: it leaves when that one drops it. What two
+    declared dependencies bring seldom does, and is told only where the configuration itself asks for it."""
+    told = []
+    declared = view.declared(package)
+    brought_by = view.brought_by(package) if borrowed else {}
     for name, needs in borrowed.items():
-        if name in WITH_CLIENT or name.startswith(("ament_", "rosidl_", "rmw")) or name.endswith(_MESSAGES):
+        if name.startswith(("ament_", "rosidl_", "rmw")):
             continue
-        ours = name in view.workspace.packages
-        ros = ours or view.target.version(name) is not None
-        strong = [
-            n
-            for n in needs
-            if n.certain
-            and n.required
-            and (
-                (n.how in ("find_package", "component") and n.role == "build" and (ros or name not in _COMMON_KEYS))
-                or (
-                    n.how == "include"
-                    and n.role == "build"
-                    and n.targets
-                    and ros
-                    and interface_of(view, n.subject) is None
-                )
-                or (n.how == "import" and ours and n.role == "run")
-            )
-        ]
+        strong = [n for n in needs if n.certain and n.required and _leans(view, n, name)]
         if not strong:
             continue
         first = min(strong, key=weight)
-        brought_by = view.brought_by(package)
+        sources = [d for d in declared if view.answered(first.providers, view.spread([d]))]
+        if not 1 <= len(sources) <= _SOURCES[first.how]:
+            continue
         if (
-            ours
-            and first.how == "include"
+            first.how == "include"
+            and name in view.workspace.packages
             and brought_by.get(name, "") in view.workspace.packages
             and view.target.ros == 1
         ):
             continue  # one repository, built in its order
-        through = brought_by.get(name) or next(
-            (brought_by[p.name] for p in first.providers if p.name in brought_by), ""
-        )
+        told.append((len(sources), weight(first), name, sources, first))
+    for rank, (_, _, name, sources, first) in enumerate(sorted(told, key=lambda t: t[:3])):
+        tag = _tag(first, package.manifest.format)
         yield Hit(
             first.at,
             name,
-            f"{_how(first)}, and `{name}` only comes along with `{through}`",
-            f"add `<{_tag(first, package.manifest.format)}>{name}</{_tag(first, package.manifest.format)}>` to "
-            f"{package.digest.manifest_path}",
+            f"{_how(first)}, and `{name}` only comes along with {' and '.join(f'`{s}`' for s in sources)}",
+            f"add `<{tag}>{name}</{tag}>` to {package.digest.manifest_path}",
             package.name,
-            severity="warning",
-            fix=_cure(view, package, first, name),
+            severity="warning" if rank < LOUD else "note",
+            fix=_cure(view, package, first, name) if rank < LOUD else (),
         )
 
 
-def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
+# Commands that tests are made with, and the packages they come from (their CMake extras in ament_cmake, launch and
+# ament_cmake_ros).
+_COMMANDS = {
+    "ament_add_gtest": "ament_cmake_gtest",
+    "ament_add_gtest_executable": "ament_cmake_gtest",
+    "ament_add_gmock": "ament_cmake_gmock",
+    "ament_add_gmock_executable": "ament_cmake_gmock",
+    "ament_add_pytest_test": "ament_cmake_pytest",
+    "ament_add_google_benchmark": "ament_cmake_google_benchmark",
+    "ament_add_nose_test": "ament_cmake_nose",
+    "add_launch_test": "launch_testing_ament_cmake",
+}
+
+
+def _test_commands(view: View, package, blind: bool):
+    """Commands that make tests, where neither find_package nor ament_lint_auto, which finds what is declared for tests,
+    can have brought them."""
+    if not package.build_type.startswith("ament"):
+        return
+    declared = view.declared(package)
+    told = set()
+    for use in package.build.uses:
+        name = _COMMANDS.get(use.name) if use.kind == "command" else None
+        if name is None or name in told or not view.active(use.conditions) or not present(view, name):
+            continue
+        told.add(name)
+        sure = use.conditions and all("TESTING" in c.text for c in use.conditions)
+        if name in view.closure(package) or name in view.spread(f.name for f in package.build.found):
+            continue
+        yield Hit(
+            use.at,
+            name,
+            f"`{use.name}` comes from `{name}`, and nothing that `{package.name}` declares brings it",
+            f"add `<test_depend>{name}</test_depend>` to {package.digest.manifest_path}, and "
+            f"find_package({name} REQUIRED)",
+            package.name,
+            severity="error" if view.target.knows_manifests and not blind and sure else "warning",
+            fix=() if declared.get(name) else (Declare(package.digest.manifest_path, name, "test_depend"),),
+        )
+
+
+def _left_out(view: View, package):
+    """The one package of its repository that a metapackage forgets."""
+    if not package.manifest.metapackage:
+        return
+    declared = view.declared(package)
+    folder = posixpath.dirname(package.path)
+    members = {p.name for p in view if not p.manifest.metapackage and posixpath.dirname(p.path) == folder}
+    missing = [name for name in members - declared.keys() if not _APART.search(name)]
+    if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS or missing[0] == package.name:
+        return
+    tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
+    yield Hit(
+        At(package.digest.manifest_path, 1),
+        missing[0],
+        f"the metapackage `{package.name}` brings every package of its repository except `{missing[0]}`",
+        f"add `<{tag}>{missing[0]}</{tag}>`, if that is not meant",
+        package.name,
+        severity="warning",
+    )
+
+
+# A metapackage that brings fewer packages says nothing of what it should.
+_MEMBERS = 3
+_APART = re.compile(
+    r"(^|_)(tests?|testing|examples?|demos?|tutorials?|benchmarks?|experimental|data|dev|simulation|gazebo)(_|$)"
+)
+
+
+# By how many declared dependencies something may come along and still be told.
+_SOURCES = {"include": 1, "import": 1, "find_package": 2, "component": 3, "pkg-config": 1}
+
+
+def _leans(view: View, need: Need, name: str) -> bool:
+    """True where losing what only comes along would stop the build, or an import of the workspace's own."""
+    ours = name in view.workspace.packages
+    ros = ours or view.target.version(name) is not None
+    if need.how == "import":
+        return ours and need.role == "run"
+    if need.role != "build" or name in WITH_CLIENT or (not ros and name in _COMMON_KEYS):
+        return False
+    return need.how in ("find_package", "component", "pkg-config") or (need.how == "include" and bool(need.targets))
+
+
+def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | None:
     if need.role == "aside":
         return "note"
     if not present(view, name):
         return None  # unreleased-package says it
-    if need.how in ("find_package", "component") and (not need.required or not any(p.sure for p in need.providers)):
+    asked = need.how in ("find_package", "component", "pkg-config")
+    if asked and (not need.required or not any(p.sure for p in need.providers)):
         return "note"
     if need.how in ("launch", "plugin", "shell") or name in _LAUNCHING:
-        loud = need.required and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
+        # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
+        wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
+        loud = wanted and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
         return "warning" if loud else "note"
     if need.role == "test" or need.how == "import":
         return (
@@ -243,9 +343,27 @@ def _severity(view: View, need: Need, name: str, blind: bool) -> str | None:
     if not need.certain:
         return "note"
     if need.how == "include" and not need.targets:
-        return "note"
+        # Nothing here compiles an installed header on its own; whoever includes it needs what it includes.
+        passed_on = (
+            need.public
+            and need.providers[0].kind == "ros"
+            and name not in WITH_CLIENT
+            and not need.subject.startswith(WITH_TESTS)
+        )
+        return "warning" if passed_on and not circular(view, package, name) else "note"
     if blind or not view.target.knows_manifests:
         return "warning"
+    if need.how == "include" and not any(
+        view.certain(target.conditions) for target in package.build.targets if target.name in need.targets
+    ):
+        return "warning"  # installed in any case, and compiled only under a condition
+    first = need.providers[0]
+    if first.kind == "system" and view.sealed(package):
+        return "warning"
+    if need.how == "include" and not first.sure:
+        # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
+        if first.kind == "system" or view.has_released_header(first.name, need.subject) is False:
+            return "warning"
     return "error"
 
 
@@ -253,6 +371,7 @@ def _how(need: Need) -> str:
     return {
         "find_package": f"CMake looks for `{need.subject}`",
         "component": f"CMake asks catkin for `{need.subject}`",
+        "pkg-config": f"pkg-config is asked for `{need.subject}`",
         "include": f"`{need.subject}` is included",
         "import": f"`{need.subject}` is imported",
         "launch": f"`{need.subject}` is "

@@ -2,8 +2,8 @@
 
 What it does
     Reports dependencies of a manifest that are not in the workspace, not released on the target, and that rosdep cannot
-    turn into something installable on the target's platform, although the name is known elsewhere or is one edit away
-    from a known one.
+    turn into something installable on the target's platform, although the name is known elsewhere, is one edit away
+    from a known one, or is that of a repository whose packages are called after it.
 
 Why it breaks
     `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package.
@@ -68,6 +68,14 @@ def unresolvable_key(view: View):
                     package.name,
                     fix=_fix(view, package, name, guess),
                 )
+            elif longer := _parts_of(view, name):
+                yield Hit(
+                    at,
+                    name,
+                    f"`{name}` is no package or rosdep key, while {' and '.join(f'`{n}`' for n in longer[:2])} are",
+                    "declare those of its packages that are used",
+                    package.name,
+                )
             else:
                 yield Hit(
                     at,
@@ -77,6 +85,14 @@ def unresolvable_key(view: View):
                     package.name,
                     severity="note",
                 )
+
+
+def _parts_of(view: View, name: str) -> list[str]:
+    """Released packages that are called after a name, two at least: what the repository of that name holds."""
+    if len(name) < 4:
+        return []
+    found = sorted(n for n in view.target.released_names() if n.startswith(name + "_") and view.available(n))
+    return found if len(found) > 1 else []
 
 
 def _fix(view: View, package, name: str, guess: str) -> tuple[Replace | Remove, ...]:

@@ -2,12 +2,14 @@
 
 What it does
     Reports packages that built code needs and the manifest declares only for tests or for running, packages that an
-    installed header includes and the manifest does not pass on to dependants, and packages needed at run time that are
-    declared for building only.
+    installed header includes, or an exported library links, and the manifest does not pass on to dependants, packages
+    needed at run time that are declared for building only, and keys that bring a library without the headers that are
+    used.
 
 Why it breaks
     A build without tests, or a machine that only builds, lacks the package. A dependant that includes the public header
-    finds the header's own includes missing. An installed robot lacks what the node imports.
+    finds the header's own includes missing, or links a library that it does not have. An installed robot lacks what the
+    node imports.
 
 Severity
     warning; note where rosdep installs the package all the same (declared for running, needed to build), and where what
@@ -22,6 +24,8 @@ Use instead
 Not reported
     What another declared dependency brings as the right kind.
 """
+
+import re
 
 from ...model.view import View
 from ..cure import Declare, Remove
@@ -38,6 +42,8 @@ def wrong_dependency_kind(view: View):
         declared = view.declared(package)
         build, exported, run = None, None, None
         told = set()
+        yield from _linked_on(view, package, declared)
+        yield from _without_headers(view, package, declared)
         for need in view.weighed(package):
             own = [p.name for p in need.providers if p.name in declared]
             if not own or not need.certain or not need.required or any(n in told for n in own):
@@ -100,6 +106,103 @@ def wrong_dependency_kind(view: View):
                     severity="warning" if kinds != {"test"} else "note",
                     fix=_cure(view, package, name, "exec_depend", kinds),
                 )
+
+
+def _linked_on(view: View, package, declared):
+    """System libraries that an exported library hands on to whoever links it, declared for building only."""
+    installed = {item for rule_ in package.build.installs if rule_.kind == "targets" for item in rule_.items}
+    linked = {
+        link.item: link
+        for target in package.build.targets
+        if target.name in installed and target.kind in ("library", "interface")
+        for link in target.links
+        if link.how == "link" and link.visibility != "PRIVATE" and view.active((*target.conditions, *link.conditions))
+    }
+    exported = None
+    for name, kinds in declared.items():
+        if "build" not in kinds or kinds & {"build_export", "exec"}:
+            continue
+        item = next((i for i in linked if view.debian(name) & {f"lib{i}-dev", f"{i}-dev"}), None)
+        if item is None:
+            continue
+        exported = exported if exported is not None else view.spread(n for n, k in declared.items() if k & _FOR_RUN)
+        if name in exported:
+            continue
+        place = next(d for d in package.manifest.dependencies if d.name == name)
+        yield Hit(
+            view.manifest_place(package, place),
+            name,
+            f"dependants link `{item}` along with the exported library, and do not get `{name}`",
+            f"declare it as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
+            package.name,
+            fix=_cure(view, package, name, "depend", kinds),
+        )
+
+
+def _without_headers(view: View, package, declared):
+    """Keys that install a library without its headers, where built code wants the headers."""
+    bare = {
+        name: debian
+        for name in declared
+        if name.startswith("lib") and (debian := view.debian(name)) and not any(d.endswith("-dev") for d in debian)
+    }
+    told = set()
+    for need in view.weighed(package) if bare else ():
+        if need.how == "include" and need.public and need.certain:
+            yield from _handed_on_bare(view, package, declared, bare, need, told)
+        if need.how not in ("find_package", "component", "include", "pkg-config") or need.role != "build":
+            continue
+        if not need.certain or view.answered(need.providers, declared) or need.providers[0].name in told:
+            continue
+        wanted = {
+            re.sub(r"(-all)?-dev\Z", "", debian)
+            for provider in need.providers
+            if provider.kind == "system"
+            for debian in view.debian(provider.name)
+            if debian.endswith("-dev")
+        }
+        name = next((n for n, debian in bare.items() if any(_same_library(d, w) for d in debian for w in wanted)), None)
+        right = next((p.name for p in need.providers if view.available(p.name)), None)
+        if name is None or right is None:
+            continue
+        told.add(need.providers[0].name)
+        place = next(d for d in package.manifest.dependencies if d.name == name)
+        yield Hit(
+            view.manifest_place(package, place),
+            right,
+            f"`{name}` brings no headers, and `{need.subject}` needs those of `{right}`",
+            f"declare `{right}`",
+            package.name,
+        )
+
+
+def _handed_on_bare(view: View, package, declared, bare, need, told):
+    """A library whose headers are declared for building, and without headers for whoever includes the public header."""
+    right = next((p.name for p in need.providers if declared.get(p.name) == {"build"}), None)
+    if right is None or right in told:
+        return
+    stems = {re.sub(r"(-all)?-dev\Z", "", debian) for debian in view.debian(right)}
+    name = next(
+        (n for n, installed in bare.items() if any(_same_library(d, s) for d in installed for s in stems)), None
+    )
+    if name is None or name.startswith("libboost") or not declared[name] & _FOR_RUN:
+        return
+    told.add(right)
+    place = next(d for d in package.manifest.dependencies if d.name == name)
+    yield Hit(
+        view.manifest_place(package, place),
+        right,
+        f"an installed header includes `{need.subject}`, and dependants get `{name}`, which has no headers",
+        f"declare `{right}` as `<{'run_depend' if package.manifest.format == 1 else 'depend'}>`",
+        package.name,
+        fix=_cure(view, package, right, "depend", declared[right]),
+    )
+
+
+def _same_library(installed: str, stem: str) -> bool:
+    """True when a package without headers belongs to the library: `libboost-thread1.71.0` to `libboost`."""
+    rest = installed[len(stem) :]
+    return len(stem) > 4 and installed.startswith(stem) and (not rest or rest[0] in "-0123456789.")
 
 
 def _cure(view: View, package, name: str, tag: str, kinds: set[str]) -> tuple[Declare | Remove, ...]:
