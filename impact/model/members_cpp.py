@@ -406,7 +406,9 @@ class CppUses:
 def _declarations_of(name: str, text: str) -> Iterator[tuple[int, str]]:
     """Where a name is declared, behind the name, and with which type."""
     for match in re.finditer(rf"(?<![\w.>:]){re.escape(name)}(?=\s*(?:[;=,){{(\[]|:(?!:)))", text):
-        ahead = _TYPE_BACK.search(text, max(0, match.start() - FAR), match.start())
+        # No type has any of these in it: what stands before them need not be looked at.
+        begins = max(text.rfind(mark, max(0, match.start() - FAR), match.start()) for mark in ";{}()") + 1
+        ahead = _TYPE_BACK.search(text, max(begins, match.start() - FAR, 0), match.start())
         if ahead and ahead.group("type") not in _KEYWORDS:
             yield match.end(), ahead.group("type")
 

@@ -27,6 +27,7 @@ class PythonUses:
     def __init__(self, text: str, scope: Scope):
         self.text, self.scope = text, scope
         self._names = self._imported()
+        self._bound_at: dict[str, list[int]] = {}
 
     @cached_property
     def _variables(self) -> dict[str, list[tuple[int, int, Type]]]:
@@ -156,8 +157,11 @@ class PythonUses:
 
     def _bindings(self, name: str) -> list[int]:
         """Where a name is bound to anything."""
+        known = self._bound_at.get(name)
+        if known is not None:
+            return known
         plain = re.escape(name)
-        return [
+        known = self._bound_at[name] = [
             match.start()
             for match in re.finditer(
                 rf"(?<![\w.]){plain}\s*(?::[^=\n(),]+)?(?:,\s*\w+\s*)*=(?!=)|\bfor\s+(?:\w+\s*,\s*)*{plain}\b"
@@ -165,6 +169,7 @@ class PythonUses:
                 self.text,
             )
         ]
+        return known
 
     def _variable(self, name: str, used: int) -> Type | None:
         bound = [(at, type_) for at, end, type_ in self._variables.get(name, ()) if at < used < end]
