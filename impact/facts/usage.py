@@ -19,15 +19,16 @@ from .cpp import scan
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How one use looks. All expressions are regular expressions over text whose literals are blank inside.
 
-    word: an identifier that stands in the use; `std::optional`, without anything else, for that name. language: `cpp` or
-    `python`. before: matches right up to the word. template: matches all of the arguments in `<>` (empty: there must be none; unset: either). arguments: makes it a
-    call or an initialisation, with `2`, `1-3` or `2+` arguments. where: argument number, from 1 (from the end: -1), or
-    `any`, to what must be found in it: an expression, or `<float>`, `<text>` for an expression that shows itself to be
-    a floating point number or a string (a literal, or a variable that the file declares so), `<string>` for an object
-    of class string, `<shared>` for a shared pointer to what the file has just made. names: a variable may stand
-    between the type that `word` is and its arguments. after: matches right behind the use. inside: `class` for what
-    stands right in the body of a class. file: must be found in the file. unless: must not be found in it; what begins
-    with `#include` is looked for among the includes, which are blank elsewhere.
+    word: an identifier that stands in the use; `std::optional`, without anything else, for that name. language: `cpp`
+    or `python`. before: matches right up to the word. template: matches all of the arguments in `<>` (empty: there must
+    be none; unset: either). arguments: makes it a call or an initialisation, with `2`, `1-3` or `2+` arguments. where:
+    argument number, from 1 (from the end: -1), or `any`, to what must be found in it: an expression, or `<float>`,
+    `<text>` for an expression that shows itself to be a floating point number or a string (a literal, or a variable
+    that the file declares so), `<string>` for an object of class string, `<shared>` for a shared pointer to what the
+    file has just made. names: a variable may stand between the type that `word` is and its arguments. after: matches
+    right behind the use. inside: `class` for what stands right in the body of a class. file: must be found in the file.
+    unless: must not be found in it; what begins with `#include` is looked for among the includes, which are blank
+    elsewhere.
     """
 
     word: str

@@ -494,7 +494,7 @@ class _Join:
                         continue
                     for line, column, around, types in _first(places_of_use(self.read(path), pattern)):
                         yield NameUse(label, At(path, line, column), role, public, "cpp", conditions + around, targets,
-                                      _OPEN_TYPES.sub(lambda _: f"<{types}>", label))  # fmt: skip
+                                      f"<{types}>".join(_OPEN_TYPES.split(label)))  # fmt: skip
 
     def python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
         """The same in Python files that import the package which the row is about."""

@@ -104,7 +104,9 @@ def test_the_quick_look_misses_no_use(pattern, text, seen):
     assert may_have(text.encode(), pattern) or not seen
 
 
-@pytest.mark.parametrize("text", ["", "\0", "rclcpp::Duration a(", "rclcpp::Duration(}", "class A { } } rclcpp::Duration("])
+@pytest.mark.parametrize(
+    "text", ["", "\0", "rclcpp::Duration a(", "rclcpp::Duration(}", "class A { } } rclcpp::Duration("]
+)
 def test_broken_files_have_no_uses(text):
     assert list(places_of_use(text.encode(), CALL)) == []
 

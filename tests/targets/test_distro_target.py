@@ -130,6 +130,9 @@ def test_a_platform_without_a_sync_is_noted():
 LIBRARIES = [
     ("humble", "opencv", "4.5.4"),
     ("jazzy", "opencv", "4.6.0"),
+    ("indigo", "gazebo-classic", "2"),  # REP 3 gives each distro its own, on one platform
+    ("jade", "gazebo-classic", "5"),
+    ("indigo", "libavutil", "52.3.0"),
     ("kinetic", "opencv", "3.3.1"),  # from its own package opencv3, not Ubuntu's 2.4.9
     ("melodic", "boost", "1.65.1"),
     ("noetic", "python3", "3.8.2"),

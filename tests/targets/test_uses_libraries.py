@@ -1,4 +1,4 @@
-"""Known changes of how platform libraries and the compiler are used: what is seen in code, and refused by which version."""
+"""How platform libraries and the compiler are used: what is seen in code, and which version refuses it."""
 
 import re
 
