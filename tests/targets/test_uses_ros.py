@@ -569,7 +569,7 @@ EXAMPLES = {
         "class A : public nav_core::BaseLocalPlanner { void initialize(std::string name, tf2_ros::Buffer * tf, costmap_2d::Costmap2DROS * costmap); };",
         "class A : public nav_core::BaseLocalPlanner { void initialize(std::string name, tf::TransformListener * tf, costmap_2d::Costmap2DROS * costmap); };",
     ),
-    "boost::shared_ptr<urdf::...>": (
+    "boost::shared_ptr<urdf::Joint>": (
         "std::map<std::string, boost::shared_ptr<urdf::Joint> >::iterator i;",
         "std::map<std::string, urdf::JointSharedPtr>::iterator i; boost::shared_ptr<urdf::Model> m;",
     ),
