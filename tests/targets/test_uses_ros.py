@@ -381,7 +381,7 @@ EXAMPLES = {
         "class A : public controller_interface::ControllerInterface { controller_interface::return_type update(const rclcpp::Time & time, const rclcpp::Duration & period) override; };",
         "class A : public controller_interface::ControllerInterface { controller_interface::return_type update() override; };",
     ),
-    "controller CallbackReturn on_init()": (
+    "CallbackReturn on_init()": (
         "class A : public controller_interface::ControllerInterface { controller_interface::CallbackReturn on_init() override; };",
         "class A : public controller_interface::ControllerInterface { controller_interface::return_type init(const std::string & name) override; };",
     ),
@@ -541,7 +541,7 @@ EXAMPLES = {
         "for (std::list<hardware_interface::ControllerInfo>::const_iterator it = a.begin(); it != a.end(); ++it) { f(it->hardware_interface); }",
         "for (std::list<hardware_interface::ControllerInfo>::const_iterator it = a.begin(); it != a.end(); ++it) { f(it->claimed_resources[0].hardware_interface); }",
     ),
-    "struct InterfaceResources": (
+    "hardware_interface::InterfaceResources": (
         "std::vector<hardware_interface::InterfaceResources> a;",
         "std::set<std::string> a;",
     ),
@@ -569,15 +569,15 @@ EXAMPLES = {
         "class A : public nav_core::BaseLocalPlanner { void initialize(std::string name, tf2_ros::Buffer * tf, costmap_2d::Costmap2DROS * costmap); };",
         "class A : public nav_core::BaseLocalPlanner { void initialize(std::string name, tf::TransformListener * tf, costmap_2d::Costmap2DROS * costmap); };",
     ),
-    "boost::shared_ptr<urdf::...>": (
+    "boost::shared_ptr<urdf::Joint>": (
         "std::map<std::string, boost::shared_ptr<urdf::Joint> >::iterator i;",
         "std::map<std::string, urdf::JointSharedPtr>::iterator i; boost::shared_ptr<urdf::Model> m;",
     ),
-    "rclpy create_publisher(type, topic)": (
+    "Node.create_publisher(type, topic)": (
         "self.create_publisher(String, 'a')",
         "self.create_publisher(String, 'a', 10)",
     ),
-    "rclpy create_subscription(type, topic, callback)": (
+    "Node.create_subscription(type, topic, callback)": (
         "self.create_subscription(String, 'a', f)",
         "self.create_subscription(String, 'a', f, 10)",
     ),
