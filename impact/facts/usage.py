@@ -89,7 +89,7 @@ def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
         text = python_text(data)
         segments: list[tuple[int, int, tuple[Condition, ...]]] = [(0, len(text), ())]
 
-        def place(offset: int) -> tuple[int, int]:
+        def place(offset: int, /) -> tuple[int, int]:
             line = text.count("\n", 0, offset) + 1
             return line, offset - (text.rfind("\n", 0, offset) + 1) + 1
     else:

@@ -371,7 +371,8 @@ class View:
 
     def coming_member(self, use: MemberUse) -> Misnamed | None:
         """What is wrong when the interface has a member here, and lacks it once this distro is updated."""
-        now, later = self._interfaces_of(use.package), self._updated and self._interfaces_of(use.package, self._updated)
+        now = self._interfaces_of(use.package)
+        later = self._interfaces_of(use.package, self._updated) if self._updated else None
         if use.ros != self.target.ros or not now or not later or now[1] >= later[1]:
             return None
         definition = now[0].definition(use.interface)
@@ -386,7 +387,8 @@ class View:
     def coming_interface(self, path: str) -> Misnamed | None:
         """The same for the interface of a generated header."""
         head, _, _, name = self._generated(path)
-        now, later = self._interfaces_of(head), self._updated and self._interfaces_of(head, self._updated)
+        now = self._interfaces_of(head)
+        later = self._interfaces_of(head, self._updated) if self._updated else None
         if not name or not now or not later or now[1] >= later[1]:
             return None
         spans = now[0].spans(name)

@@ -523,5 +523,6 @@ class _Linker:
         if known is None:
             place = self.by_name.get(package)
             cmake = [path for path in self.paths_of[place.path] if ".cmake" in path] if place is not None else []
-            known = self._extras[package] = extras_of(place.path, self.glob(place, cmake)) if cmake else ()
+            known = extras_of(place.path, self.glob(place, cmake)) if place is not None and cmake else ()
+            self._extras[package] = known
         return known

@@ -197,7 +197,7 @@ def _given(view: View, package, targets, name: str, asked) -> _Given | None:
         components |= BOOST_OF_ROSCPP
     components |= {c for c in BOOST_COMPILED if f"libboost-{c.replace('_', '-')}-dev" in brought}
     # Boost as a whole as a run dependency: somebody's export may name its libraries.
-    more = not brought.keys().isdisjoint(("boost", "libboost-all-dev", "libpcl-all-dev", "libpcl-all", "libpcl-dev"))
+    more = not brought.isdisjoint(("boost", "libboost-all-dev", "libpcl-all-dev", "libpcl-all", "libpcl-dev"))
     for extra in list(components):
         components |= BOOST_BROUGHT.get(extra, set())
     return _Given(frozenset(components), more)

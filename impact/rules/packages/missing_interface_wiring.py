@@ -162,16 +162,15 @@ def _catkin_generation(view: View, package):
         return
     found = {f.name for f in package.build.found}
     if "message_generation" not in found and "genmsg" not in found:
-        reach = view.spread(found)
-        name = next((n for n in ("message_generation", "genmsg") if n in reach), None)
+        through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
         yield Hit(
             generated[0].at,
             "message_generation",
             "messages are generated and `message_generation` is never found"
-            + (f", but for `{reach[name]}` that brings it" if name else ""),
+            + (f", but for `{through}` that brings it" if through else ""),
             "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)",
             package.name,
-            severity="warning" if name or view.blind(package) or not view.target.knows_manifests else "error",
+            severity="warning" if through or view.blind(package) or not view.target.knows_manifests else "error",
         )
 
 

@@ -191,8 +191,7 @@ class Clone:
         first, _, below = rest.partition("/")
         if below.startswith(first + "/") and first == package:
             rest = below
-        self.blobs.setdefault(entry.id.raw, None)
-        if self.blobs[entry.id.raw] is None:
+        if entry.id.raw not in self.blobs:
             self.blobs[entry.id.raw] = _read(entry.data)
         for name in _INTERFACES if rest in ("rclcpp/get_interface.hpp", "rclcpp/interface_traits.hpp") else ("",):
             made = rest.replace("rclcpp/get_", f"rclcpp/node_interfaces/get_{name}_") if name else rest
