@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 
 import msgspec
+from msgspec import structs
 
 from .facts.store import Store
 from .model import watch
@@ -21,6 +22,7 @@ from .model.package import Watched
 from .model.view import View
 from .rules.cure import Declare, Insert, Remove, Replace
 from .rules.rule import Cure, Edit, Hit
+from .targets.fields import default_fields
 from .targets.snapshot import data_stamp
 from .targets.target import Change, Target
 
@@ -69,9 +71,10 @@ def watched(store: Store) -> Watched:
     data = store.memo("watched", name)
     if data is not None:
         with contextlib.suppress(msgspec.MsgspecError):
-            return msgspec.msgpack.decode(data, type=Watched)
+            return structs.replace(msgspec.msgpack.decode(data, type=Watched), fields=default_fields())
     names = watch.watched()
-    store.remember("watched", [(name, msgspec.msgpack.encode(names))])
+    # The table of fields is read from its own file, where it is asked.
+    store.remember("watched", [(name, msgspec.msgpack.encode(structs.replace(names, fields=None)))])
     return names
 
 
