@@ -147,6 +147,10 @@ class Machine:
             return self._data.included(owner, pattern, version) if version else None
         return None
 
+    def knows(self, header: str) -> bool:
+        """True when some version of a header was read, be it here or not."""
+        return header in self._data.owners_of
+
     def owner(self, header: str) -> tuple[str, str] | None:
         """The package or library that has a header here, and its version."""
         for owner in self._data.owners_of.get(header, ()):
