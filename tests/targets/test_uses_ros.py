@@ -289,6 +289,18 @@ EXAMPLES = {
         "a.reset(new tf2_ros::Buffer());",
         "a.reset(new tf2_ros::Buffer(node->get_clock()));",
     ),
+    "tf_buffer_ without a clock": (
+        "A::A() : listener_(tf_buffer_) {}",
+        "A::A() : tf_buffer_(node->get_clock()), listener_(tf_buffer_), other_(*tf_buffer_) {}",
+    ),
+    "tfBuffer_ without a clock": (
+        "A::A() : listener_(tfBuffer_) {}",
+        "A::A() : tfBuffer_(node->get_clock()), listener_(tfBuffer_), other_(*tfBuffer_) {}",
+    ),
+    "buffer_ without a clock": (
+        "A::A() : listener_(buffer_) {}",
+        "A::A() : buffer_(node->get_clock()), listener_(buffer_), other_(*buffer_) {}",
+    ),
     "message_filters::Subscriber<M, NodeType>": (
         "message_filters::Subscriber<Image, rclcpp_lifecycle::LifecycleNode> a;",
         "message_filters::Subscriber<Image> a;",
@@ -572,6 +584,10 @@ EXAMPLES = {
     "boost::shared_ptr<urdf::Joint>": (
         "std::map<std::string, boost::shared_ptr<urdf::Joint> >::iterator i;",
         "std::map<std::string, urdf::JointSharedPtr>::iterator i; boost::shared_ptr<urdf::Model> m;",
+    ),
+    "__connection_header": (
+        'std::string a = (*message->__connection_header)["callerid"];',
+        "std::string a = event.getPublisherName();",
     ),
     "Node.create_publisher(type, topic)": (
         "self.create_publisher(String, 'a')",
