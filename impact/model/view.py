@@ -173,6 +173,10 @@ class View:
             self._held[conditions] = all_hold(conditions, self.environment)
         return self._held[conditions]
 
+    def built(self, role: str) -> bool:
+        """True for code that is built or run wherever the package is: colcon builds tests along, catkin on request."""
+        return role in ("build", "run") or (role == "test" and self.target.ros == 2)
+
     def active_manifest(self, condition: str) -> bool:
         """False only when the condition attribute of a dependency surely does not hold on the target."""
         return self.active((Condition("manifest", condition),))

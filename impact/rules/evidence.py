@@ -91,14 +91,14 @@ def uses_refused(view: View, kind: str) -> Iterator[Hit]:
                 f"`{shown}` {when} {how} {change.package} {change.version}{where}",
                 change.new,
                 package.name,
-                severity=_how_bad(use, certain),
+                severity=_how_bad(view, use, certain),
             )
 
 
-def _how_bad(use: NameUse, certain: bool) -> str:
+def _how_bad(view: View, use: NameUse, certain: bool) -> str:
     if use.role == "aside" or (not certain and any(c.language == "cpp" for c in use.conditions)):
         return "note"  # an #if around it most likely tells the versions apart
-    return "error" if certain and use.role in ("build", "run") else "warning"
+    return "error" if certain and view.built(use.role) else "warning"
 
 
 def _under_standard(view: View, package: Package, use: NameUse, change: Change) -> str | None:

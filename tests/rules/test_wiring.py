@@ -360,16 +360,6 @@ ROWS = {
 
 # What is a warning at most, since the evidence is not complete.
 UNSURE = {
-    "a header that is installed in any case and compiled under a condition": (
-        ament(
-            "sled",
-            HEADERS + "find_package(ice QUIET)\nif(ice_FOUND)\n  add_executable(run run.cpp)\nendif()",
-            run_cpp="#include <sled/sled.hpp>\n" + MAIN,
-            include__sled__sled_hpp="#pragma once\n" + ANGLES,
-        ),
-        "if(ice_FOUND)",
-        "if(TRUE)",
-    ),
     "a group, of which any member may bring it": (
         {
             path: text.replace("</license>", "</license>\n<group_depend>drivers</group_depend>").replace(

@@ -10,9 +10,9 @@ Why it breaks
     not with these arguments.
 
 Severity
-    error for code that is built or run; warning in tests, under CMake conditions that are not known, and for the first
-    call of a library that only the newest distro refuses, where that is at most two long-term distros ahead; note in
-    examples, under an `#if` that is not known, and for the rest.
+    error for code that is built or run, tests of ROS 2 included; warning in tests of ROS 1 and in Python's, under CMake
+    conditions that are not known, and for the first call of a library that only the newest distro refuses, where that
+    is at most two long-term distros ahead; note in examples, under an `#if` that is not known, and for the rest.
 
 Example
     auto timeout = rclcpp::Duration(0.5);       // Humble's Duration takes no floating point number

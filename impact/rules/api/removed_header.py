@@ -10,9 +10,9 @@ Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
-    error for compiled code that is not guarded; warning for tests, for what only the newest distro lacks, and for
-    interfaces that go when a dated target's distro is updated; note for examples, for installed headers that the
-    package does not compile itself, and under conditions that are not known.
+    error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for what only the
+    newest distro lacks, and for interfaces that go when a dated target's distro is updated; note for examples, for
+    installed headers that the package does not compile itself, and under conditions that are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -56,7 +56,7 @@ def removed_header(view: View):
                     "note"
                     if not view.certain(include.conditions)
                     else "error"
-                    if include.role == "build"
+                    if view.built(include.role)
                     else "warning"
                 )
             change = gone.get(path)

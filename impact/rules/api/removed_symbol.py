@@ -9,9 +9,9 @@ Why it breaks
     The compiler stops with "was not declared in this scope", or Python with an AttributeError or ImportError.
 
 Severity
-    error for unguarded names in code that is built or run; warning in tests, under conditions that are not known, where
-    the name stays and changed its meaning, and for the first name of a library that only the newest distro lacks; note
-    in examples and for the rest of those.
+    error for unguarded names in code that is built or run, ROS 2's tests in C++ included; warning in other tests, under
+    conditions that are not known, where the name stays and changed its meaning, and for the first name of a library
+    that only the newest distro lacks; note in examples and for the rest of those.
 
 Example
     cv::imread(path, CV_LOAD_IMAGE_ANYDEPTH)    // gone in OpenCV 4
@@ -100,7 +100,8 @@ def removed_symbol(view: View):
                 if any(path.endswith(endings) for path in included.get(use.at.path, included[""])):
                     continue
             guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
-            sure = use.role in ("build", "run") and not guarded and change.kind != "api-changed"
+            built = view.built(use.role) if use.language == "cpp" else use.role in ("build", "run")
+            sure = built and not guarded and change.kind != "api-changed"
             if endings and sure and included is not None:
                 # It only moved to another header, which the headers of whatever uses the library may include.
                 sure = not any(_may_bring(view, change, path) for path in included.get(use.at.path, included[""]))

@@ -11,8 +11,8 @@ Why it breaks
     robot, or an ImportError.
 
 Severity
-    error for C++ that is built; warning in tests, for Python, for what only goes with an update, and where a telling
-    name is used on something whose type does not show; note in examples.
+    error for C++ that is built, tests of ROS 2 included; warning in tests of ROS 1, for Python, for what only goes with
+    an update, and where a telling name is used on something whose type does not show; note in examples.
 
 Example
     request->start_controllers = {"arm"};       // controller_manager_msgs of Iron has activate_controllers
@@ -62,7 +62,7 @@ def unknown_field(view: View):
                     severity = "warning" if use.sure and use.role != "aside" else "note"
                     yield Hit(use.at, use.member, coming.message, coming.help, package.name, severity=severity)
                 continue
-            built = use.role in ("build", "run") and use.language == "cpp" and view.certain(use.conditions)
+            built = view.built(use.role) and use.language == "cpp" and view.certain(use.conditions)
             yield Hit(
                 use.at,
                 use.member,
