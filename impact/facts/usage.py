@@ -19,9 +19,9 @@ from .cpp import scan
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How one use looks. All expressions are regular expressions over text whose literals are blank inside.
 
-    word: an identifier that stands in the use; `std::optional`, without anything else, for that name. language: `cpp`
-    or `python`. before: matches right up to the word. template: matches all of the arguments in `<>` (empty: there must
-    be none; unset: either). arguments: makes it a call or an initialisation, with `2`, `1-3` or `2+` arguments. where:
+    word: an identifier that stands in the use, or a qualified name (`std::optional`) by itself. language: `cpp` or
+    `python`. before: matches right up to the word. template: matches all of the arguments in `<>` (empty: there must be
+    none; unset: either). arguments: makes it a call or an initialisation, with `2`, `1-3` or `2+` arguments. where:
     argument number, from 1 (from the end: -1), or `any`, to what must be found in it: an expression, or `<float>`,
     `<text>` for an expression that shows itself to be a floating point number or a string (a literal, or a variable
     that the file declares so), `<string>` for an object of class string, `<shared>` for a shared pointer to what the
@@ -43,6 +43,11 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     file: str = ""
     unless: str = ""
 
+    @property
+    def calls(self) -> bool:
+        """True for calls of functions, which a package may have one of its own for."""
+        return bool(self.arguments) and not self.names
+
 
 Place = tuple[int, int, tuple[Condition, ...], str]
 _FAR = 160
@@ -52,7 +57,26 @@ _SPACE = re.compile(r"\s*")
 _TYPES = re.compile(r"[\w:,\s*&]*(?:<[\w:,\s*&]*(?:<[\w:,\s*&<>]*>[\w:,\s*&]*)*>[\w:,\s*&]*)*>")
 _VARIABLE = re.compile(r"\s+[A-Za-z_]\w*\s*(?=[({])")
 _BEFORE_CALL = re.compile(r"(?:([A-Za-z_]\w*)|(>))\s+(?:[A-Za-z_]\w*\s*::\s*)*\Z")
-_NOT_A_TYPE = frozenset(["return", "else", "throw", "new", "co_return", "co_await", "co_yield", "case", "and", "or", "not", "do", "in", "if", "elif", "while"])
+_NOT_A_TYPE = frozenset(
+    [
+        "return",
+        "else",
+        "throw",
+        "new",
+        "co_return",
+        "co_await",
+        "co_yield",
+        "case",
+        "and",
+        "or",
+        "not",
+        "do",
+        "in",
+        "if",
+        "elif",
+        "while",
+    ]
+)
 _FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?:\.\d*)?[eE][-+]?\d+)[fFlL]?(?![\w.])|\b(?:double|float)\s*[({]")
 _TEXT = re.compile(r'"|\bstd::(?:to_)?string\s*[({]|\.str\(\)')
 _STRING = re.compile(r'\Astd::(?:to_)?string\s*[({]|\.str\(\)\Z|"\s*\+|\+\s*"')
@@ -79,7 +103,16 @@ def may_have(data: bytes, pattern: Pattern) -> bool:
 
 @lru_cache(maxsize=4096)
 def _in_bytes(expression: str) -> re.Pattern[bytes]:
-    return re.compile(expression.encode())
+    return re.compile(expression.encode(), re.MULTILINE)
+
+
+def declares(data: bytes, function: str) -> bool:
+    """Whether a C++ file seems to declare or define a function of this name, comments not told apart."""
+    # A type on a line of its own has the function at the beginning of the next.
+    found = _in_bytes(
+        rf"^(?!\s*(?://|\*))[^\n/]*?([A-Za-z_]\w*|[>*]|(?<!&)&)(?:[ \t]+|[ \t]*\n)(?:[A-Za-z_]\w*::)*{re.escape(function)}\s*\("
+    ).finditer(data)
+    return any(match.group(1).decode() not in _NOT_A_TYPE for match in found)
 
 
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:

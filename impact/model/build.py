@@ -141,11 +141,11 @@ class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What the CMake of a package says. minimum: cmake_minimum_required's version and place. standard: the highest C++
     standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with its
-    place. standard_default_only: it is only set where the user or a toolchain has not chosen one. standard_by_flag: by
-    -std= flags alone, so that CMake adds what linked targets ask for only where the compiler's default is lower.
-    project_by_variable: its CMakeLists.txt calls targets after ${PROJECT_NAME} rather than by the project's name.
-    message_files: (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told.
-    files: the CMake files read, relative to the root."""
+    place. standards: every one, with its place and conditions. standard_default_only: it is only set where the user or
+    a toolchain has not chosen one. standard_by_flag: by -std= flags alone, so that CMake adds what linked targets ask
+    for only where the compiler's default is lower. project_by_variable: its CMakeLists.txt calls targets after
+    ${PROJECT_NAME} rather than by the project's name. message_files: (path, at) of add_message_files and friends.
+    unresolved: (place, reason) of what could not be told. files: the CMake files read, relative to the root."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -166,6 +166,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     standard_by_flag: bool = False
     message_files: tuple[tuple[str, At], ...] = ()
     project_by_variable: bool = False
+    standards: tuple[tuple[int, At, tuple[Condition, ...]], ...] = ()
 
 
 class Declared(msgspec.Struct, frozen=True, gc=False):

@@ -20,7 +20,7 @@ from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, Place, may_have, places_of_use, python_text
+from ..facts.usage import Pattern, Place, declares, may_have, places_of_use, python_text
 from ..targets.fields import Fields
 from .build import At, Build
 from .members import Interface as Meant
@@ -167,6 +167,8 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     defined: tuple[str, ...] = ()
     # Watched uses, by their labels.
     uses: tuple[NameUse, ...] = ()
+    # Functions that a watched use calls and that the package declares itself, a method of its own base class maybe.
+    functions: tuple[str, ...] = ()
     # Fields and constants of other packages' interfaces that only some versions have.
     members: tuple[MemberUse, ...] = ()
 
@@ -263,6 +265,7 @@ class _Join:
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
         self._scanned: dict[str, Scan] = {}
+        self.functions: set[str] = set()
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
 
     def inside(self, path: str) -> str:
@@ -346,6 +349,7 @@ class _Join:
             defined=tuple(sorted({n for f in self.cpp.values() for n in f.defined} & self.watched.words)),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
             uses=tuple(uses),
+            functions=tuple(sorted(self.functions)),
             members=(*self.members(roles), *self.python_members(python)),
         )
 
@@ -382,22 +386,23 @@ class _Join:
         reached: dict[str, tuple[str, bool, set[str], list]] = {}
 
         def walk(path: str, role: str, public: bool, names: tuple[str, ...], conditions) -> None:
-            stack = [path]
-            seen = set()
+            stack = [(path, conditions)]
+            seen: dict[str, tuple[Condition, ...]] = {}
             while stack:
-                at = stack.pop()
-                if at in seen:
+                at, under = stack.pop()
+                if at in seen and (public or set(seen[at]) <= set(under)):
                     continue
-                seen.add(at)
+                seen[at] = under
                 known = reached.get(at)
                 if known is None:
-                    reached[at] = (role, public, set(names), list(conditions))
+                    reached[at] = (role, public, set(names), list(under))
                 else:
-                    # built by several: it is as unconditional as the least conditional of them; installing builds nothing
                     merged = role if known[0] == role else "build"
-                    kept = known[3] if public else [c for c in known[3] if c in conditions]
+                    kept = known[3] if public else _either(known[3], under)  # installing builds nothing
                     reached[at] = (merged, known[1] or public, known[2] | set(names), kept)
-                stack.extend(to for to, _ in self.resolved.get(at, ()) if to is not None)
+                for to, include in self.resolved.get(at, ()):
+                    if to is not None:
+                        stack.append((to, under + include.conditions if include.conditions else under))
 
         for source, targets in roots.items():
             inside = role_of_folder(self.inside(source))
@@ -489,6 +494,9 @@ class _Join:
                     yield NameUse(label, At(path, name.line, name.column), role, public, "cpp",
                                   conditions + name.conditions, targets)  # fmt: skip
             for word in sorted(watched.keys() & (spoken | KEYWORDS)):
+                called = word not in self.functions and any(p.calls for _, p in watched[word])
+                if called and declares(self.read(path), word):
+                    self.functions.add(word)
                 for label, pattern in watched[word]:
                     if not may_have(self.read(path), pattern):
                         continue
@@ -738,6 +746,16 @@ class _Join:
         # catkin_python_setup() installs what setup.py names, which by custom lies in src/.
         inside = self.inside(path)
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
+
+
+# Stands for a test of which only is known that one of several branches of it has to be taken.
+_ONE_OF_SEVERAL = Condition("cmake", "<one of several conditions>")
+
+
+def _either(one: list[Condition], other: tuple[Condition, ...]) -> list[Condition]:
+    """What holds where a file is built under one set of conditions or another."""
+    common = [c for c in one if c in other]
+    return common if len(common) in (len(one), len(other)) else [*common, _ONE_OF_SEVERAL]
 
 
 def _first(places: Iterable[Place]) -> Iterator[Place]:

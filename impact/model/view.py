@@ -18,7 +18,7 @@ from ..targets.changes import DISTROS
 from ..targets.distro import known_distros
 from ..targets.fields import History, before, default_fields, there
 from ..targets.includes import Machine, machine_of
-from ..targets.library import include_roots
+from ..targets.library import include_roots, standard_year
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
 from .build import At, Found
@@ -172,6 +172,12 @@ class View:
         if conditions not in self._held:
             self._held[conditions] = all_hold(conditions, self.environment)
         return self._held[conditions]
+
+    def standard(self, package: Package) -> tuple[int, At] | None:
+        """The highest C++ standard that a package sets for everything on this target, and where."""
+        build = package.build
+        held = [(number, at) for number, at, conditions in build.standards if self.active(conditions)]
+        return max(held, key=lambda entry: standard_year(entry[0])) if held else None
 
     def built(self, role: str) -> bool:
         """True for code that is built or run wherever the package is: colcon builds tests along, catkin on request."""

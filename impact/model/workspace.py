@@ -24,7 +24,7 @@ from .discovery import Discovered, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
 # Raise with every change of what a digest or the CMake interpreter says.
-DIGEST_VERSION = "22"
+DIGEST_VERSION = "23"
 _VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 
@@ -264,6 +264,8 @@ class Workspace:
             return False
         if any(t.kind in ("custom", "external", "fetched", "unknown") for t in package.build.targets):
             return False
+        if any("$" in path for g in package.build.generated for path in g.files):
+            return False  # generates what another package lists
         return bool(package.digest.headers or package.digest.interfaces)
 
     @cached_property

@@ -9,7 +9,7 @@ from ..model.view import Need, View, weight
 from ..model.workspace import Package
 from ..targets.library import default_standard, standard_year
 from ..targets.target import Change
-from ..targets.uses import standards_of
+from ..targets.uses import function_of, standards_of
 from ..targets.version import at_least
 from .rule import Hit
 
@@ -44,6 +44,11 @@ def name_to_declare(view: View, need: Need) -> str | None:
 _COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
 
 
+def for_tests(made) -> bool:
+    """True for what CMake finds or makes only where tests are built."""
+    return any("TESTING" in c.text for c in made.conditions)
+
+
 def uses_refused(view: View, kind: str) -> Iterator[Hit]:
     """Hits for watched uses of a kind (`call-changed`, `field-changed`) that a target takes no longer, or not yet, or
     that only the newest distro's libraries take no longer."""
@@ -52,9 +57,13 @@ def uses_refused(view: View, kind: str) -> Iterator[Hit]:
     coming = {label: c for label, c in view.later.items() if c.kind == kind and c.package not in _COMPILER}
     if not refused and not coming:
         return
+    # A method that the workspace declares may be meant wherever its name is called.
+    own = {function for package in view.workspace for function in package.digest.functions}
     for package in view:
         warned: set[str] = set()
         for use in package.digest.uses:
+            if function_of(use.text) in own:
+                continue
             change = refused.get(use.text)
             later = None if change is not None else coming.get(use.text)
             change = change or later
@@ -109,7 +118,8 @@ def _under_standard(view: View, package: Package, use: NameUse, change: Change) 
     build = package.build
     default = default_standard(view.target)
     own = [t.standard for t in build.targets if t.name in use.targets and t.standard]
-    set_for = ([build.standard[0]] if build.standard else []) + own
+    fixed = view.standard(package)
+    set_for = ([fixed[0]] if fixed else []) + own
     have = max((standard_year(number) for number in set_for), default=default)
     if have is None:
         return None

@@ -112,7 +112,8 @@ DEFINED_IN: dict[str, tuple[str, ...]] = {
     "std::copy": ("algorithm", "bits/stl_algobase"),
     "std::lower_bound": ("algorithm", "bits/stl_algobase"),
     **{
-        f"std::{name}": ("cmath",) for name in ("isnan", "isinf", "isfinite", "sqrt", "hypot", "fabs", "atan2", "round")
+        f"std::{name}": ("cmath", "math.h")
+        for name in ("isnan", "isinf", "isfinite", "sqrt", "hypot", "fabs", "atan2", "round")
     },
     **dict.fromkeys(("FLT_MAX", "FLT_MIN", "FLT_EPSILON", "DBL_MAX", "DBL_MIN", "DBL_EPSILON"), ("cfloat", "float.h")),
     **dict.fromkeys(("INT_MAX", "INT_MIN", "UINT_MAX", "LONG_MAX"), ("climits", "limits.h")),

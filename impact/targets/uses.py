@@ -91,6 +91,16 @@ def _standards() -> dict[str, tuple[int, int]]:
     return {row.label: (row.refused_from, row.needs) for row in all_uses() if row.refused_from or row.needs}
 
 
+def function_of(label: str) -> str:
+    """The function that a use calls, by its label; empty for other uses."""
+    return _functions().get(label, "")
+
+
+@cache
+def _functions() -> dict[str, str]:
+    return {row.label: row.pattern.word for row in all_uses() if row.pattern.calls}
+
+
 def uses_in_force(target: Target) -> tuple[Change, ...]:
     """Uses that a target does not take: state `removed` for no longer, `absent` for not yet."""
     found = []

@@ -1,7 +1,7 @@
 """How uses look: calls, initialisations, members and types, told from the text of a file alone."""
 
 import pytest
-from rosimpact.impact.facts.usage import Pattern, may_have, places_of_use
+from rosimpact.impact.facts.usage import Pattern, declares, may_have, places_of_use
 
 CALL = Pattern("Duration", before=r"rclcpp\s*::\s*", arguments="1", names=True)
 MEMBER = Pattern("codec", before=r"\bstreams\s*\[[^\]\n]*\]\s*->\s*", after=r"\s*->")
@@ -115,3 +115,23 @@ def test_a_place_has_line_column_conditions_and_template_arguments():
     text = b"int a;\n#if OLD\n  boost::shared_ptr<const\n urdf::Link> b;\n#endif\n"
     ((line, column, conditions, types),) = places_of_use(text, POINTER)
     assert (line, column, [c.text for c in conditions], types) == (3, 10, ["OLD"], "const urdf::Link")
+
+
+DECLARED = [
+    ("void\nTable::turn(int)", True),
+    ("  virtual void turn(int x);", True),
+    ("std::shared_ptr<Disc> turn(int)", True),
+    ("const Disc & turn(int);", True),
+    ("  return turn(1);", False),
+    ("  else turn(1);", False),
+    ("  table.turn(1);", False),
+    ("auto disc = turn(1);", False),
+    ("  free && turn(1)", False),
+    ("  // void turn(int)", False),
+    ("// a table can\n  turn(1);", False),
+]
+
+
+@pytest.mark.parametrize(("code", "expected"), DECLARED)
+def test_a_function_that_a_file_declares(code, expected):
+    assert declares(code.encode(), "turn") is expected

@@ -7,6 +7,7 @@ from rosimpact.impact import check_workspace
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
+# ruff: noqa: E501
 # Severity, rule, path, subject, targets.
 BREAKS = {
     "ros2_ws": """

@@ -242,6 +242,29 @@ SILENT = {
         ),
         ("CMakeLists.txt", "set(SOURCES run.cpp)", "set(SOURCES run.cpp trace.cpp)"),
     ),
+    "a call of a method that the workspace declares": Silent(
+        "changed-signature",
+        ("humble",),
+        ament(
+            NODE.format("") + INSTALLED,
+            "rclcpp",
+            run_cpp=RCLCPP + "struct Sled : rclcpp::Node\n{\n  void create_timer(double period, void (*callback)());\n"
+            "  void go() { this->create_timer(100ms, callback_); }\n};\n" + MAIN,
+        ),
+        ("run.cpp", "  void create_timer(double period, void (*callback)());\n", ""),
+    ),
+    "sources of an interface package that generates what another one lists": Silent(
+        "removed-header",
+        ("jazzy",),
+        ament(
+            "find_package(rosidl_default_generators REQUIRED)\nfind_package(floes REQUIRED)\n"
+            "rosidl_generate_interfaces(${PROJECT_NAME} msg/Floe.msg ${floes_MSG_FILES})\n"
+            "add_executable(run run.cpp)\n" + INSTALLED,
+            "rosidl_default_generators",
+            **{"msg/Floe_msg": "float64 size\n", "run_cpp": "#include <sled/msg/berg.hpp>\n" + MAIN},
+        ),
+        ("CMakeLists.txt", " ${floes_MSG_FILES}", ""),
+    ),
     "the CMake name of what a declared vendor package brings": Silent(
         "misspelt-cmake-name",
         ("jazzy",),

@@ -373,7 +373,7 @@ def ros2_control_defaults(run: Interpreter, call: Call, args: list[Word]) -> Non
 
 def _wrapper_standard(run: Interpreter, call: Call, number: int) -> None:
     if run.get("CMAKE_CXX_STANDARD") is None and not run.silent:
-        run.standards.append((number, run.place(call.at), True, False))
+        run.standards.append((number, run.place(call.at), True, False, run.conditions))
 
 
 @handles("ament_lint_auto_find_test_dependencies")

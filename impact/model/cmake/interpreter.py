@@ -113,7 +113,7 @@ class Interpreter:
 
         self.project = ""
         self.minimum: tuple[str, At] | None = None
-        self.standards: list[tuple[int, At, bool, bool]] = []
+        self.standards: list[tuple[int, At, bool, bool, tuple[Condition, ...]]] = []
         self.found: dict[Found, None] = {}
         self.targets = Targets()
         self.installs: dict[Install, None] = {}
@@ -191,7 +191,7 @@ class Interpreter:
         standard = None
         default_only = by_flag = False
         if self.standards:
-            number, at, _, _ = max(self.standards, key=lambda entry: entry[0] if entry[0] < 90 else entry[0] - 100)
+            number, at, *_ = max(self.standards, key=lambda entry: entry[0] if entry[0] < 90 else entry[0] - 100)
             standard = (number, at)
             by_flag = all(entry[3] for entry in self.standards)
             default_only = all(entry[2] for entry in self.standards)
@@ -201,6 +201,7 @@ class Interpreter:
             standard=standard,
             standard_default_only=default_only,
             standard_by_flag=by_flag,
+            standards=tuple((number, at, conditions) for number, at, _, _, conditions in self.standards),
             found=tuple(self.found),
             targets=self.targets.finish(),
             installs=tuple(self.installs),
@@ -931,7 +932,7 @@ class Interpreter:
     def add_standard(self, number: int, at: At, is_default: bool, by_flag: bool) -> None:
         """Collects a C++ standard set for everything."""
         if not self.silent:
-            self.standards.append((number, self.place(at), is_default, by_flag))
+            self.standards.append((number, self.place(at), is_default, by_flag, self.conditions))
 
     def new_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
         """Makes or finds a target; a second one of the same name adds to the first."""

@@ -32,6 +32,7 @@ from functools import lru_cache
 
 from ...model.view import View, interface_of
 from ...targets.version import at_least
+from ..evidence import for_tests
 from ..rule import Hit, rule
 
 _SYSTEM_BY_DEFAULT = (
@@ -67,12 +68,10 @@ def missing_find_package(view: View):
         if found is None:
             continue
         reachable = view.spread(found)
-        for_tests = {f.name for f in package.build.found if _for_tests(f) and f.name in found}
-        outside = {f.name for f in package.build.found if not _for_tests(f)}
-        built = (
-            view.spread(n for n in found if n in outside or n not in for_tests) if for_tests - outside else reachable
-        )
-        shipped = {t.name for t in package.build.targets if t.kind != "test" and not _for_tests(t)}
+        tested = {f.name for f in package.build.found if for_tests(f) and f.name in found}
+        outside = {f.name for f in package.build.found if not for_tests(f)}
+        built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
+        shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t)}
         closure = view.closure(package)
         told = set()
         for at, name in _given_to_targets(view, package):
@@ -146,10 +145,10 @@ def _find_modules(view: View, package):
 
 
 def _weight_of(view: View, need, counts: bool) -> str:
-    """How surely a missing find_package stops the compiler: since Humble every package has its own include folder."""
+    """How surely a missing find_package stops the compiler: from Jazzy on every package has its include folder."""
     if not counts or not (need.targets or need.public):
         return "note"
-    apart = view.target.ros == 2 and view.target.distro not in _ONE_FOLDER
+    apart = view.target.ros == 2 and view.target.distro not in (*_ONE_FOLDER, "humble", "iron")
     return "error" if apart and need.targets and len(need.providers) == 1 else "warning"
 
 
@@ -180,7 +179,7 @@ def _not_given(view: View, package):
         ):
             continue
         name = providers[0].name
-        if name not in found or name == package.name or name in told:
+        if name not in found or name == package.name or name in told or name.endswith("_vendor"):
             continue
         for target in include.targets:
             if target not in reach:
@@ -414,10 +413,6 @@ def _no_prefix(view: View, package):
                 f"pkg_check_modules({found.name.upper().replace('-', '_')} {found.prefix} {found.name})",
                 package.name,
             )
-
-
-def _for_tests(made) -> bool:
-    return any("TESTING" in c.text for c in made.conditions)
 
 
 @lru_cache(maxsize=10000)

@@ -176,7 +176,9 @@ def _variables(view: View, package):
             continue
         if not use.name.endswith(("_PREFIX", "_DESTINATION", "_DIR")) or use.name in _PLACES:
             continue
-        if use.name in told or package.build_type != "catkin" or not view.certain(use.conditions):
+        if use.name in told or package.build_type != "catkin" or package.name == "catkin":
+            continue
+        if not view.certain(use.conditions):
             continue
         told.add(use.name)
         yield Hit(

@@ -360,10 +360,10 @@ def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | 
     first = need.providers[0]
     if first.kind == "system" and view.sealed(package):
         return "warning"
-    if need.how == "include" and not first.sure:
-        # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
-        if first.kind == "system" or view.has_released_header(first.name, need.subject) is False:
-            return "warning"
+    # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
+    guessed = need.how == "include" and not first.sure
+    if guessed and (first.kind == "system" or view.has_released_header(first.name, need.subject) is False):
+        return "warning"
     return "error"
 
 

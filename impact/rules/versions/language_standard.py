@@ -49,7 +49,7 @@ def language_standard(view: View):
 
 def _ros1(view: View, package, default: int | None):
     """What the package sets, else the compiler's default, against what is included."""
-    fixed = package.build.standard
+    fixed = view.standard(package)
     year = standard_year(fixed[0]) if fixed else default
     if year is None:
         return
@@ -87,7 +87,7 @@ def _ros1(view: View, package, default: int | None):
 
 def _ros2(view: View, package, default: int | None):
     """A -std= flag stands where the compiler's default is all that linked targets ask for."""
-    fixed = package.build.standard
+    fixed = view.standard(package)
     if not fixed or not package.build.standard_by_flag or default is None:
         return
     have = standard_year(fixed[0])
@@ -107,7 +107,10 @@ def _ros2(view: View, package, default: int | None):
         elif (
             newest is not None
             and (later := needed_standard(newest, include.path))
-            and (standard_year(later.standard) > have and (default_standard(newest) or 0) >= standard_year(later.standard))
+            and (
+                standard_year(later.standard) > have
+                and (default_standard(newest) or 0) >= standard_year(later.standard)
+            )
         ):
             need, severity, where = later, "warning", f" in {view.horizon}"
         else:
