@@ -8,6 +8,7 @@ import re
 import sys
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -39,12 +40,24 @@ class Name(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...] = ()
 
 
+class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A use that a table describes, by the label it has there. types: the template arguments that are written."""
+
+    label: str
+    line: int
+    column: int
+    conditions: tuple[Condition, ...] = ()
+    types: str = ""
+
+
 class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """includes in order; qualified: distinct qualified names; words: distinct bare identifiers (not keywords) with at
     least four characters, space-joined and sorted (positions are found again in the bytes when a finding needs them);
     defined: macros and include guards the file defines; using: namespaces named by `using namespace` and `using a::b`.
     exports: classes given to pluginlib and rclcpp_components macros, as written without spaces; references: packages
     and files named by literals (`package://`, getPath, get_package_share_directory); main: defines a main function.
+    uses: of what the table of uses describes, the first of every label under the same conditions, called by its label;
+    functions: those that such uses call and that the file declares itself.
     """
 
     includes: tuple[Include, ...]
@@ -56,6 +69,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     exports: tuple[str, ...] = ()
     references: tuple[Reference, ...] = ()
     main: bool = False
+    uses: tuple[Use, ...] = ()
+    functions: tuple[str, ...] = ()
 
 
 # Conditions beyond these are one unknown condition: hostile input must not cost quadratic memory.
@@ -209,6 +224,7 @@ class Scan(NamedTuple):
     problems: list[Problem]
 
 
+@lru_cache(maxsize=4)
 def scan(data: bytes) -> Scan:
     """Reads a file as far as all that looks into it needs."""
     text = _decode(data)

@@ -36,7 +36,7 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "srv": ("interface", "Interface", 2),
     "action": ("interface", "Interface", 2),
     "idl": ("interface", "Interface", 2),
-    "cpp": ("cpp", "CppFile", 1),
+    "cpp": ("cpp", "CppFile", 2),
     "python": ("python", "PythonFile", 1),
     "launch_xml": ("launch", "ReferenceFile", 4),
     "launch_yaml": ("launch", "ReferenceFile", 4),
@@ -125,6 +125,10 @@ def version_of(kind: str) -> str:
         return f"script.{EXTRACTORS['python'][2]}.{EXTRACTORS['shell'][2]}.{EXTRACTORS[kind][2]}"
     if kind == "setup_py":
         return f"{kind}.{EXTRACTORS[kind][2]}.{EXTRACTORS['python'][2]}"
+    if kind == "cpp":
+        from ..targets.uses import stamp
+
+        return f"{kind}.{EXTRACTORS[kind][2]}.{stamp()}"
     return f"{kind}.{EXTRACTORS[kind][2]}"
 
 
@@ -162,6 +166,10 @@ def _facts(kind: str, data: bytes) -> Any:
     try:
         read = import_module(f".{module}", __package__).extract
         facts = read(data, kind) if module in WITH_KIND else read(data)
+        if kind == "cpp":
+            from ..targets.uses import uses_by_word  # the one table that says what to look for
+
+            facts = import_module(".usage", __package__).with_uses(facts, data, uses_by_word())
         if kind == "setup_py":
             python = _facts("python", data)
             # Python 2 is no mistake on a target that runs it: the rule on Python versions knows, and what it installs

@@ -7,13 +7,15 @@ literals are blanked; nothing is resolved, so a pattern has to be particular eno
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 import msgspec
+from msgspec import structs
 
 from .condition import Condition
-from .cpp import scan
+from .cpp import KEYWORDS, CppFile, Use, scan
 
 
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -50,6 +52,8 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 Place = tuple[int, int, tuple[Condition, ...], str]
+# Patterns with their labels, by a word that stands in each.
+Table = Mapping[str, Sequence[tuple[str, Pattern]]]
 _FAR = 160
 _LONGEST = 4000
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
@@ -85,7 +89,43 @@ _CHRONO = re.compile(r"\d(?:h|min|s|ms|us|ns)\b|\bchrono\b")
 _PARAMETER = re.compile(r"(?:const\s+)?[A-Za-z_][\w:]*(?:\s*<[^()]*>)?(?:\s*&+\s*|\s+)[A-Za-z_]\w*")
 _FLOAT_CAST = re.compile(r"static_cast\s*<\s*(?:double|float)\s*>")
 _INTEGER_CAST = re.compile(r"static_cast|\bint\s*\(|\(int\)|\(long\)|\b(?:round|floor|ceil|trunc)\b|[<>=!]=?|\?")
+_OPENED = re.compile(rb"\s*\(")
+_SCOPES = re.compile(rb"(?:[A-Za-z_]\w*::)+\Z")
+# A type at the end of a line that begins no comment.
+_TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&)[ \t]+\Z")
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
+
+
+def with_uses(facts: CppFile, data: bytes, table: Table) -> CppFile:
+    """The facts of a C++ file with the uses that a table describes, the first of each under the same conditions, and
+    those functions that such uses call and the file declares itself. Never raises."""
+    heads = {word.partition("::")[0] for word in table if "::" in word}
+    spoken = set(facts.words.split(" "))
+    uses: list[Use] = []
+    for name in facts.qualified:
+        parts = name.text.split("::")
+        spoken.update(parts)
+        if parts[0] in heads:
+            # A row about a name as it stands needs no second look at the file.
+            for label, _ in table.get("::".join(parts[:2]), ()):
+                uses.append(Use(label, name.line, name.column, name.conditions))
+    functions = []
+    for word in sorted(table.keys() & (spoken | KEYWORDS)):
+        if any(pattern.calls for _, pattern in table[word]) and declares(data, word):
+            functions.append(word)
+        for label, pattern in table[word]:
+            if may_have(data, pattern):
+                uses.extend(Use(label, *place) for place in first_places(places_of_use(data, pattern)))
+    return structs.replace(facts, uses=tuple(uses), functions=tuple(functions)) if uses or functions else facts
+
+
+def first_places(places: Iterable[Place]) -> Iterator[Place]:
+    """The first place for every distinct set of conditions."""
+    seen = set()
+    for place in places:
+        if place[2] not in seen:
+            seen.add(place[2])
+            yield place
 
 
 def may_have(data: bytes, pattern: Pattern) -> bool:
@@ -103,16 +143,26 @@ def may_have(data: bytes, pattern: Pattern) -> bool:
 
 @lru_cache(maxsize=4096)
 def _in_bytes(expression: str) -> re.Pattern[bytes]:
-    return re.compile(expression.encode(), re.MULTILINE)
+    return re.compile(expression.encode())
 
 
 def declares(data: bytes, function: str) -> bool:
-    """Whether a C++ file seems to declare or define a function of this name, comments not told apart."""
-    # A type on a line of its own has the function at the beginning of the next.
-    found = _in_bytes(
-        rf"^(?!\s*(?://|\*))[^\n/]*?([A-Za-z_]\w*|[>*]|(?<!&)&)(?:[ \t]+|[ \t]*\n)(?:[A-Za-z_]\w*::)*{re.escape(function)}\s*\("
-    ).finditer(data)
-    return any(match.group(1).decode() not in _NOT_A_TYPE for match in found)
+    """Whether a C++ file seems to declare or define a function of this name: a type stands before it in its line, or
+    at the end of the line before where it begins its own."""
+    name = function.encode()
+    at = data.find(name)
+    while at >= 0:
+        end = at + len(name)
+        if _OPENED.match(data, end) is not None:
+            start = data.rfind(b"\n", 0, at) + 1
+            ahead = _SCOPES.sub(b"", data[start:at])
+            if not ahead and start:
+                ahead = data[data.rfind(b"\n", 0, start - 1) + 1 : start - 1].rstrip() + b" "
+            found = _TYPE_AHEAD.search(ahead)
+            if found is not None and found.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
+                return True
+        at = data.find(name, end)
+    return False
 
 
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
@@ -126,24 +176,21 @@ def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
             line = text.count("\n", 0, offset) + 1
             return line, offset - (text.rfind("\n", 0, offset) + 1) + 1
     else:
-        scanned = _scanned(data)
+        scanned = scan(data)
         text, place, segments = scanned.visible, scanned.place, scanned.segments
     whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
     if (pattern.file and not _compiled(pattern.file).search(whole)) or (
         pattern.unless and _compiled(pattern.unless).search(whole)
     ):
         return
-    word = _compiled(rf"(?<!\w){re.escape(pattern.word)}(?!\w)")
-    for start, end, conditions in segments:
-        for match in word.finditer(text, start, end):
-            types = _fits(pattern, text, match.start(), match.end())
-            if types is not None and (pattern.inside != "class" or _in_class(text, match.start())):
-                yield (*place(match.start()), conditions, types)
-
-
-@lru_cache(maxsize=2)
-def _scanned(data: bytes):
-    return scan(data)
+    ends = [end for _, end, _ in segments]
+    for at in _standing(pattern.word, text):
+        start, _, conditions = segments[min(bisect_right(ends, at), len(segments) - 1)]
+        if at < start:
+            continue  # in a directive
+        types = _fits(pattern, text, at, at + len(pattern.word))
+        if types is not None and (pattern.inside != "class" or _in_class(text, at)):
+            yield (*place(at), conditions, types)
 
 
 @lru_cache(maxsize=4096)
@@ -293,11 +340,32 @@ def _outer(expression: str) -> str:
         expression = shorter
 
 
+_DECLARED_AHEAD = re.compile(r"\s*[;={,)(]")
+_TYPE_OF = re.compile(r"([\w:]+|char\s*\*)(?:\s*&\s*|\s+)\Z")
+_SHARED_AHEAD = re.compile(r"\s*([;={,)(][^;]{0,60})")
+_SHARED_TYPE = re.compile(r"([\w:>]+)(\s*[&*]+\s*|\s+)\Z")
+_WORD_CHARACTER = re.compile(r"\w")
+
+
+def _standing(name: str, text: str) -> Iterator[int]:
+    """Where a name stands as a whole word."""
+    at = text.find(name)
+    while at >= 0:
+        end = at + len(name)
+        if not _WORD_CHARACTER.match(text, end) and not (at and _WORD_CHARACTER.match(text, at - 1)):
+            yield at
+        at = text.find(name, end)
+
+
 def _declared(argument: str, types: str, text: str) -> bool:
     """Whether a variable of an arithmetic expression is declared with one of the types, and nowhere with another."""
     for name in _IDENTIFIER.findall(argument):
-        declared = re.findall(rf"([\w:]+|char\s*\*)(?:\s*&\s*|\s+){re.escape(name)}\s*(?:[;={{,)]|\()", text)
-        declared = [d for d in declared if d not in _NOT_A_TYPE]
+        declared = []
+        for at in _standing(name, text):
+            if _DECLARED_AHEAD.match(text, at + len(name)):
+                found = _TYPE_OF.search(text, max(0, at - _FAR), at)
+                if found and found.group(1) not in _NOT_A_TYPE:
+                    declared.append(found.group(1))
         if declared and all(re.fullmatch(types, d) for d in declared):
             return True
     return False
@@ -305,8 +373,12 @@ def _declared(argument: str, types: str, text: str) -> bool:
 
 def _made_shared(name: str, text: str) -> bool:
     """Whether a file declares a variable as a shared pointer that it makes, and nowhere declares it otherwise."""
-    declared = re.findall(rf"([\w:>]+)(\s*[&*]+\s*|\s+){re.escape(name)}\s*([;={{,)(][^;]{{0,60}})", text)
-    declared = [(d, between, ahead) for d, between, ahead in declared if d not in _NOT_A_TYPE]
+    declared = []
+    for at in _standing(name, text):
+        ahead = _SHARED_AHEAD.match(text, at + len(name))
+        found = _SHARED_TYPE.search(text, max(0, at - _FAR), at) if ahead else None
+        if ahead and found and found.group(1) not in _NOT_A_TYPE:
+            declared.append((found.group(1), found.group(2), ahead.group(1)))
     return bool(declared) and all(
         not between.strip() and ahead.startswith("=") and "make_shared" in ahead for _, between, ahead in declared
     )

@@ -8,19 +8,19 @@ from __future__ import annotations
 import posixpath
 import re
 from collections.abc import Callable, Container, Iterable, Iterator
-from functools import cached_property
+from functools import cache, cached_property
 
 import msgspec
 
 from ..facts.condition import Condition
-from ..facts.cpp import KEYWORDS, CppFile, Include, Scan, scan
+from ..facts.cpp import CppFile, Include, Scan, scan
 from ..facts.interface import Interface
 from ..facts.launch import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, Place, declares, may_have, places_of_use, python_text
+from ..facts.usage import Pattern, first_places, places_of_use, python_text
 from ..targets.fields import Fields
 from .build import At, Build
 from .members import Interface as Meant
@@ -205,14 +205,13 @@ def role_of_folder(path: str) -> str | None:
 
 class Watched(msgspec.Struct, frozen=True, dict=True):
     """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
-    of the standard library the headers that offer them. uses: labels and patterns of uses by a word that each has in
-    it, for C++; modules: the same for Python, by the package that is imported. fields: the table of interfaces."""
+    of the standard library the headers that offer them. modules: labels and patterns of uses in Python, by the
+    package that is imported. fields: the table of interfaces."""
 
     words: frozenset[str] = frozenset()
     qualified: frozenset[str] = frozenset()
     python: frozenset[str] = frozenset()
     headers_of: dict[str, tuple[str, ...]] = {}
-    uses: dict[str, list[tuple[str, Pattern]]] = {}
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     version: str = ""
     fields: Fields | None = None
@@ -259,13 +258,13 @@ class _Join:
     def __init__(self, name, path, manifest_path, manifest, build, build_type, kinds, files, facts, read, watched):
         self.name, self.path, self.manifest_path, self.manifest = name, path, manifest_path, manifest
         self.build, self.build_type, self.kinds, self.files = build, build_type, kinds, files
-        self.facts, self.read, self.watched = facts, read, watched
+        self.facts, self.watched = facts, watched
+        self.read = cache(read)  # a file is looked into for several reasons
         self.prefix = path + "/" if path else ""
         self.cpp: dict[str, CppFile] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
         self._scanned: dict[str, Scan] = {}
-        self.functions: set[str] = set()
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
 
     def inside(self, path: str) -> str:
@@ -349,7 +348,7 @@ class _Join:
             defined=tuple(sorted({n for f in self.cpp.values() for n in f.defined} & self.watched.words)),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
             uses=tuple(uses),
-            functions=tuple(sorted(self.functions)),
+            functions=tuple(sorted({name for facts in self.cpp.values() for name in facts.functions})),
             members=(*self.members(roles), *self.python_members(python)),
         )
 
@@ -477,32 +476,12 @@ class _Join:
 
     def uses(self, roles) -> Iterator[NameUse]:
         """Every use that some table row is about, in files that something compiles."""
-        watched = self.watched.uses
-        heads = {word.partition("::")[0] for word in watched if "::" in word}
         for path, (role, public, targets, conditions) in roles.items():
             facts = self.cpp.get(path)
-            if facts is None or not watched:
-                continue
-            spoken = set(facts.words.split(" "))
-            for name in facts.qualified:
-                parts = name.text.split("::")
-                spoken.update(parts)
-                if parts[0] not in heads:
-                    continue
-                # A row about a name as it stands needs no second look at the file.
-                for label, _ in watched.get("::".join(parts[:2]), ()):
-                    yield NameUse(label, At(path, name.line, name.column), role, public, "cpp",
-                                  conditions + name.conditions, targets)  # fmt: skip
-            for word in sorted(watched.keys() & (spoken | KEYWORDS)):
-                called = word not in self.functions and any(p.calls for _, p in watched[word])
-                if called and declares(self.read(path), word):
-                    self.functions.add(word)
-                for label, pattern in watched[word]:
-                    if not may_have(self.read(path), pattern):
-                        continue
-                    for line, column, around, types in _first(places_of_use(self.read(path), pattern)):
-                        yield NameUse(label, At(path, line, column), role, public, "cpp", conditions + around, targets,
-                                      f"<{types}>".join(_OPEN_TYPES.split(label)))  # fmt: skip
+            for use in facts.uses if facts is not None else ():
+                yield NameUse(use.label, At(path, use.line, use.column), role, public, "cpp",
+                              conditions + use.conditions, targets,
+                              f"<{use.types}>".join(_OPEN_TYPES.split(use.label)))  # fmt: skip
 
     def python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
         """The same in Python files that import the package which the row is about."""
@@ -510,7 +489,7 @@ class _Join:
             heads = {item.module.split(".")[0] for item in facts.imports}
             for package in sorted(self.watched.modules.keys() & heads):
                 for label, pattern in self.watched.modules[package]:
-                    for line, column, _, _ in _first(places_of_use(self.read(path), pattern)):
+                    for line, column, _, _ in first_places(places_of_use(self.read(path), pattern)):
                         yield NameUse(label, At(path, line, column), self.python_role(path), False, "python")
 
     def members(self, roles) -> Iterator[MemberUse]:
@@ -662,8 +641,7 @@ class _Join:
         space, _, word = name.rpartition("::")
         if space.partition("::")[0] in ("", "std"):
             return False
-        declared = re.compile(rb"\b(?:class|struct|enum|typedef|using)\b[^;{}=]*\b" + word.encode() + rb"\b\s*[;:{=<]")
-        return any(declared.search(self.read(at)) for at in self.reached(path))
+        return any(_declares_type(self.read(at), word.encode()) for at in self.reached(path))
 
     # -- what Python files need ------------------------------------------------------------------------------------
 
@@ -748,6 +726,21 @@ class _Join:
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
 
 
+_TYPE_AHEAD = re.compile(rb"\b(?:class|struct|enum|typedef|using)\b[^;{}=]*(?<!\w)\Z")
+_TYPE_BEHIND = re.compile(rb"\s*[;:{=<]")
+
+
+def _declares_type(data: bytes, word: bytes) -> bool:
+    """True when the bytes of a file announce or define a type of this name."""
+    at = data.find(word)
+    while at >= 0:
+        end = at + len(word)
+        if _TYPE_BEHIND.match(data, end) and _TYPE_AHEAD.search(data, max(0, at - 300), at):
+            return True
+        at = data.find(word, end)
+    return False
+
+
 # Stands for a test of which only is known that one of several branches of it has to be taken.
 _ONE_OF_SEVERAL = Condition("cmake", "<one of several conditions>")
 
@@ -756,15 +749,6 @@ def _either(one: list[Condition], other: tuple[Condition, ...]) -> list[Conditio
     """What holds where a file is built under one set of conditions or another."""
     common = [c for c in one if c in other]
     return common if len(common) in (len(one), len(other)) else [*common, _ONE_OF_SEVERAL]
-
-
-def _first(places: Iterable[Place]) -> Iterator[Place]:
-    """The first place for every distinct set of conditions and template arguments."""
-    seen = set()
-    for place in places:
-        if place[2:] not in seen:
-            seen.add(place[2:])
-            yield place
 
 
 def is_header(path: str) -> bool:

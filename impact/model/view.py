@@ -107,6 +107,8 @@ class View:
         self._modules: dict[str, tuple[Provider, ...]] = {}
         self._debian: dict[str, frozenset[str]] = {}
         self._sealed: dict[str, list[str]] = {}
+        self._around: dict[str, frozenset[str]] = {}
+        self._libraries_of: dict[str, list[str]] = {}
         self._held: dict[tuple[Condition, ...], bool | None] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._standard: dict[str, bool] = {}
@@ -520,11 +522,30 @@ class View:
             return False
         return self.target.version(name) is not None
 
+    def around(self, path: str) -> frozenset[str]:
+        """Who could answer an include path, all that is installed along with them, and the platform libraries that
+        these names stand for; empty when nobody could."""
+        known = self._around.get(path)
+        if known is None:
+            names = self.spread(provider.name for provider in self.header(path))
+            known = self._around[path] = names.union(*map(self.libraries_of, names))
+        return known
+
     def libraries_of(self, name: str) -> list[str]:
         """Platform libraries whose version a rosdep key or CMake name stands for."""
+        known = self._libraries_of.get(name)
+        if known is None:
+            known = self._libraries_of[name] = self._named_libraries(name)
+        return known
+
+    def _named_libraries(self, name: str) -> list[str]:
         folded = name.lower().removeprefix("lib").removesuffix("-dev").removesuffix("-all")
-        known = self.target.library_names()
+        known = self._library_names
         return [n for n in dict.fromkeys((name.lower(), folded, folded.rstrip("0123456789"))) if n in known]
+
+    @cached_property
+    def _library_names(self) -> frozenset[str]:
+        return self.target.library_names()
 
     def left_python(self, module: str) -> bool:
         """True for modules that Python's standard library once had and the target's has no longer."""

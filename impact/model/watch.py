@@ -11,7 +11,7 @@ from ..targets.changes import TransitiveInclude, all_rows, transitive_includes
 from ..targets.fields import default_fields
 from ..targets.includes import offered
 from ..targets.standard import DEFINED_IN
-from ..targets.uses import all_uses
+from ..targets.uses import all_uses, stamp
 from .package import Watched
 
 _KINDS = frozenset({"api-removed", "api-renamed", "api-changed", "python-removed", "python-api"})
@@ -41,20 +41,25 @@ def watched() -> Watched:
     headers.update({name: tuple(h for h in found if "bits/" not in h) for name, found in DEFINED_IN.items()})
     for include in transitive_includes():
         headers[include.name] = tuple(dict.fromkeys((*include.headers, *headers.get(include.name, ()))))
-    uses: dict[str, list[tuple[str, Pattern]]] = {}
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     for row in all_uses():
         if row.pattern.language == "python":
             modules.setdefault(row.package, []).append((row.label, row.pattern))
-        else:
-            uses.setdefault(row.pattern.word, []).append((row.label, row.pattern))
     fields = default_fields()
     version = hashlib.sha1(
         repr(
-            (sorted(words), sorted(qualified), sorted(python), sorted(headers.items()), uses, modules, fields.version)
+            (
+                sorted(words),
+                sorted(qualified),
+                sorted(python),
+                sorted(headers.items()),
+                modules,
+                stamp(),
+                fields.version,
+            )
         ).encode()
     ).hexdigest()
-    return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, uses, modules, version, fields)
+    return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields)
 
 
 __all__ = ["TransitiveInclude", "watched"]

@@ -24,7 +24,7 @@ from .discovery import Discovered, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
 # Raise with every change of what a digest or the CMake interpreter says.
-DIGEST_VERSION = "23"
+DIGEST_VERSION = "31"
 _VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 
@@ -387,17 +387,18 @@ class _Linker:
         fresh: list[tuple[bytes, bytes]] = []
         encoder = msgspec.msgpack.Encoder()
         for place in places:
-            blob = remembered.get(keys[place.path])
+            blob, stale = remembered.get(keys[place.path]), None
             if blob is not None:
                 size = int.from_bytes(blob[:4], "big")
                 read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
+                packed = memoryview(blob)[4 + size :]
+                stale = decoder.decode(packed)
                 if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items()):
-                    packed = memoryview(blob)[4 + size :]
                     self.identify(packed)
-                    found[place.path] = decoder.decode(packed)
+                    found[place.path] = stale
                     continue
             try:
-                digest, read = self.join(place)
+                digest, read = self.join(place, stale)
             except Exception as error:
                 # One package that nobody foresaw must not take the others with it.
                 digest, read = self.failed(place, error), None
@@ -452,7 +453,9 @@ class _Linker:
         given = [path for place in self.discovered.packages for path in self.extras(place.name)]
         return hashlib.sha1("\n".join(given).encode("utf-8", "surrogateescape")).hexdigest()
 
-    def join(self, place) -> tuple[Digest, dict[str, str]]:
+    def join(self, place, before: Digest | None) -> tuple[Digest, dict[str, str]]:
+        """The digest of a package, and the CMake files of others that it rests on. before: a digest of the very same
+        files of its own; where the others still say the same, it holds."""
         gathered = self.gathered
         manifest = _manifest(gathered, place.manifest_path)
         assert manifest is not None
@@ -485,6 +488,8 @@ class _Linker:
             and (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
             else Build()
         )
+        if before is not None and build == before.build:
+            return before, read
         digest = digest_of(
             place.name or manifest.name,
             place.path,

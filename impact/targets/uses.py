@@ -5,6 +5,7 @@ The facts are in `data/uses*.json`, reviewed, each with its source. Names that a
 
 from __future__ import annotations
 
+import hashlib
 from functools import cache
 from typing import NamedTuple
 
@@ -79,6 +80,22 @@ def all_uses() -> tuple[Use, ...]:
                 if found.setdefault(label, row) is not row:
                     raise SnapshotError(f"{path}: two rows are called `{label}`; install rosimpact again")
     return tuple(found.values())
+
+
+@cache
+def stamp() -> str:
+    """Differs whenever the table does."""
+    return hashlib.sha1(b"".join(path.read_bytes() for path in sorted(DATA.glob("uses*.json")))).hexdigest()[:16]
+
+
+@cache
+def uses_by_word() -> dict[str, list[tuple[str, Pattern]]]:
+    """What to look for in C++ files: labels and patterns by a word that stands in each."""
+    found: dict[str, list[tuple[str, Pattern]]] = {}
+    for row in all_uses():
+        if row.pattern.language == "cpp":
+            found.setdefault(row.pattern.word, []).append((row.label, row.pattern))
+    return found
 
 
 def standards_of(label: str) -> tuple[int, int]:

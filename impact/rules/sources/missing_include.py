@@ -140,12 +140,8 @@ def _outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> 
         return None if outside & reach else sorted(outside)
     owners = {owner[0] for header in offered()[name] if (owner := machine.owner(header)) is not None}
     for path in outside:
-        around = view.spread(provider.name for provider in view.header(path))
-        if (
-            not around
-            or (path in reach and machine.knows(path))
-            or any(n in owners or owners.intersection(view.libraries_of(n)) for n in around)
-        ):
+        around = view.around(path)
+        if not around or (path in reach and machine.knows(path)) or not owners.isdisjoint(around):
             return None
     return sorted(outside)
 
