@@ -135,7 +135,9 @@ def may_have(data: bytes, pattern: Pattern) -> bool:
     word, before = pattern.word.encode(), _in_bytes(rf"(?:{pattern.before})\Z")
     at = data.find(word)
     while at >= 0:
-        if before.search(data, max(0, at - _FAR), at) is not None:
+        # No use reaches back over the end of the statement before it.
+        begins = max(0, at - _FAR, data.rfind(b";", max(0, at - _FAR), at))
+        if before.search(data, begins, at) is not None:
             return True
         at = data.find(word, at + len(word))
     return False
@@ -200,7 +202,8 @@ def _compiled(expression: str) -> re.Pattern[str]:
 
 def _fits(pattern: Pattern, text: str, start: int, end: int) -> str | None:
     """The template arguments of a use (empty: none), None where the text does not look like the pattern."""
-    ahead = text[max(0, start - _FAR) : start]
+    far = max(0, start - _FAR)
+    ahead = text[max(far, text.rfind(";", far, start)) : start]
     if pattern.before and not _compiled(rf"(?:{pattern.before})\Z").search(ahead):
         return None
     at, shown = end, ""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 
 from .members import FAR, Found, Interface, Scope, Type, section_of
 
@@ -271,7 +272,7 @@ class CppUses:
             return self._inferred(name, max(others), depth)
         types = set()
         for which, header in enumerate(self.headers, 1):
-            written = len(list(_declarations_of(name, header))) if name in header else 0
+            written = _times_declared(name, header)
             known = [type_ for _, type_ in self._declarations(which).get(name, ())] if written else []
             if written > len(known):
                 return None
@@ -401,6 +402,11 @@ class CppUses:
             if self.scope.changes(Type(told[0], section), member) is not None:
                 return Found(told[0], section, member, offset, True)
         return None
+
+
+@lru_cache(maxsize=4096)
+def _times_declared(name: str, text: str) -> int:
+    return len(list(_declarations_of(name, text))) if name in text else 0
 
 
 def _declarations_of(name: str, text: str) -> Iterator[tuple[int, str]]:

@@ -523,6 +523,9 @@ class _Join:
                 scope = scopes[key] = Scope(key, table)
             if not scope.changing & spoken:
                 continue
+            # Most files are told from their bytes, comments included, without a closer look.
+            if not mentions(self.read(path).decode("utf-8", "replace"), scope):
+                continue
             scanned = self.scanned(path)
             if not mentions(scanned.visible, scope):
                 continue

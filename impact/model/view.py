@@ -108,6 +108,7 @@ class View:
         self._debian: dict[str, frozenset[str]] = {}
         self._sealed: dict[str, list[str]] = {}
         self._around: dict[str, frozenset[str]] = {}
+        self._files: dict[str, tuple[str, ...]] = {}
         self._libraries_of: dict[str, list[str]] = {}
         self._held: dict[tuple[Condition, ...], bool | None] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
@@ -248,6 +249,12 @@ class View:
 
     def _files_of(self, path: str) -> tuple[str, ...]:
         """The headers of the workspace that an include path names; a file's own path names itself."""
+        known = self._files.get(path)
+        if known is None:
+            known = self._files[path] = self._headers_named(path)
+        return known
+
+    def _headers_named(self, path: str) -> tuple[str, ...]:
         if path in self._header_files:
             return (path,)
         ending, found = "/" + path.lstrip("./"), []
