@@ -798,7 +798,7 @@ class View:
         found = list(self.providers.header(path))
         if any(not p.name for p in found):
             return found
-        if "/" in path and not any(p.name == head for p in found) and self._is_package(head) and head not in _UMBRELLAS:
+        if "/" in path and not any(p.name == head for p in found) and self.is_package(head) and head not in _UMBRELLAS:
             convention = Provider("ros", head, "", False)
             if self.target.version(head) is not None or not found or head in self.workspace.packages:
                 found.insert(0, convention)
@@ -807,7 +807,8 @@ class View:
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
         return [p for p in found if p.name not in _BROAD]
 
-    def _is_package(self, name: str) -> bool:
+    def is_package(self, name: str) -> bool:
+        """True when the workspace has a package of this name, or any distro ever released one."""
         return name in self.workspace.packages or self.target.ever_released(name)
 
     def cmake(self, name: str) -> tuple[Provider, ...]:
@@ -860,7 +861,7 @@ class View:
                 found = [Provider("system", "")]  # gone from Python, which python-version says; nobody else's module
             if not found:
                 found = list(self.providers.module(module))
-                if not any(p.name == head for p in found) and self._is_package(head):
+                if not any(p.name == head for p in found) and self.is_package(head):
                     found.insert(0, Provider("ros", head, "", False))
             known = self._modules[module] = tuple(found)
         return known
@@ -937,7 +938,7 @@ class View:
             if not name and reference.kind == "plugin" and ".launch" in use.at.path:
                 # Nodelets are called `package/Class`.
                 name = reference.name.partition("/")[0] if "/" in reference.name else ""
-            if not name or name == package.name or "$" in name or not self._is_package(name):
+            if not name or name == package.name or "$" in name or not self.is_package(name):
                 continue
             how = {"plugin": "plugin", "command": "shell"}.get(reference.kind, "launch")
             yield Need(

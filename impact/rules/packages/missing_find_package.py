@@ -384,7 +384,7 @@ def _never_set(view: View, package):
             continue
         stem = match.group(1)
         folded = _folded(stem)
-        if not folded or _SET_ALONG.match(stem) or view._is_package(stem):
+        if not folded or _SET_ALONG.match(stem) or view.is_package(stem):
             continue
         if any(folded in other or other in folded for other in (*sought, *reachable) if len(other) > 2):
             continue
@@ -454,5 +454,5 @@ def _given_to_targets(view: View, package):
                 or any("TESTING" in c.text for c in conditions)
             ):
                 continue
-            if link.how == "ament" and view._is_package(link.item):
+            if link.how == "ament" and view.is_package(link.item):
                 yield link.at, link.item

@@ -84,7 +84,7 @@ def _wrong_case(view: View, package):
     """find_package names that are known in another case alone: CMake looks for files of this very name."""
     own = {path.rpartition("/")[2] for other in view.workspace for path in other.files if path.endswith(".cmake")}
     for f in package.build.found:
-        if f.how != "find_package" or not f.required or not view.certain(f.conditions) or view._is_package(f.name):
+        if f.how != "find_package" or not f.required or not view.certain(f.conditions) or view.is_package(f.name):
             continue
         if f.name.islower():
             continue  # `x-config.cmake` answers to it, which no list of files need show
