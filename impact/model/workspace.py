@@ -24,7 +24,7 @@ from .discovery import Discovered, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
 # Raise with every change of what a digest or the CMake interpreter says.
-DIGEST_VERSION = "40"
+DIGEST_VERSION = "14"
 _VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 

@@ -763,3 +763,16 @@ def test_a_commit_without_changes_does_not_fail(tmp_path: Path, store: Path):
     environment = {"ROSIMPACT_CACHE": str(store)}
     assert CliRunner().invoke(app, command, env=environment).exit_code == 1
     assert CliRunner().invoke(app, [*command, "--base", "HEAD"], env=environment).exit_code == 0
+
+
+@pytest.mark.parametrize(("module", "severity"), [("distutils.version", "warning"), ("imp", "error")])
+def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path):
+    files = ament(
+        "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
+        "exec_depend:rclpy",
+        run_py=f"#!/usr/bin/env python3\nimport {module}\nimport rclpy\n",
+    )
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    assert [(f.severity, f.subject) for f in report.findings if f.rule == "python-version"] == [(severity, module)]

@@ -101,6 +101,7 @@ def removed_symbol(view: View):
                     continue
             guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
             built = view.built(use.role) if use.language == "cpp" else use.role in ("build", "run")
+            built = built and not use.text.startswith("distutils.")  # for which setuptools stands in
             sure = built and not guarded and change.kind != "api-changed"
             if endings and sure and included is not None:
                 # It only moved to another header, which the headers of whatever uses the library may include.
