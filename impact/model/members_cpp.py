@@ -130,10 +130,7 @@ class CppUses:
     def _collect_aliases(self) -> None:
         """`using Switch = pkg::srv::Switch;` and the like, in the file or its headers."""
         for text in (*self.headers, self.text):
-            for match in re.finditer(
-                r"\busing\s+(\w+)\s*=\s*([\w:\s]+?)\s*;|\btypedef\s+([\w:\s]+?)\s+(\w+)\s*;", text
-            ):
-                name, meant = (match.group(1), match.group(2)) if match.group(1) else (match.group(4), match.group(3))
+            for name, meant in _aliases_of(text):
                 parts = [part.strip() for part in meant.split("::")]
                 for at in range(len(parts)):
                     told = self._interface(parts[: at + 1])
@@ -189,9 +186,15 @@ class CppUses:
     def _declarations(self, which: int) -> dict[str, list[tuple[int, Type]]]:
         """Variables of interfaces' types in the file (0) or one of its headers, by name: offsets and types."""
         known = self._declared.get(which)
+        text = (self.text, *self.headers)[which]
+        # Many files of a package share its headers.
+        shared = (text, tuple(self._aliases.items())) if which else None
+        if known is None and shared is not None:
+            known = self._declared[which] = self.scope.declared.get(shared)
         if known is None:
             known = self._declared[which] = {}
-            text = (self.text, *self.headers)[which]
+            if shared is not None:
+                self.scope.declared[shared] = known
             for match in _NAME.finditer(text):
                 if self._names_type(match.group()) is None:
                     continue
@@ -407,6 +410,18 @@ class CppUses:
 @lru_cache(maxsize=4096)
 def _times_declared(name: str, text: str) -> int:
     return len(list(_declarations_of(name, text))) if name in text else 0
+
+
+@lru_cache(maxsize=1024)
+def _aliases_of(text: str) -> tuple[tuple[str, str], ...]:
+    """Names that a text gives to others, with those."""
+    return tuple(
+        (match.group(1), match.group(2)) if match.group(1) else (match.group(4), match.group(3))
+        for match in _ALIAS.finditer(text)
+    )
+
+
+_ALIAS = re.compile(r"\busing\s+(\w+)\s*=\s*([\w:\s]+?)\s*;|\btypedef\s+([\w:\s]+?)\s+(\w+)\s*;")
 
 
 def _declarations_of(name: str, text: str) -> Iterator[tuple[int, str]]:
