@@ -106,7 +106,7 @@ class Scope:
     def __init__(self, included: Iterable[Interface], table: Fields):
         self.table = table
         # What headers declare, kept by whoever reads them.
-        self.declared: dict[tuple, dict] = {}
+        self.declared: dict[tuple | None, dict] = {}
         self.definitions: dict[Interface, Definition] = {}
         waiting = list(included)
         while waiting:

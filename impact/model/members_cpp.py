@@ -189,8 +189,8 @@ class CppUses:
         text = (self.text, *self.headers)[which]
         # Many files of a package share its headers.
         shared = (text, tuple(self._aliases.items())) if which else None
-        if known is None and shared is not None:
-            known = self._declared[which] = self.scope.declared.get(shared)
+        if known is None and shared in self.scope.declared:
+            known = self._declared[which] = self.scope.declared[shared]
         if known is None:
             known = self._declared[which] = {}
             if shared is not None:
