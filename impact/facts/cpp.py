@@ -222,6 +222,12 @@ class Scan(NamedTuple):
     found: list[tuple[int, bool, str]]
     defined: dict[str, None]
     problems: list[Problem]
+    ends: list[int]
+
+    def under(self, offset: int) -> tuple[Condition, ...] | None:
+        """The conditions around an offset, None inside a directive."""
+        start, _, conditions = self.segments[min(bisect_right(self.ends, offset), len(self.segments) - 1)]
+        return conditions if start <= offset else None
 
 
 @lru_cache(maxsize=4)
@@ -301,16 +307,30 @@ def scan(data: bytes) -> Scan:
     segments.append((position, len(visible), conditions))
     if blocks.open:
         problems.append(Problem(len(starts) - 1, f"{len(blocks.open)} `#if` without `#endif`"))
-    return Scan(text, visible, place, segments, found, defined, problems)
+    ends = [end for _, end, _ in segments]
+    return Scan(text, visible, place, segments, found, defined, problems, ends)
+
+
+_WORD_CHARACTER = re.compile(r"\w")
+
+
+def standing(name: str, text: str) -> Iterator[int]:
+    """Where a name stands as a whole word."""
+    at = text.find(name)
+    while at >= 0:
+        end = at + len(name)
+        if not _WORD_CHARACTER.match(text, end) and not (at and _WORD_CHARACTER.match(text, at - 1)):
+            yield at
+        at = text.find(name, end)
 
 
 def places_of(data: bytes, word: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
     """Line, column and preprocessor conditions of every use of a bare identifier outside comments and literals."""
     scanned = scan(data)
-    pattern = re.compile(rf"(?<![\w]){re.escape(word)}(?!\w)")
-    for start, end, conditions in scanned.segments:
-        for match in pattern.finditer(scanned.visible, start, end):
-            yield (*scanned.place(match.start()), conditions)
+    for at in standing(word, scanned.visible):
+        conditions = scanned.under(at)
+        if conditions is not None:
+            yield (*scanned.place(at), conditions)
 
 
 def extract(data: bytes) -> CppFile:

@@ -167,9 +167,9 @@ def _facts(kind: str, data: bytes) -> Any:
         read = import_module(f".{module}", __package__).extract
         facts = read(data, kind) if module in WITH_KIND else read(data)
         if kind == "cpp":
-            from ..targets.uses import uses_by_word  # the one table that says what to look for
+            from ..targets.uses import looked_for  # the one table that says what to look for
 
-            facts = import_module(".usage", __package__).with_uses(facts, data, uses_by_word())
+            facts = import_module(".usage", __package__).with_uses(facts, data, looked_for())
         if kind == "setup_py":
             python = _facts("python", data)
             # Python 2 is no mistake on a target that runs it: the rule on Python versions knows, and what it installs

@@ -7,7 +7,6 @@ literals are blanked; nothing is resolved, so a pattern has to be particular eno
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
@@ -15,7 +14,7 @@ import msgspec
 from msgspec import structs
 
 from .condition import Condition
-from .cpp import KEYWORDS, CppFile, Use, scan
+from .cpp import KEYWORDS, CppFile, Use, scan, standing
 
 
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -52,8 +51,6 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 Place = tuple[int, int, tuple[Condition, ...], str]
-# Patterns with their labels, by a word that stands in each.
-Table = Mapping[str, Sequence[tuple[str, Pattern]]]
 _FAR = 160
 _LONGEST = 4000
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
@@ -96,24 +93,36 @@ _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
+class Table:
+    """What to look for in C++ files: patterns with their labels, by a word that stands in each.
+
+    heads: first parts of words that are qualified names. called: words that are functions in some pattern.
+    """
+
+    def __init__(self, patterns: Mapping[str, Sequence[tuple[str, Pattern]]]):
+        self.patterns = patterns
+        self.heads = frozenset(word.partition("::")[0] for word in patterns if "::" in word)
+        self.called = frozenset(word for word, rows in patterns.items() if any(p.calls for _, p in rows))
+
+
 def with_uses(facts: CppFile, data: bytes, table: Table) -> CppFile:
     """The facts of a C++ file with the uses that a table describes, the first of each under the same conditions, and
     those functions that such uses call and the file declares itself. Never raises."""
-    heads = {word.partition("::")[0] for word in table if "::" in word}
+    patterns = table.patterns
     spoken = set(facts.words.split(" "))
     uses: list[Use] = []
     for name in facts.qualified:
         parts = name.text.split("::")
         spoken.update(parts)
-        if parts[0] in heads:
+        if parts[0] in table.heads:
             # A row about a name as it stands needs no second look at the file.
-            for label, _ in table.get("::".join(parts[:2]), ()):
+            for label, _ in patterns.get("::".join(parts[:2]), ()):
                 uses.append(Use(label, name.line, name.column, name.conditions))
     functions = []
-    for word in sorted(table.keys() & (spoken | KEYWORDS)):
-        if any(pattern.calls for _, pattern in table[word]) and declares(data, word):
+    for word in sorted(patterns.keys() & (spoken | KEYWORDS)):
+        if word in table.called and declares(data, word):
             functions.append(word)
-        for label, pattern in table[word]:
+        for label, pattern in patterns[word]:
             if may_have(data, pattern):
                 uses.extend(Use(label, *place) for place in first_places(places_of_use(data, pattern)))
     return structs.replace(facts, uses=tuple(uses), functions=tuple(functions)) if uses or functions else facts
@@ -170,29 +179,26 @@ def declares(data: bytes, function: str) -> bool:
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     """Line, column, preprocessor conditions and template arguments of every use that looks like the pattern. Never
     raises."""
-    if pattern.language == "python":
-        text = python_text(data)
-        segments: list[tuple[int, int, tuple[Condition, ...]]] = [(0, len(text), ())]
-
-        def place(offset: int, /) -> tuple[int, int]:
-            line = text.count("\n", 0, offset) + 1
-            return line, offset - (text.rfind("\n", 0, offset) + 1) + 1
-    else:
-        scanned = scan(data)
-        text, place, segments = scanned.visible, scanned.place, scanned.segments
+    scanned = None if pattern.language == "python" else scan(data)
+    text = python_text(data) if scanned is None else scanned.visible
     whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
     if (pattern.file and not _compiled(pattern.file).search(whole)) or (
         pattern.unless and _compiled(pattern.unless).search(whole)
     ):
         return
-    ends = [end for _, end, _ in segments]
-    for at in _standing(pattern.word, text):
-        start, _, conditions = segments[min(bisect_right(ends, at), len(segments) - 1)]
-        if at < start:
+    for at in standing(pattern.word, text):
+        conditions = () if scanned is None else scanned.under(at)
+        if conditions is None:
             continue  # in a directive
         types = _fits(pattern, text, at, at + len(pattern.word))
         if types is not None and (pattern.inside != "class" or _in_class(text, at)):
-            yield (*place(at), conditions, types)
+            line, column = place_in(text, at) if scanned is None else scanned.place(at)
+            yield line, column, conditions, types
+
+
+def place_in(text: str, offset: int) -> tuple[int, int]:
+    """Line and column of an offset, from 1."""
+    return text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset)
 
 
 @lru_cache(maxsize=4096)
@@ -347,24 +353,13 @@ _DECLARED_AHEAD = re.compile(r"\s*[;={,)(]")
 _TYPE_OF = re.compile(r"([\w:]+|char\s*\*)(?:\s*&\s*|\s+)\Z")
 _SHARED_AHEAD = re.compile(r"\s*([;={,)(][^;]{0,60})")
 _SHARED_TYPE = re.compile(r"([\w:>]+)(\s*[&*]+\s*|\s+)\Z")
-_WORD_CHARACTER = re.compile(r"\w")
-
-
-def _standing(name: str, text: str) -> Iterator[int]:
-    """Where a name stands as a whole word."""
-    at = text.find(name)
-    while at >= 0:
-        end = at + len(name)
-        if not _WORD_CHARACTER.match(text, end) and not (at and _WORD_CHARACTER.match(text, at - 1)):
-            yield at
-        at = text.find(name, end)
 
 
 def _declared(argument: str, types: str, text: str) -> bool:
     """Whether a variable of an arithmetic expression is declared with one of the types, and nowhere with another."""
     for name in _IDENTIFIER.findall(argument):
         declared = []
-        for at in _standing(name, text):
+        for at in standing(name, text):
             if _DECLARED_AHEAD.match(text, at + len(name)):
                 found = _TYPE_OF.search(text, max(0, at - _FAR), at)
                 if found and found.group(1) not in _NOT_A_TYPE:
@@ -377,7 +372,7 @@ def _declared(argument: str, types: str, text: str) -> bool:
 def _made_shared(name: str, text: str) -> bool:
     """Whether a file declares a variable as a shared pointer that it makes, and nowhere declares it otherwise."""
     declared = []
-    for at in _standing(name, text):
+    for at in standing(name, text):
         ahead = _SHARED_AHEAD.match(text, at + len(name))
         found = _SHARED_TYPE.search(text, max(0, at - _FAR), at) if ahead else None
         if ahead and found and found.group(1) not in _NOT_A_TYPE:

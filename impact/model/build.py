@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import msgspec
 
@@ -136,6 +136,11 @@ class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
     at: At
     context: str = ""
     conditions: tuple[Condition, ...] = ()
+
+
+def for_tests(conditions: Iterable[Condition]) -> bool:
+    """True for what CMake finds or makes only where tests are built."""
+    return any("TESTING" in c.text for c in conditions)
 
 
 class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -20,7 +20,7 @@ from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, first_places, places_of_use, python_text
+from ..facts.usage import Pattern, first_places, place_in, places_of_use, python_text
 from ..targets.fields import Fields
 from .build import At, Build
 from .members import Interface as Meant
@@ -534,7 +534,7 @@ class _Join:
             seen = set()
             for found in (*uses.found(), *(() if unknown else uses.untold())):
                 line, column = scanned.place(found.offset)
-                around = next((c for start, end, c in scanned.segments if start <= found.offset < end), ())
+                around = scanned.under(found.offset) or ()
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
@@ -577,8 +577,7 @@ class _Join:
                     key = (found.interface, found.section, found.member)
                     if key not in seen:
                         seen.add(key)
-                        line = text.count("\n", 0, found.offset) + 1
-                        column = found.offset - (text.rfind("\n", 0, found.offset) + 1) + 1
+                        line, column = place_in(text, found.offset)
                         yield MemberUse(found.interface.package, found.interface.ros, found.interface.name,
                                         found.section, found.member, At(path, line, column),
                                         self.python_role(path), "python", found.sure)  # fmt: skip

@@ -21,7 +21,7 @@ from ..targets.includes import Machine, machine_of
 from ..targets.library import include_roots, standard_year
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
-from .build import At, Found
+from .build import At, Found, for_tests
 from .conditions import Environment, all_hold
 from .package import MemberUse, role_of_folder
 from .spelling import Names
@@ -897,7 +897,7 @@ class View:
             if not providers:
                 self.unresolved["cmake"].add(found.name)
                 continue
-            testing = any("TESTING" in c.text for c in found.conditions)
+            testing = for_tests(found.conditions)
             certain = self.certain(found.conditions)
             yield Need(
                 "find_package" if found.how == "find_package" else "component",
@@ -956,7 +956,7 @@ class View:
         providers = tuple(self.providers.pkgconfig(re.split(r"[<>=]", found.name)[0]))
         if not providers or found.name in self.workspace.packages:
             return
-        testing = any("TESTING" in c.text for c in found.conditions)
+        testing = for_tests(found.conditions)
         yield Need(
             "pkg-config",
             found.name,

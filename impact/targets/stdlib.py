@@ -177,6 +177,11 @@ def stdlib(module: str, minor: int, major: int = 3) -> bool:
     return name in _ALWAYS_3 or (name.startswith("_") and name in _PRIVATE)
 
 
+def stood_in_for(module: str) -> bool:
+    """True for what a package that most machines have brings back: setuptools does with distutils."""
+    return module.partition(".")[0] == "distutils"
+
+
 def ever_stdlib(module: str) -> bool:
     """True when any version of Python, 2.7 included, has or had the module in its standard library."""
     name = module.partition(".")[0]

@@ -38,7 +38,7 @@ class Change(NamedTuple):
     """One known upstream change that is in force on a target.
 
     kind: header-removed, header-renamed, package-removed, package-renamed, api-removed, api-renamed, api-changed,
-    cmake-removed, msg-field, msg-removed, python-removed, ... or, for uses (uses.py), call-changed and field-changed,
+    cmake-removed, msg-field, msg-removed, python-removed, ... or, for uses (uses.py), call-changed,
     where old is the label of the use and new what to write instead.
     state: `removed` (gone on this target), `deprecated` (still there), `absent` (the new spelling is not there yet).
     version: version of the package on the target, empty when unknown. since: first distro or version with `new`.

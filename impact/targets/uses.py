@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from ..facts.usage import Pattern
+from ..facts.usage import Pattern, Table
 from .changes import reached, version_of
 from .snapshot import DATA, SnapshotError
 from .target import Change, Target
@@ -45,9 +45,9 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Use(NamedTuple):
     """A use that a package or platform library takes from new_since (empty: always) until before removed_in.
 
-    kind: `call-changed` for calls, overloads and types, `field-changed` for fields of messages. label: as a user reads
-    it, no other row has it. help: what to write instead. Bounds are as in changes.Row. refused_from, needs: the year of
-    the C++ standard from which on, or before which, the compiler does not take it; 0: whatever the standard.
+    kind: `call-changed`, for calls, overloads, types and members. label: as a user reads it, no other row has it. help:
+    what to write instead. Bounds are as in changes.Row. refused_from, needs: the year of the C++ standard from which
+    on, or before which, the compiler does not take it; 0: whatever the standard.
     """
 
     kind: str
@@ -89,13 +89,13 @@ def stamp() -> str:
 
 
 @cache
-def uses_by_word() -> dict[str, list[tuple[str, Pattern]]]:
-    """What to look for in C++ files: labels and patterns by a word that stands in each."""
+def looked_for() -> Table:
+    """The uses of C++ as files are searched for them."""
     found: dict[str, list[tuple[str, Pattern]]] = {}
     for row in all_uses():
         if row.pattern.language == "cpp":
             found.setdefault(row.pattern.word, []).append((row.label, row.pattern))
-    return found
+    return Table(found)
 
 
 def standards_of(label: str) -> tuple[int, int]:

@@ -25,11 +25,97 @@ Not reported
     variables whose type does not show in the file.
 """
 
+from ...model.package import NameUse
 from ...model.view import View
-from ..evidence import uses_refused
-from ..rule import rule
+from ...model.workspace import Package
+from ...targets.library import default_standard, standard_year
+from ...targets.target import Change
+from ...targets.uses import function_of, standards_of
+from ...targets.version import at_least
+from ..rule import Hit, rule
+
+# What every C++ file is compiled with, whatever its package declares.
+_COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
 
 
 @rule(severity="error")
 def changed_signature(view: View):
-    yield from uses_refused(view, "call-changed")
+    # What the workspace itself brings is as it brings it, whatever a release did.
+    refused = {c.old: c for c in view.changes("call-changed") if c.package not in view.workspace.packages}
+    coming = {label: c for label, c in view.later.items() if c.kind == "call-changed" and c.package not in _COMPILER}
+    if not refused and not coming:
+        return
+    # A method that the workspace declares may be meant wherever its name is called.
+    own = {function for package in view.workspace for function in package.digest.functions}
+    for package in view:
+        warned: set[str] = set()
+        for use in package.digest.uses:
+            if function_of(use.text) in own:
+                continue
+            change = refused.get(use.text)
+            later = None if change is not None else coming.get(use.text)
+            change = change or later
+            if (
+                change is None
+                or not view.active(use.conditions)
+                or not (change.package in _COMPILER or view.concerned(package, change, use.at.path))
+                or (later is not None and not view.later_active(use.conditions))
+            ):
+                continue
+            where = _under_standard(view, package, use, change)
+            if where is None:
+                continue
+            shown = use.shown or use.text
+            certain = use.language == "cpp" and view.certain(use.conditions)
+            if later is not None:
+                loud = view.horizon_is_near and certain and use.role == "build" and later.package not in warned
+                if loud:
+                    warned.add(later.package)
+                yield Hit(
+                    use.at,
+                    shown,
+                    f"`{shown}` is taken, and no longer by {later.package} {later.version} of {view.horizon}",
+                    later.new,
+                    package.name,
+                    severity="warning" if loud else "note",
+                )
+                continue
+            when = "is no longer" if change.state == "removed" else "is not yet"
+            yield Hit(
+                use.at,
+                shown,
+                f"`{shown}` {when} taken by {change.package} {change.version}{where}",
+                change.new,
+                package.name,
+                severity=_how_bad(view, use, certain),
+            )
+
+
+def _how_bad(view: View, use: NameUse, certain: bool) -> str:
+    if use.role == "aside" or (not certain and any(c.language == "cpp" for c in use.conditions)):
+        return "note"  # an #if around it most likely tells the versions apart
+    return "error" if certain and view.built(use.role) else "warning"
+
+
+def _under_standard(view: View, package: Package, use: NameUse, change: Change) -> str | None:
+    """How a message names the C++ standard that a use fails under (empty: under any); None where it does not fail."""
+    refused_from, needs = standards_of(change.old)
+    if not refused_from and not needs:
+        return ""
+    build = package.build
+    default = default_standard(view.target)
+    own = [t.standard for t in build.targets if t.name in use.targets and t.standard]
+    fixed = view.standard(package)
+    set_for = ([fixed[0]] if fixed else []) + own
+    have = max((standard_year(number) for number in set_for), default=default)
+    if have is None:
+        return None
+    if not set_for and any(u.kind == "command" for u in build.uses):
+        return None  # a macro of another package may set it
+    if refused_from:
+        return f" in C++{have % 100:02d}" if have >= refused_from else None
+    # CMake raises the standard to what the exported targets of rclcpp and others ask for: 17 at most, until GCC 15.
+    raised = view.target.ros == 2 and (needs < 2020 or at_least(view.target.library("gcc") or "", "15"))
+    if have >= needs or raised or not use.targets or use.role != "build" or not view.certain(use.conditions):
+        return None
+    return f" in C++{have % 100:02d}"

@@ -30,6 +30,7 @@ from ...model.package import NameUse, is_header
 from ...model.view import View
 from ...targets.changes import excuses, removed_in
 from ...targets.library import include_roots
+from ...targets.stdlib import stood_in_for
 from ...targets.target import Change
 from ...targets.version import parts
 from ..rule import Hit, rule
@@ -101,8 +102,8 @@ def removed_symbol(view: View):
                     continue
             guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
             built = view.built(use.role) if use.language == "cpp" else use.role in ("build", "run")
-            built = built and not use.text.startswith("distutils.")  # for which setuptools stands in
-            sure = built and not guarded and change.kind != "api-changed"
+            brought_back = use.language == "python" and stood_in_for(use.text)
+            sure = built and not brought_back and not guarded and change.kind != "api-changed"
             if endings and sure and included is not None:
                 # It only moved to another header, which the headers of whatever uses the library may include.
                 sure = not any(_may_bring(view, change, path) for path in included.get(use.at.path, included[""]))

@@ -28,13 +28,11 @@ Not reported
 
 from ...model.package import MemberUse
 from ...model.view import View
-from ..evidence import uses_refused
 from ..rule import Hit, rule
 
 
 @rule(severity="error")
 def unknown_field(view: View):
-    yield from uses_refused(view, "field-changed")
     own = {
         member.name
         for package in view.workspace

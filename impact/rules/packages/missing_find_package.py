@@ -30,9 +30,9 @@ Not reported
 import re
 from functools import lru_cache
 
+from ...model.build import for_tests
 from ...model.view import View, interface_of
 from ...targets.version import at_least
-from ..evidence import for_tests
 from ..rule import Hit, rule
 
 _SYSTEM_BY_DEFAULT = (
@@ -68,10 +68,10 @@ def missing_find_package(view: View):
         if found is None:
             continue
         reachable = view.spread(found)
-        tested = {f.name for f in package.build.found if for_tests(f) and f.name in found}
-        outside = {f.name for f in package.build.found if not for_tests(f)}
+        tested = {f.name for f in package.build.found if for_tests(f.conditions) and f.name in found}
+        outside = {f.name for f in package.build.found if not for_tests(f.conditions)}
         built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable
-        shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t)}
+        shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         closure = view.closure(package)
         told = set()
         for at, name in _given_to_targets(view, package):
@@ -447,12 +447,7 @@ def _given_to_targets(view: View, package):
     for target in package.build.targets:
         for link in target.links:
             conditions = (*target.conditions, *link.conditions)
-            if (
-                not view.certain(conditions)
-                or "$" in link.item
-                or link.item in own
-                or any("TESTING" in c.text for c in conditions)
-            ):
+            if not view.certain(conditions) or "$" in link.item or link.item in own or for_tests(conditions):
                 continue
             if link.how == "ament" and view.is_package(link.item):
                 yield link.at, link.item

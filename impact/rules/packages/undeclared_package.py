@@ -34,9 +34,9 @@ import re
 
 from ...model.build import At
 from ...model.spelling import folded, one_edit
-from ...model.view import Need, View
+from ...model.view import Need, View, weight
 from ..cure import Declare
-from ..evidence import circular, name_to_declare, present, weight
+from ..evidence import circular, name_to_declare, present
 from ..rule import Hit, rule
 
 # Tools that people start on their own desk.

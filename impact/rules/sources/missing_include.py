@@ -29,12 +29,12 @@ Not reported
 import re
 from typing import NamedTuple
 
+from ...model.build import for_tests
 from ...model.package import NeededHeader
 from ...model.view import View
 from ...targets.includes import Machine, announced, offered
 from ...targets.standard import DEFINED_IN
 from ..cure import Insert
-from ..evidence import for_tests
 from ..rule import Hit, rule
 
 # Headers that other ones include and that bring nothing: made of macros while a library is built, of other processors,
@@ -47,7 +47,7 @@ def missing_include(view: View):
     for package in view:
         reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
         told = set()
-        built = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t)}
+        built = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         compiled = {path for path, targets in package.digest.source_targets if built.intersection(targets)}
         for need in package.digest.needed_headers:
             if need.role == "aside" or not view.active(need.conditions):

@@ -22,6 +22,7 @@ Not reported
 """
 
 from ...model.view import View
+from ...targets.stdlib import stood_in_for
 from ..rule import Hit, rule
 
 _SEVERITY = {"run": "error", "build": "error", "test": "warning", "aside": "note"}
@@ -60,13 +61,12 @@ def python_version(view: View):
                 continue
             if view.left_python(item.module) and item.module.split(".")[0] not in view.workspace.modules:
                 severity = _SEVERITY.get(item.role, "note")
-                # setuptools, which most machines have, stands in for distutils.
-                stood_in = item.module.split(".")[0] == "distutils"
+                milder = item.lazy or stood_in_for(item.module)
                 yield Hit(
                     item.at,
                     item.module,
                     f"module `{item.module}` is not in Python 3.{minor}",
                     "use its successor, with an except branch where both must work",
                     package.name,
-                    severity="warning" if (item.lazy or stood_in) and severity == "error" else severity,
+                    severity="warning" if milder and severity == "error" else severity,
                 )
