@@ -111,7 +111,7 @@ def read_pinned(path: Path) -> dict[str, str]:
 def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     """The workspace as it was in another tree, seen by the same targets."""
     gathered = gather(tree, opened.store, jobs=jobs)
-    workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.watched(opened.store))
+    workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.watched(opened.store), jobs)
     views = [View(workspace, view.target, view.providers, view.config) for view in opened.views]
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views)
 

@@ -14,6 +14,7 @@ from . import memo
 from .config import Config, PathSetting, load, parse
 from .facts.store import Store
 from .gather import Gathered, gather
+from .judge import Crashes, hits_of
 from .model.view import View
 from .model.workspace import Workspace, link
 from .report.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
@@ -21,7 +22,6 @@ from .rules.cure import Declare, Insert, Replace
 from .rules.rule import Cure, Finding, Hit, Rule, all_rules
 from .targets.providers import default_providers
 from .targets.resolve import Chosen, choose_targets
-from .targets.snapshot import SnapshotError
 from .targets.version import compare
 from .tree import GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
 
@@ -105,11 +105,11 @@ def run(
             if base_tree is None:
                 base_tree, notes = bases.base_tree(tree, options.base)
             before = bases.at_base(base_tree, opened, jobs=options.jobs)
-            old = judge(before, chosen, settings, Sources(reader(base_tree)), crashed)
-            now = judge(opened, chosen, settings, sources, crashed, before.workspace)
+            old = judge(before, chosen, settings, Sources(reader(base_tree)), crashed, jobs=options.jobs)
+            now = judge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
             found: Sequence[Finding] = after.marked_new(now.kept, old.kept)
         else:
-            now = judge(opened, chosen, settings, sources, crashed)
+            now = judge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
             found = now.kept
         if any(finding.fix for finding in found):
             from . import fix
@@ -192,7 +192,7 @@ def open_workspace(
     config = settings_of(root, tree, options.config)
     with Store(options.cache) as store:
         gathered = gather(tree, store, jobs=options.jobs, progress=progress)
-        workspace = link(tree, gathered, store, None, memo.watched(store))
+        workspace = link(tree, gathered, store, None, memo.watched(store), options.jobs)
         gathered.problems += [*workspace.discovered.problems, *_left_out(workspace, gathered)]
         targets = choose_targets(options.targets, config, workspace, tree)
         views = [View(workspace, chosen.target, default_providers(), config) for chosen in targets]
@@ -297,10 +297,6 @@ def _settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, .
         raise after.SettingsError(f"{config.path}: {error}") from None
 
 
-# (rule, why it failed) to the targets on which it did
-Crashes = dict[tuple[str, str], list[str]]
-
-
 class Judged(NamedTuple):
     """Findings, and those that allow comments silence."""
 
@@ -315,6 +311,7 @@ def judge(
     sources: Sources,
     crashed: Crashes,
     before: Workspace | None = None,
+    jobs: int | None = None,
 ) -> Judged:
     """Runs the rules. before: the workspace at the base, for rules that compare. crashed: gets the rules that
     failed; what the others found stands."""
@@ -335,7 +332,7 @@ def judge(
 
     allows = {path: comments for package in workspace for path, comments in package.digest.allows}
     result = after.suppressed(
-        made(_hits(opened, rules.values(), crashed, before)), allows, families=families, ran=rules
+        made(hits_of(opened, rules.values(), crashed, before, jobs)), allows, families=families, ran=rules
     )
     kept = list(result.kept)
     if "unused-suppression" in rules and result.unused:
@@ -347,63 +344,9 @@ def judge(
     return Judged(kept, list(result.suppressed))
 
 
-def _hits(
-    opened: Opened, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None
-) -> Iterator[tuple[str, str, Hit]]:
-    every = list(rules)
-    names = [rule.name for rule in every if rule.per_target and rule.family != "interfaces"]
-    kept = {view.target.name: memo.recall(opened.store, view, names) for view in opened.views}
-    for view in opened.views:
-        if kept[view.target.name] is None:
-            memo.prepare(opened.store, view.target)
-    said: dict[str, list[tuple[str, Hit]]] = {}
-    for rule in every:
-        for target, run_rule in _runs(rule, opened, before):
-            known = kept.get(target)
-            if known is not None:
-                yield from ((name, target, hit) for name, hit in known if name == rule.name)
-                continue
-            try:
-                for hit in run_rule():
-                    said.setdefault(target, []).append((rule.name, hit))
-                    yield rule.name, target, hit
-            except SnapshotError:
-                raise  # no rule can do without the data
-            except Exception as error:
-                # What the other rules say stays true; the failure is named and decides the exit status.
-                targets = crashed.setdefault((rule.name, crash(error)), [])
-                if target and target not in targets:
-                    targets.append(target)
-    for view in opened.views:
-        if kept[view.target.name] is None and not crashed:
-            memo.remember(opened.store, view, names, said.get(view.target.name, ()))
-
-
 def on(targets: Sequence[str]) -> str:
     """` on jazzy, robot`, empty without targets."""
     return f" on {', '.join(targets)}" if targets else ""
-
-
-def crash(error: BaseException) -> str:
-    """An unforeseen error as a clause: its kind, its text, where it was raised, and what to do."""
-    trace = error.__traceback__
-    while trace is not None and trace.tb_next is not None:
-        trace = trace.tb_next
-    place = f" in {os.path.basename(trace.tb_frame.f_code.co_filename)}:{trace.tb_lineno}" if trace is not None else ""
-    text = " ".join(str(error).split())[:200]
-    return f"{type(error).__name__}{place}{': ' + text if text else ''}; this is a fault of rosimpact, please report it"
-
-
-def _runs(rule: Rule, opened: Opened, before: Workspace | None) -> Iterator[tuple[str, Callable[[], Iterable[Hit]]]]:
-    """(target or nothing, call) of each run of a rule."""
-    if rule.family == "interfaces":
-        if before is not None:
-            yield "", lambda: rule.run(opened.workspace, before)
-    elif not rule.per_target:
-        yield "", lambda: rule.run(opened.workspace)
-    else:
-        for view in opened.views:
-            yield view.target.name, lambda view=view: rule.run(view)
 
 
 def holds(cure: Cure, view: View) -> bool:

@@ -2,16 +2,13 @@
 
 What is made is stored chunk by chunk, so an interrupted run keeps all it has parsed. Facts are decoded when asked for.
 
-On two cores, starting two forked workers takes 0.025 s, two loky workers 0.31 s and two workers of joblib's
-multiprocessing backend 0.08 s and joblib's own import 0.12 s. So workers are forked where that is safe (Linux), loky
-elsewhere; a scheduler chosen through joblib (`parallel_config(backend="dask")`) is given the chunks instead.
+Workers are forked where that is safe (processes.py), loky elsewhere; a scheduler chosen through joblib
+(`parallel_config(backend="dask")`) is given the chunks instead.
 """
 
 from __future__ import annotations
 
-import os
 import sys
-import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import closing
@@ -21,12 +18,13 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from . import processes
 from .facts import kinds
 from .facts.store import Store, fact_key, pack, unpack
 from .tree import PathProblem, Tree
 
 if TYPE_CHECKING:
-    from concurrent.futures import Future, ProcessPoolExecutor
+    from concurrent.futures import Future
 
 # Starting workers and importing the parsers in each costs about as much as parsing this many bytes here.
 ALONE_BYTES = 400_000
@@ -150,7 +148,7 @@ def gather(
 
     if unread:
         try:
-            _make(gathered, unread, jobs or _cores(), progress)
+            _make(gathered, unread, jobs or processes.cores(), progress)
         finally:
             _remember(tree, store, key)
             gathered.problems.sort()
@@ -172,12 +170,6 @@ def _remember(tree: Tree, store: Store, key: bytes | None) -> None:
     memory = tree.memory() if key is not None else None
     if key is not None and memory is not None:
         store.remember("stat", [(key, memory)])
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return max(1, len(os.sched_getaffinity(0)))
-    return os.cpu_count() or 1
 
 
 def _make(
@@ -308,15 +300,10 @@ def _extracted(chunks: Iterator[list[_Item]], jobs: int) -> Generator[tuple[list
                 yield [item], _extract([item])
         return
     everything = chain(first, chunks)
-    if _may_fork() and not _scheduler_chosen():
+    if processes.may_fork() and not _scheduler_chosen():
         yield from _in_forks(everything, jobs)
     else:
         yield from _by_joblib(everything, jobs)
-
-
-def _may_fork() -> bool:
-    # macOS has fork, and libraries there that do not survive it
-    return sys.platform == "linux"
 
 
 def _scheduler_chosen() -> bool:
@@ -348,7 +335,7 @@ def _in_forks(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_
 
     waiting: deque[list[_Item]] = deque()
     running: dict[Future, list[_Item]] = {}
-    pool = _pool(jobs)
+    pool = processes.pool(jobs)
     try:
         while True:
             while len(running) < 2 * jobs:
@@ -374,7 +361,7 @@ def _in_forks(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_
                 pool.shutdown(wait=False)
                 for chunk in suspects:
                     yield chunk, _one_by_one(chunk)
-                pool = _pool(jobs)
+                pool = processes.pool(jobs)
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 
@@ -384,37 +371,13 @@ def _one_by_one(chunk: list[_Item]) -> list[_Result]:
     from concurrent.futures.process import BrokenProcessPool
 
     results: list[_Result] = []
-    pool = _pool(1)
+    pool = processes.pool(1)
     for item in chunk:
         try:
             results.extend(pool.submit(_extract, [item]).result())
         except BrokenProcessPool:
             results.append((item[1], item[2], b"", f"the {item[2]} extractor crashed on this file"))
             pool.shutdown(wait=False)
-            pool = _pool(1)
+            pool = processes.pool(1)
     pool.shutdown(wait=False)
     return results
-
-
-def _pool(jobs: int) -> ProcessPoolExecutor:
-    import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor
-
-    context = multiprocessing.get_context("fork")
-    return ProcessPoolExecutor(jobs, mp_context=context, initializer=_start_worker, initargs=(os.getpid(),))
-
-
-def _start_worker(parent: int) -> None:
-    import signal
-    import threading
-
-    # Ctrl-C goes to every process of the terminal; the parent alone decides what it means.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_die_with, args=(parent,), daemon=True).start()
-
-
-def _die_with(parent: int) -> None:
-    # A parent that is killed cannot tell its workers, and they would wait for work for ever.
-    while os.getppid() == parent:
-        time.sleep(0.5)
-    os._exit(1)

@@ -8,10 +8,11 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from pathlib import Path
 
-from .check import Checked, CheckError, Options, __version__, crash, open_workspace
+from .check import Checked, CheckError, Options, __version__, open_workspace
 from .check import run as run_check
 from .config import ConfigError
 from .findings import SettingsError, fails
+from .judge import crash
 from .report.report import Coverage, Report, counted
 from .targets.distro import TargetError
 from .targets.snapshot import SnapshotError

@@ -9,6 +9,7 @@ import time
 import pygit2
 import pytest
 from rosimpact.impact import gather as gather_module
+from rosimpact.impact import processes
 from rosimpact.impact import tree as tree_module
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.store import Store
@@ -126,7 +127,7 @@ def test_a_new_version_of_an_extractor_parses_its_files_again(tmp_path, monkeypa
 @pytest.mark.parametrize("forks", [True, False])
 def test_processes_find_what_one_process_finds(tmp_path, monkeypatch, small_chunks, forks):
     write(tmp_path / "ws", sources(30) | FILES)
-    monkeypatch.setattr(gather_module, "_may_fork", lambda: forks)
+    monkeypatch.setattr(processes, "may_fork", lambda: forks)
     with Store(tmp_path / "one") as one, Store(tmp_path / "two") as two:
         alone = gather(WorkingTree(tmp_path / "ws"), one, jobs=1)
         together = gather(WorkingTree(tmp_path / "ws"), two, jobs=2)

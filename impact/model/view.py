@@ -94,6 +94,8 @@ class View:
 
     def __init__(self, workspace: Workspace, target: Target, providers, config: Config = _UNCONFIGURED):
         self.workspace, self.target, self.providers, self.config = workspace, target, providers, config
+        # Names of the packages that rules are to report on, all when None.
+        self.part: frozenset[str] | None = None
         self._closures: dict[str, frozenset[str]] = {}
         self._direct: dict[str, tuple[str, ...]] = {}
         self._whole: dict[str, frozenset[str]] = {}
@@ -118,7 +120,17 @@ class View:
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
 
     def __iter__(self) -> Iterator[Package]:
-        """Packages of the workspace that are built on this target."""
+        """Packages that are built on this target and that rules are to report on: all of them, or those of `part`."""
+        for package in self.everyone():
+            if self.reports_on(package.name):
+                yield package
+
+    def reports_on(self, name: str) -> bool:
+        """True for packages that rules are to report on; the others are there to be looked at."""
+        return self.part is None or name in self.part
+
+    def everyone(self) -> Iterator[Package]:
+        """All packages of the workspace that are built on this target."""
         for package in self.workspace:
             if package.build_type.startswith("ament") and self.target.ros == 1:
                 continue

@@ -10,21 +10,25 @@ from __future__ import annotations
 import hashlib
 import posixpath
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
+from typing import NamedTuple
 
 import msgspec
 
+from .. import processes
 from ..facts.kinds import EXTRACTORS
 from ..facts.manifest import Manifest
 from ..gather import Gathered
 from ..targets.fields import snake
 from .build import Build, extras_of, interpret
-from .discovery import Discovered, discover
+from .discovery import Discovered, PackagePlace, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
 # Raise with every change of what a digest or the CMake interpreter says.
 DIGEST_VERSION = "14"
+# Starting processes costs about as much as joining packages with this many files here.
+_ALONE_FILES = 100
 _VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 
@@ -166,6 +170,12 @@ class Workspace:
             for module in {package.name, *importable(package)}:
                 found.setdefault(module, []).append(package.name)
         return found
+
+    @cached_property
+    def cmake_files(self) -> frozenset[str]:
+        """Names of the workspace's CMake modules and configurations, without their folders."""
+        paths = (path for package in self for path in package.digest.files)
+        return frozenset(posixpath.basename(path) for path in paths if path.endswith(".cmake"))
 
     @cached_property
     def find_modules(self) -> dict[str, set[str]]:
@@ -328,12 +338,12 @@ def is_interface_header(rest: str, names: Iterable[str]) -> bool:
     return _names_interface(rest, _stems(names))
 
 
-def link(tree, gathered: Gathered, store, ros: int | None, watched: Watched) -> Workspace:
+def link(tree, gathered: Gathered, store, ros: int | None, watched: Watched, jobs: int | None = None) -> Workspace:
     """Joins the facts of a tree into a workspace. ros: 1 or 2, None to tell it from the manifests. store remembers
-    digests; None joins everything anew."""
+    digests; None joins everything anew. jobs: processes to use, all available cores when None."""
     discovered = discover(tree, gathered)
     ros = ros or generation(discovered, gathered)
-    linker = _Linker(tree, gathered, discovered, ros, watched)
+    linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores())
     digests = linker.digests(store)
     return Workspace(digests, discovered, ros, gathered, tree.read, linker.identity.digest())
 
@@ -365,9 +375,25 @@ def _named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(d.name for d in manifest.dependencies if d.kind in kinds))
 
 
+class _Joined(NamedTuple):
+    """A package's digest, the same encoded (empty where its names cannot be), and the encoded content ids of the CMake
+    files of other packages that it rests on (None: not to be stored)."""
+
+    digest: Digest
+    packed: bytes | memoryview
+    head: bytes | None
+
+
+def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, Digest | None]], path: str):
+    """What a process of its own does with a folder of tasks: a _Joined, with the digest in one form only."""
+    digest, packed, head = linker.joined_one(*tasks[path])
+    return None if packed else digest, packed, head
+
+
 class _Linker:
-    def __init__(self, tree, gathered: Gathered, discovered: Discovered, ros: int, watched: Watched):
+    def __init__(self, tree, gathered: Gathered, discovered: Discovered, ros: int, watched: Watched, jobs: int):
         self.tree, self.gathered, self.discovered, self.ros, self.watched = tree, gathered, discovered, ros, watched
+        self.jobs = jobs
         self.paths_of: dict[str, list[str]] = {p.path: [] for p in discovered.packages}
         for entry in tree.entries():
             owner = discovered.owner(entry.path)
@@ -379,42 +405,64 @@ class _Linker:
         self.identity = hashlib.sha1(f"{DIGEST_VERSION} {ros}".encode())
 
     def digests(self, store) -> list[Digest]:
-        found: dict[str, Digest] = {}
         places = [p for p in self.discovered.packages if _manifest(self.gathered, p.manifest_path) is not None]
         keys = {p.path: self.key(p) for p in places}
         decoder = msgspec.msgpack.Decoder(Digest)
         remembered = store.memos("digest", list(keys.values())) if store is not None else {}
-        fresh: list[tuple[bytes, bytes]] = []
-        encoder = msgspec.msgpack.Encoder()
+        found: dict[str, _Joined] = {}
+        stale: dict[str, Digest] = {}
         for place in places:
-            blob, stale = remembered.get(keys[place.path]), None
+            blob = remembered.get(keys[place.path])
             if blob is not None:
                 size = int.from_bytes(blob[:4], "big")
                 read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
                 packed = memoryview(blob)[4 + size :]
-                stale = decoder.decode(packed)
+                before = decoder.decode(packed)
                 if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items()):
-                    self.identify(packed)
-                    found[place.path] = stale
-                    continue
-            try:
-                digest, read = self.join(place, stale)
-            except Exception as error:
-                # One package that nobody foresaw must not take the others with it.
-                digest, read = self.failed(place, error), None
-            found[place.path] = digest
-            try:
-                packed, head = encoder.encode(digest), encoder.encode(read)
-            except UnicodeEncodeError:
-                # Names that are no UTF-8 cannot be stored, and are read anew each time.
-                self.identify(repr(digest).encode("utf-8", "backslashreplace"))
-                continue
-            self.identify(packed)
-            if read is not None:
+                    found[place.path] = _Joined(before, packed, None)
+                else:
+                    stale[place.path] = before
+        found.update(self.joined([p for p in places if p.path not in found], stale))
+        fresh: list[tuple[bytes, bytes]] = []
+        for place in places:
+            digest, packed, head = found[place.path]
+            # Names that are no UTF-8 cannot be stored, and are read anew each time.
+            self.identify(packed or repr(digest).encode("utf-8", "backslashreplace"))
+            if packed and head is not None:
                 fresh.append((keys[place.path], len(head).to_bytes(4, "big") + head + packed))
         if store is not None and fresh:
             store.remember("digest", fresh)
-        return [found[p.path] for p in places]
+        return [found[p.path].digest for p in places]
+
+    def joined(self, places: Iterable[PackagePlace], stale: dict[str, Digest]) -> Iterator[tuple[str, _Joined]]:
+        """Folder and join of these packages, several at once where there is much to do. stale: digests of an earlier
+        run that may still hold, by folder."""
+        tasks = {p.path: (p, stale.get(p.path)) for p in places}
+        order = sorted(tasks, key=lambda path: (-len(self.paths_of[path]), path))
+        files = sum(len(self.paths_of[path]) for path in order)
+        if self.jobs < 2 or len(order) < 2 or files < _ALONE_FILES or not processes.may_fork():
+            yield from ((path, self.joined_one(*tasks[path])) for path in order)
+            return
+        self.gathered.store.close()  # every process opens it for itself
+        decoder = msgspec.msgpack.Decoder(Digest)
+        for path, result in processes.forked(_join, order, self.jobs, self, tasks):
+            if result is None:  # the process was killed
+                yield path, self.joined_one(*tasks[path])
+            else:
+                digest, packed, head = result
+                yield path, _Joined(digest or decoder.decode(packed), packed, head)
+
+    def joined_one(self, place: PackagePlace, before: Digest | None) -> _Joined:
+        try:
+            digest, read = self.join(place, before)
+        except Exception as error:
+            # One package that nobody foresaw must not take the others with it.
+            digest, read = self.failed(place, error), None
+        try:
+            head = msgspec.msgpack.encode(read) if read is not None else None
+            return _Joined(digest, msgspec.msgpack.encode(digest), head)
+        except UnicodeEncodeError:
+            return _Joined(digest, b"", None)
 
     def identify(self, digest: bytes | memoryview) -> None:
         """Takes a digest, as bytes, into the workspace's identity."""

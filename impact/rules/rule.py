@@ -76,9 +76,9 @@ _RULES: dict[str, Rule] = {}
 
 
 def rule(*, severity: str, preview: bool = False, per_target: bool = True):
-    """Registers the decorated generator as a rule. It is called as f(view), a workspace as one target sees it, or as
-    f(workspace) when per_target is False, or as f(workspace, base) in the interfaces family. The name is the module's,
-    with dashes."""
+    """Registers the decorated generator as a rule. It is called as f(view), a workspace as one target sees it, and
+    reports on the packages that the view iterates over, which may be a part of the workspace; or as f(workspace) when
+    per_target is False, or as f(workspace, base) in the interfaces family. The name is the module's, with dashes."""
 
     def register(function):
         parts = function.__module__.split(".")

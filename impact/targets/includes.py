@@ -7,7 +7,7 @@ writes under a condition counts as written, except for those of other operating 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import NamedTuple
 
@@ -118,6 +118,10 @@ class Machine:
         self.ros, self._version, self._data = ros, version, data or default()
         self._known: dict[str, tuple[str, ...] | None] = {}
         self._closures: dict[str, Brought] = {}
+        self._outside: dict[frozenset[str], frozenset[str]] = {}
+        self._alone: dict[str, int] = {}
+        self._masks: dict[frozenset[str], int] = {}
+        self._bits: dict[str, int] = {}
         self._versions: dict[str, str | None] = {}
 
     def version(self, owner: str) -> str | None:
@@ -183,6 +187,36 @@ class Machine:
                         stack.append(path)
             known = self._closures[header] = Brought(frozenset(seen), frozenset(outside))
         return known
+
+    def mask(self, headers: frozenset[str]) -> int:
+        """Everything that these headers bring along here, as bits() has it."""
+        known = self._masks.get(headers)
+        if known is None:
+            known = 0
+            for header in headers:
+                alone = self._alone.get(header)
+                if alone is None:
+                    alone = self._alone[header] = self.bits(self.brought(header).headers)
+                known |= alone
+            self._masks[headers] = known
+        return known
+
+    def outside(self, headers: frozenset[str]) -> frozenset[str]:
+        """The headers among all that these bring along of which nothing is known here."""
+        known = self._outside.get(headers)
+        if known is None:
+            known = self._outside[headers] = frozenset().union(*(self.brought(header).outside for header in headers))
+        return known
+
+    def bits(self, headers: Iterable[str]) -> int:
+        """One bit for each of these headers, the same in all answers of this machine."""
+        found = 0
+        for header in headers:
+            known = self._bits.get(header)
+            if known is None:
+                known = self._bits[header] = 1 << len(self._bits)
+            found |= known
+        return found
 
 
 @cache

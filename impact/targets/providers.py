@@ -8,6 +8,7 @@ remembers it.
 from __future__ import annotations
 
 import hashlib
+import os
 import sqlite3
 import threading
 from collections.abc import Iterable
@@ -79,6 +80,8 @@ class Providers:
     def __init__(self, data: Path = DATA, cache: Path | None = None):
         self._data, self._cache = data, cache
         self._lock = threading.Lock()
+        self._connection: sqlite3.Connection | None = None
+        self._reader = 0  # the process that opened it
         self._sets: dict[int, tuple[Provider, ...]] = {}
         self._spans: dict[int, tuple[HeaderSpan, ...]] = {}
         self._releases: dict[str, tuple[HeaderSpan, ...]] = {}
@@ -303,13 +306,12 @@ class Providers:
         return found
 
     def _rows(self, sql: str, *arguments: object) -> list[tuple]:
-        connection = self._connection
         with self._lock:
-            return connection.execute(sql, arguments).fetchall()
-
-    @cached_property
-    def _connection(self) -> sqlite3.Connection:
-        return _open(self._data, self._cache or cache_folder())
+            here = os.getpid()
+            if self._connection is None or (here != self._reader and unpacked.shared_after_fork(self._connection)):
+                self._connection = _open(self._data, self._cache or cache_folder())
+            self._reader = here
+            return self._connection.execute(sql, arguments).fetchall()
 
 
 def _once(providers: list[Provider]) -> list[Provider]:

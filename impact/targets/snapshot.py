@@ -8,6 +8,7 @@ old file. A file that turns out broken is unpacked again; where no folder can be
 
 import contextlib
 import hashlib
+import os
 import sqlite3
 import threading
 from collections.abc import Iterable
@@ -155,6 +156,7 @@ class Snapshot:
         self.facts = facts
         self._cache = cache
         self._connection: sqlite3.Connection | None = None
+        self._reader = 0  # the process that opened it
         self._lock = threading.Lock()
         self._info: SnapshotInfo | None = None
         self._names: dict[str, frozenset[str]] = {}
@@ -174,8 +176,10 @@ class Snapshot:
         """All rows of a query. Raises SnapshotError when the data cannot be read."""
         arguments = tuple(parameters)
         with self._lock:
-            if self._connection is None:
+            here = os.getpid()
+            if self._connection is None or (here != self._reader and unpacked.shared_after_fork(self._connection)):
                 self._connection = self._open()
+            self._reader = here
             try:
                 return self._connection.execute(sql, arguments).fetchall()
             except sqlite3.DatabaseError:

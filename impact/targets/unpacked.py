@@ -46,6 +46,12 @@ def connect(path: Path, table: str) -> sqlite3.Connection | None:
         return None
 
 
+def shared_after_fork(connection: sqlite3.Connection) -> bool:
+    """True in a forked process for a database that its parent reads too: they would move each other's place in the
+    file. One in memory is a copy."""
+    return bool(connection.execute("PRAGMA database_list").fetchone()[2])
+
+
 def unpack(raw: bytes, add_facts: Callable[[sqlite3.Connection], None], path: Path, table: str) -> sqlite3.Connection:
     """Makes the file from the database's bytes and opens it; in memory where it cannot be written."""
     try:

@@ -28,7 +28,7 @@ def dependency_cycle(view: View):
     from graphlib import CycleError, TopologicalSorter
 
     needs: dict[str, set[str]] = {}
-    for package in view:
+    for package in view.everyone():
         needs[package.name] = {
             name
             for name, kinds in view.declared(package).items()
@@ -45,11 +45,12 @@ def dependency_cycle(view: View):
         names = names[names.index(first) :] + names[: names.index(first)]
         package = view.workspace.packages[first]
         dependency = next(d for d in package.manifest.dependencies if d.name == names[1])
-        yield Hit(
-            view.manifest_place(package, dependency),
-            names[1],
-            "dependency cycle: " + " → ".join([*names, first]),
-            "cut one of these dependencies",
-            first,
-        )
+        if view.reports_on(first):
+            yield Hit(
+                view.manifest_place(package, dependency),
+                names[1],
+                "dependency cycle: " + " → ".join([*names, first]),
+                "cut one of these dependencies",
+                first,
+            )
         needs[first].discard(names[1])

@@ -277,7 +277,7 @@ def _of_dependants(view: View, package, export) -> str:
         and found.how in ("find_package", "catkin")
         and (found.required or found.how == "catkin")
         and view.certain(found.conditions)
-        for other in view
+        for other in view.everyone()
         if other.name != package.name
         for found in other.build.found
     )

@@ -82,7 +82,7 @@ def misspelt_cmake_name(view: View):
 
 def _wrong_case(view: View, package):
     """find_package names that are known in another case alone: CMake looks for files of this very name."""
-    own = {path.rpartition("/")[2] for other in view.workspace for path in other.files if path.endswith(".cmake")}
+    own = view.workspace.cmake_files
     for f in package.build.found:
         if f.how != "find_package" or not f.required or not view.certain(f.conditions) or view.is_package(f.name):
             continue

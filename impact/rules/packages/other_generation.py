@@ -31,6 +31,8 @@ def other_generation(view: View):
     if not packages or len(foreign) < len(packages):
         return
     first = packages[0]
+    if not view.reports_on(first.name):
+        return
     count = "the package" if len(packages) == 1 else f"none of the {len(packages)} packages"
     verb = "cannot be built" if len(packages) == 1 else "can be built"
     yield Hit(

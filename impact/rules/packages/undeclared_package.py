@@ -284,7 +284,7 @@ def _left_out(view: View, package):
         return
     declared = view.declared(package)
     folder = posixpath.dirname(package.path)
-    members = {p.name for p in view if not p.manifest.metapackage and posixpath.dirname(p.path) == folder}
+    members = {p.name for p in view.everyone() if not p.manifest.metapackage and posixpath.dirname(p.path) == folder}
     missing = [name for name in members - declared.keys() if not _APART.search(name)]
     if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS or missing[0] == package.name:
         return

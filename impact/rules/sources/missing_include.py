@@ -96,9 +96,10 @@ def _lost(
     if need.name not in DEFINED_IN and all(machine.includes(header) is None for header in offering):
         return None
     wanted, best = frozenset(offering), None
-    pointed = frozenset(announced(need.name))  # to a type that is announced, pointers may be made
+    bits = machine.bits(wanted)
+    pointed = machine.bits(announced(need.name))  # to a type that is announced, pointers may be made
     for reach, own in reaches:
-        if not wanted.isdisjoint(own) or any(not wanted.isdisjoint(machine.brought(h).headers) for h in reach):
+        if bits & machine.mask(reach) or not wanted.isdisjoint(own):
             continue
         outside = _outside(view, need.name, reach, machine)
         if outside is None:
@@ -106,7 +107,7 @@ def _lost(
         found = _dropped(view, wanted, reach, machine, earlier)
         if found is None or (best is not None and (best.sure or outside)):
             continue
-        sure = not outside and all(pointed.isdisjoint(machine.brought(header).headers) for header in reach)
+        sure = not outside and not pointed & machine.mask(reach)
         best = _Lost(offering[0], *found, sure)
     return best
 
@@ -132,8 +133,7 @@ def _outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> 
     """
     outside = {
         path
-        for header in reach
-        for path in machine.brought(header).outside
+        for path in machine.outside(reach)
         if not view.is_standard(path) and (path in reach or (view.header(path) and not _GENERATED.search(path)))
     }
     if name in DEFINED_IN:

@@ -1,0 +1,141 @@
+"""The rules, run over a workspace on every target: in several processes where there is much to judge, and not at all
+where an earlier run judged the same."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from . import memo, processes
+from .rules.rule import Hit, Rule
+from .targets.snapshot import SnapshotError
+
+if TYPE_CHECKING:
+    from .check import Opened
+    from .model.workspace import Workspace
+
+# Starting processes costs about as much as judging this many packages on one target.
+_ALONE = 16
+_PARTS_PER_JOB = 4
+
+# (rule, why it failed) to the targets on which it did
+Crashes = dict[tuple[str, str], list[str]]
+
+
+def hits_of(
+    opened: Opened, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None, jobs: int | None = None
+) -> Iterator[tuple[str, str, Hit]]:
+    """(rule, target, hit) of all the rules; the target is empty for rules that know none.
+
+    before: the workspace at the base, for rules that compare. crashed: gets the rules that failed; what the others
+    found stands. jobs: processes to use, all available cores when None.
+    """
+    every = list(rules)
+    told = [rule for rule in every if rule.per_target and rule.family != "interfaces"]
+    names = [rule.name for rule in told]
+    kept: dict[str, list[tuple[str, Hit]]] = {}
+    fresh = []
+    for place, view in enumerate(opened.views):
+        known = memo.recall(opened.store, view, names)
+        if known is None:
+            fresh.append(place)
+            memo.prepare(opened.store, view.target)
+        else:
+            kept[view.target.name] = known
+    for place, said in _judged(opened, told, fresh, crashed, jobs or processes.cores()):
+        view = opened.views[place]
+        kept[view.target.name] = said
+        if not crashed:
+            memo.remember(opened.store, view, names, said)
+    for rule in every:
+        if rule.name in names:
+            for view in opened.views:
+                target = view.target.name
+                yield from ((name, target, hit) for name, hit in kept[target] if name == rule.name)
+        else:
+            yield from ((rule.name, "", hit) for hit in _tried(rule, "", crashed, _run(rule, opened, before)))
+
+
+def _judged(
+    opened: Opened, rules: Sequence[Rule], places: Sequence[int], crashed: Crashes, jobs: int
+) -> Iterator[tuple[int, list[tuple[str, Hit]]]]:
+    """What the rules say of these views, each with its place among them."""
+    packages = list(opened.workspace.packages)
+    size = max(1, -(-len(packages) // (_PARTS_PER_JOB * jobs)))
+    tasks = [(place, at) for place in places for at in range(0, len(packages), size)]
+    if jobs < 2 or len(tasks) < 2 or len(packages) * len(places) < _ALONE or not processes.may_fork():
+        for place in places:
+            yield place, list(_all(rules, opened.views[place], crashed))
+        return
+    done = {}
+    opened.store.close()  # no other process may go on with a connection of this one
+    for task, result in processes.forked(_part, tasks, jobs, opened, rules, packages, size):
+        done[task] = result if result is not None else _part(opened, rules, packages, size, task)
+    for place, tasks_of_view in groupby(tasks, key=lambda task: task[0]):
+        view = opened.views[place]
+        said: dict[str, list[tuple[str, Hit]]] = {}
+        for task in tasks_of_view:
+            hits, unresolved, failures = done[task]
+            for name, hit in hits:
+                said.setdefault(name, []).append((name, hit))
+            for kind, unknown in unresolved.items():
+                view.unresolved.setdefault(kind, set()).update(unknown)
+            for failure in failures:
+                _note(crashed, failure, view.target.name)
+        yield place, [each for rule in rules for each in said.get(rule.name, ())]
+
+
+def _part(
+    opened: Opened, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
+) -> tuple[list[tuple[str, Hit]], dict[str, set[str]], Crashes]:
+    """What rules say of some packages on one view, what was not resolved, and the rules that failed."""
+    place, at = task
+    view = opened.views[place]
+    crashed: Crashes = {}
+    view.part = frozenset(packages[at : at + size])
+    try:
+        return list(_all(rules, view, crashed)), view.unresolved, crashed
+    finally:
+        view.part = None
+
+
+def _all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[tuple[str, Hit]]:
+    for rule in rules:
+        for hit in _tried(rule, view.target.name, crashed, lambda rule=rule: rule.run(view)):
+            yield rule.name, hit
+
+
+def _run(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Hit]]:
+    """The call of a rule that asks no target."""
+    if rule.family != "interfaces":
+        return lambda: rule.run(opened.workspace)
+    return lambda: rule.run(opened.workspace, before) if before is not None else ()
+
+
+def _tried(rule: Rule, target: str, crashed: Crashes, run: Callable[[], Iterable[Hit]]) -> Iterator[Hit]:
+    """The hits of a rule up to where it fails, if it does."""
+    try:
+        yield from run()
+    except SnapshotError:
+        raise  # no rule can do without the data
+    except Exception as error:
+        # What the other rules say stays true; the failure is named and decides the exit status.
+        _note(crashed, (rule.name, crash(error)), target)
+
+
+def _note(crashed: Crashes, failure: tuple[str, str], target: str) -> None:
+    targets = crashed.setdefault(failure, [])
+    if target and target not in targets:
+        targets.append(target)
+
+
+def crash(error: BaseException) -> str:
+    """An unforeseen error as a clause: its kind, its text, where it was raised, and what to do."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    place = f" in {os.path.basename(trace.tb_frame.f_code.co_filename)}:{trace.tb_lineno}" if trace is not None else ""
+    text = " ".join(str(error).split())[:200]
+    return f"{type(error).__name__}{place}{': ' + text if text else ''}; this is a fault of rosimpact, please report it"

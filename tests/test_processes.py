@@ -1,0 +1,168 @@
+"""Several processes find what one finds, whatever becomes of them."""
+
+import os
+import signal
+
+import pytest
+from rosimpact.impact import judge, processes
+from rosimpact.impact.check import Options, check
+from rosimpact.impact.model import workspace
+from rosimpact.impact.rules.rule import all_rules
+from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.providers import default_providers
+
+needs_fork = pytest.mark.skipif(not processes.may_fork(), reason="processes are forked on Linux only")
+
+MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>d</description>
+<maintainer email="a@b.org">a</maintainer><license>MIT</license><buildtool_depend>ament_cmake</buildtool_depend>
+{depends}<export><build_type>ament_cmake</build_type></export></package>
+"""
+CMAKE = """cmake_minimum_required(VERSION 3.8)
+project({name})
+find_package(ament_cmake REQUIRED)
+find_package({other} REQUIRED)
+find_package(not_to_be_found_{name} REQUIRED)
+add_library({name} src/a.cpp)
+target_include_directories({name} PUBLIC include)
+ament_package()
+"""
+
+
+def ring(folder, count):
+    """A workspace whose packages depend on each other in a ring, each with a header, and each with faults."""
+    for place in range(count):
+        name, other = f"link_{place}", f"link_{(place + 1) % count}"
+        package = folder / name
+        (package / "src").mkdir(parents=True)
+        (package / f"include/{name}").mkdir(parents=True)
+        depends = f"<depend>{other}</depend><depend>no_such_key_{place}</depend>"
+        (package / "package.xml").write_text(MANIFEST.format(name=name, depends=depends))
+        (package / "CMakeLists.txt").write_text(CMAKE.format(name=name, other=other))
+        (package / f"include/{name}/{name}.hpp").write_text(
+            f"#include <{other}/{other}.hpp>\n#include <tf2/LinearMath/Vector3.h>\n"
+        )
+        (package / "src/a.cpp").write_text(
+            f"#include <{name}/{name}.hpp>\n#include <unheard_of_{place}.h>\nuint32_t a;\n"
+        )
+    return folder
+
+
+def told(report):
+    return [f._replace(fingerprint="") for f in report.findings], report.coverage, report.failure
+
+
+@pytest.fixture
+def at_once(monkeypatch):
+    """However small a workspace is, processes are started."""
+    monkeypatch.setattr(workspace, "_ALONE_FILES", 0)
+    monkeypatch.setattr(judge, "_ALONE", 0)
+
+
+@needs_fork
+def test_processes_report_what_one_reports(tmp_path, at_once):
+    ws = ring(tmp_path / "ws", 9)
+    targets = ("humble", "jazzy")
+    alone = check(ws, Options(targets, jobs=1, cache=tmp_path / "one"))
+    together = check(ws, Options(targets, jobs=3, cache=tmp_path / "three"))
+    again = check(ws, Options(targets, jobs=3, cache=tmp_path / "three"))
+    rules = {finding.rule for finding in alone.findings}
+    assert {"dependency-cycle", "undeclared-package", "unresolvable-key"} <= rules
+    assert sum(finding.rule == "dependency-cycle" for finding in alone.findings) == 1
+    assert alone.coverage.unresolved["include"] >= 9
+    assert told(alone) == told(together) == told(again)
+
+
+@needs_fork
+def test_a_rule_that_fails_on_one_package_is_named_once(tmp_path, at_once, monkeypatch):
+    ws = ring(tmp_path / "ws", 9)
+    rule = all_rules()["unresolvable-key"]
+
+    def run(view):
+        for package in view:
+            if package.name == "link_4":
+                raise RuntimeError("no such luck")
+            yield from ()
+
+    rules = {**all_rules(), "unresolvable-key": rule._replace(run=run)}
+    monkeypatch.setattr("rosimpact.impact.check.all_rules", lambda: rules)
+    report = check(ws, Options(("humble", "jazzy"), jobs=2, cache=tmp_path / "cache"))
+    assert report.failure.count("the rule unresolvable-key failed on humble, jazzy: RuntimeError") == 1
+    assert any(finding.rule == "undeclared-package" for finding in report.findings)
+
+
+def _doubled(factor, number):
+    return factor * number
+
+
+def _dies(parent, number):
+    if number == 3 and os.getpid() != parent:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def _raises(number):
+    raise KeyError(number)
+
+
+@needs_fork
+def test_every_result_comes_with_its_task():
+    assert dict(processes.forked(_doubled, range(20), 3, 2)) == {n: 2 * n for n in range(20)}
+
+
+@needs_fork
+def test_tasks_of_a_process_that_died_come_without_result():
+    found = dict(processes.forked(_dies, range(8), 2, os.getpid()))
+    assert found.keys() == set(range(8)) and found[3] is None
+    assert all(result in (None, number) for number, result in found.items())
+
+
+@needs_fork
+def test_what_a_task_raises_is_raised_here():
+    with pytest.raises(KeyError):
+        dict(processes.forked(_raises, range(3), 2))
+
+
+@needs_fork
+def test_a_process_that_dies_loses_no_package(tmp_path, at_once, monkeypatch):
+    ws = ring(tmp_path / "ws", 9)
+    alone = check(ws, Options(("jazzy",), jobs=1, cache=tmp_path / "one"))
+    here, join, part = os.getpid(), workspace._join, judge._part
+
+    def dying(run):
+        def task(*arguments):
+            if os.getpid() != here:
+                os.kill(os.getpid(), signal.SIGKILL)
+            return run(*arguments)
+
+        return task
+
+    # The processes are forked, so they know these functions by their place in this one's memory.
+    monkeypatch.setattr(processes, "_run", _by_task({"_join": dying(join), "_part": dying(part)}))
+    together = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "two"))
+    assert told(alone) == told(together)
+
+
+class _by_task:
+    def __init__(self, tasks):
+        _TASKS.update(tasks)
+
+    def __call__(self, task, thing):
+        return _TASKS[task.__name__](*processes._WHAT, thing)
+
+
+_TASKS = {}
+
+
+def _answers(target, providers, header):
+    return [p.name for p in providers.header(header)], target.version("rclcpp"), target.resolve("eigen") is not None
+
+
+@needs_fork
+def test_the_shipped_data_is_read_by_many_processes_at_once():
+    headers = [f"{name}/{name}.hpp" for name in ("rclcpp", "tf2", "pluginlib", "nav2_util", "angles", "cv_bridge")] * 20
+    target, providers = DistroTarget("jazzy"), default_providers()
+    expected = {header: _answers(target, providers, header) for header in sorted(set(headers))}
+    fresh = type(providers)()
+    fresh.header("ros/ros.h")  # opened here before the others are forked
+    for header, answer in processes.forked(_answers, headers, 4, DistroTarget("jazzy"), fresh):
+        assert answer == expected[header]
