@@ -8,5 +8,10 @@ setup(
     packages=[f"rosimpact.{name}" for name in find_packages(include=[*ROOMS, *(f"{room}.*" for room in ROOMS)])],
     package_dir={f"rosimpact.{room}": room for room in ROOMS},
     package_data={f"rosimpact.{room}": ["py.typed"] for room in ROOMS}
-    | {"rosimpact.impact.targets": ["data/*"], "rosimpact.impact.report": ["*.html", "*.json"]},
+    | {
+        "rosimpact.impact.targets": ["data/*"],
+        "rosimpact.impact.report": ["*.html", "*.json"],
+        "rosimpact.corpus": ["py.typed", "labels.jsonl", "GUIDE.md"],
+        "rosimpact.classifier": ["py.typed", "data/*"],
+    },
 )

@@ -10,6 +10,8 @@ from typing import Annotated
 
 import typer
 
+from ..corpus.cli import app as corpus_app
+
 app = typer.Typer(
     name="rosimpact",
     help="Know what a change breaks in a ROS workspace, and for whom, before you merge it.",
@@ -25,6 +27,7 @@ data_app = typer.Typer(
 )
 app.add_typer(env_app, name="env")
 app.add_typer(data_app, name="data")
+app.add_typer(corpus_app, name="corpus")
 
 
 def _print_schema(value: bool) -> None:
