@@ -58,6 +58,11 @@ class Interface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     module: str = ""
 
 
+PRIMITIVES = frozenset({
+    "bool", "byte", "char", "octet", "wchar", "string", "wstring", "float32", "float64", "float128",
+    "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64",
+})  # fmt: skip
+"""Types of fields that are no interfaces, in .msg and IDL files of ROS 2; ROS 1 has `time` and `duration` besides."""
 SECTIONS = {"msg": ("message",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
 
 # The grammar of http://wiki.ros.org/msg and https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html

@@ -12,34 +12,12 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
-from ..facts.interface import Field, Interface, Section, extract
+from ..facts.interface import PRIMITIVES, Field, Interface, Section, extract
 
 ROS1_ALIASES = {"Header": "std_msgs/msg/Header"}
 ROS1_TIMES = {"time": "builtin_interfaces/msg/Time", "duration": "builtin_interfaces/msg/Duration"}
 # https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html: .msg `char` is an 8 bit number.
 ROS2_PRIMITIVES = {"char": "uint8", "byte": "octet"}
-PRIMITIVES = frozenset(
-    [
-        "bool",
-        "byte",
-        "char",
-        "octet",
-        "wchar",
-        "string",
-        "wstring",
-        "float32",
-        "float64",
-        "float128",
-        "int8",
-        "uint8",
-        "int16",
-        "uint16",
-        "int32",
-        "uint32",
-        "int64",
-        "uint64",
-    ]
-)
 
 
 class UnknownInterface(LookupError):

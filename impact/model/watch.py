@@ -7,7 +7,7 @@ import re
 from functools import cache
 
 from ..facts.usage import Pattern
-from ..targets.changes import TransitiveInclude, all_rows, transitive_includes
+from ..targets.changes import all_rows, transitive_includes
 from ..targets.fields import default_fields
 from ..targets.includes import offered
 from ..targets.standard import DEFINED_IN
@@ -60,6 +60,3 @@ def watched() -> Watched:
         ).encode()
     ).hexdigest()
     return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields)
-
-
-__all__ = ["TransitiveInclude", "watched"]

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import msgspec
 import zstandard
 
-from ..facts.interface import Interface, extract
+from ..facts.interface import PRIMITIVES, Interface, extract
 from .snapshot import default
 from .version import parts
 
@@ -43,29 +43,7 @@ class Released(NamedTuple):
 _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 _VERSION = re.compile(rb"<version[^>]*>\s*(\d+\.\d+\.\d+)\s*</version>")
 _TOOL = re.compile(rb"<(?:buildtool|build)_depend[^>]*>\s*(catkin|ament_cmake\w*|rosidl_default_generators)\s*<")
-_PRIMITIVE = frozenset(
-    [
-        "bool",
-        "byte",
-        "char",
-        "int8",
-        "uint8",
-        "int16",
-        "uint16",
-        "int32",
-        "uint32",
-        "int64",
-        "uint64",
-        "float32",
-        "float64",
-        "float128",
-        "string",
-        "wstring",
-        "time",
-        "duration",
-        "octet",
-    ]
-)
+_PRIMITIVE = PRIMITIVES | {"time", "duration"}
 _BUILTIN = {"Header": "std_msgs/Header", "time": "", "duration": ""}
 _ASIDE = frozenset({"test", "tests", "testing", "doc", "docs", "example", "examples"})
 _KINDS = ("msg", "srv", "action")

@@ -25,35 +25,12 @@ Not reported
 
 import re
 
+from ...facts.interface import PRIMITIVES
 from ...model.view import View
 from ..cure import Declare, Insert
 from ..rule import Hit, rule
 
-_ROS1_PRIMITIVE = frozenset(
-    [
-        "bool",
-        "int8",
-        "uint8",
-        "int16",
-        "uint16",
-        "int32",
-        "uint32",
-        "int64",
-        "uint64",
-        "float32",
-        "float64",
-        "string",
-        "time",
-        "duration",
-        "char",
-        "byte",
-        "wstring",
-        "float",
-        "double",
-        "octet",
-        "Header",
-    ]
-)
+_ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
 
 
 @rule(severity="warning")
