@@ -17,10 +17,11 @@ ROOMS = ("impact", "corpus", "classifier")
 AHEAD = {"beautifulsoup4", "pygithub", "requests", "rich", "rosdistro", "scikit-learn"}
 
 
-def declared() -> set[str]:
-    """Distributions that pyproject.toml asks for, in their normal form."""
+def declared(*extras: str) -> set[str]:
+    """Distributions that pyproject.toml asks for, those of the extras included, in their normal form."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    return {normal(re.split(r"[\s<>=!~;\[]", requirement)[0]) for requirement in project["dependencies"]}
+    asked = [*project["dependencies"], *(r for extra in extras for r in project["optional-dependencies"][extra])]
+    return {normal(re.split(r"[\s<>=!~;\[]", requirement)[0]) for requirement in asked}
 
 
 def normal(name: str) -> str:
@@ -48,7 +49,7 @@ def imported() -> dict[str, str]:
 
 def test_every_import_is_asked_for():
     known = packages_distributions()
-    asked = declared()
+    asked = declared("study")
     missing = {
         name: where
         for name, where in imported().items()
@@ -60,4 +61,4 @@ def test_every_import_is_asked_for():
 def test_nothing_is_asked_for_in_vain():
     known = packages_distributions()
     used = {normal(d) for name in imported() for d in known.get(name, [name])}
-    assert declared() - used - AHEAD == set()
+    assert declared("study") - used - AHEAD == set()
