@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from ..corpus.cli import app as corpus_app
+from ..corpus.study_cli import app as study_app
 
 app = typer.Typer(
     name="rosimpact",
@@ -28,6 +29,7 @@ data_app = typer.Typer(
 app.add_typer(env_app, name="env")
 app.add_typer(data_app, name="data")
 app.add_typer(corpus_app, name="corpus")
+app.add_typer(study_app, name="study")
 
 
 def _print_schema(value: bool) -> None:
