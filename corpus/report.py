@@ -66,7 +66,8 @@ class Label(msgspec.Struct, frozen=True):
 
     label: one of LABELS. kind: one of KINDS[label], None for labels without kinds. phase: one of PHASES. why: the
     reason in a few words of the annotators' own. annotators: the label that each of them gave. decided: `agreed`,
-    `adjudicated`, `recheck` (two annotators) or `single`.
+    `adjudicated`, `recheck` (two annotators), `single`, `disputed` (two that differ, nobody has decided yet: the first
+    one's answer stands for now) or `imported` (mapped from another study).
     """
 
     id: str
@@ -118,7 +119,7 @@ def faults_of(label: Label) -> str:
     return ""
 
 
-def write_rows(path: Path, rows: Iterable[msgspec.Struct]) -> int:
+def write_rows(path: Path, rows: Iterable[msgspec.Struct | msgspec.Raw]) -> int:
     """Writes rows as JSON Lines, whole or not at all. Returns how many. Raises CorpusError."""
     import os
     import tempfile
@@ -133,6 +134,9 @@ def write_rows(path: Path, rows: Iterable[msgspec.Struct]) -> int:
                 for row in rows:
                     file.write(encode(row) + b"\n")
                     count += 1
+                file.flush()
+                os.fsync(handle)
+            os.chmod(name, _mode(path))
             os.replace(name, path)
         except BaseException:
             os.unlink(name)
@@ -140,6 +144,17 @@ def write_rows(path: Path, rows: Iterable[msgspec.Struct]) -> int:
     except OSError as error:
         raise CorpusError(f"{path}: cannot be written: {error.strerror}; give another file") from None
     return count
+
+
+def _mode(path: Path) -> int:
+    """The permissions of a file that is replaced, or those of a new one."""
+    import os
+
+    if path.exists():
+        return path.stat().st_mode & 0o777
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
 
 
 def _read(path: Path, kind: type[_Row]) -> Iterator[_Row]:

@@ -1,4 +1,4 @@
-"""told: a command of the corpus ends in an exit status and, where it fails, in one line; no traceback reaches a user."""
+"""told: a command of the corpus ends in an exit status and, where it fails, in one line and no traceback."""
 
 from __future__ import annotations
 

@@ -1,0 +1,105 @@
+"""What the commands on labels do: options to a session, a table or a file, and an exit status."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from .report import LABELS_FILE, SOURCES, CorpusError, Report
+from .told import say, told
+
+FORMATS = ("text", "json")
+
+
+def label(
+    reports: Path | None, labels: Path | None, annotator: str, mode: str, sources: Sequence[str],
+    repositories: Sequence[str], listed: bool,
+) -> int:  # fmt: skip
+    """Opens the labelling screen, or lists what it would show. Returns the exit status."""
+    return told(
+        lambda: _label(reports, labels, annotator, mode, sources, repositories, listed),
+        "interrupted; every answer given is saved",
+    )
+
+
+def _label(
+    reports: Path | None, labels: Path | None, annotator: str, mode: str, sources: Sequence[str],
+    repositories: Sequence[str], listed: bool,
+) -> int:  # fmt: skip
+    for source in sources:
+        if source not in SOURCES:
+            raise CorpusError(f"--source {source}: unknown; choose one of {', '.join(SOURCES)}")
+    file = labels or _own_labels()
+    name = annotator.strip() or _login()
+    from .labelling import Session, chosen, current_labels, journal_of, offered, read_journal
+
+    if not listed:
+        from .label_screen import need_terminal
+
+        need_terminal()
+    texts = chosen(_reports(reports), sources, repositories)
+    if listed:
+        found = current_labels(file)
+        shown = offered(texts, found, read_journal(journal_of(file)), mode, name)
+        for report in shown:
+            known = found.get(report.id)
+            given = "\t" + " / ".join(known.annotators) if known and mode == "disagreements" else ""
+            print(f"{report.id}{given}\t{_line(report.title)}")
+        say(f"{len(shown):,} of {len(texts):,} reports")
+        return 0
+    from .label_screen import run
+
+    with Session(file, name, mode, texts) as session:
+        if not session.queue:
+            say(_nothing(mode, texts))
+            return 0
+        run(session, suggest)
+        done, left = session.done, len(session.queue)
+    say(f"{done:,} answered, {left:,} left; labels in {file}")
+    return 0
+
+
+def suggest(title: str, body: str) -> tuple[str, dict[str, float]]:
+    """The classifier's likeliest label of a report, and the probability of each. Raises CorpusError when there is no
+    classifier."""
+    try:
+        from ..classifier.triage import suggest as triaged
+    except ImportError as error:
+        raise CorpusError(f"the classifier cannot be loaded ({error})") from None
+    return triaged(title, body)
+
+
+def _nothing(mode: str, texts: list[Report]) -> str:
+    if not texts:
+        return "no report is left by --source and --repository; leave one of them out"
+    kind = {"first": "unlabelled", "second": "read by one annotator other than you", "disagreements": "disputed"}[mode]
+    return f"none of the {len(texts):,} reports is {kind}"
+
+
+def _own_labels() -> Path:
+    """The labels of the corpus, where this is a checkout; an installed copy would be lost at the next upgrade."""
+    if (LABELS_FILE.parents[1] / "pyproject.toml").exists():
+        return LABELS_FILE
+    raise CorpusError("label: no file for the labels; give one with --labels, it is made when it is not there")
+
+
+def _reports(chosen: Path | None) -> list[Report]:
+    from .store import open_reports, store_path
+
+    path = store_path(chosen)
+    if chosen is None and not path.exists():
+        raise CorpusError("no reports at hand; gather some with `rosimpact corpus gather`, or give --reports FILE")
+    return list(open_reports(path))
+
+
+def _login() -> str:
+    import getpass
+
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError):
+        raise CorpusError("label: nobody knows who you are; give a name with --annotator") from None
+
+
+def _line(text: str) -> str:
+    return " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
