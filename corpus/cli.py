@@ -13,6 +13,110 @@ app = typer.Typer(
 
 # -- gathering ---------------------------------------------------------------------------------------------------------
 
+_Store = Annotated[
+    Path | None, typer.Option(help="The store; $ROSIMPACT_CORPUS, else corpus.sqlite in your data folder.")
+]
+_Api = Annotated[str, typer.Option(help="Another address of the service: GitHub Enterprise, a mirror of ROS Answers.")]
+_GitHubApi = Annotated[str, typer.Option("--api", help="Another address of GitHub: that of GitHub Enterprise.")]
+_Wait = Annotated[
+    float, typer.Option(min=0, help="Minutes to wait in all when a service says so; then stop, to go on another time.")
+]
+_Archive = Annotated[Path | None, typer.Option(help="A clone of ros-infrastructure/answers-archive.")]
+_Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="A line for each page.")]
+_Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")]
+
+
+@app.command("gather")
+def gather(
+    what: Annotated[str, typer.Argument(help="github:OWNER/NAME, ros-answers or stack-exchange.")],
+    since: Annotated[str, typer.Option(help="Only what was posted from this day on (2024-01-31).")] = "",
+    pulls: Annotated[bool, typer.Option("--pulls", help="GitHub: pull requests too.")] = False,
+    search: Annotated[str, typer.Option(help="GitHub: only what this search finds; of all, if no repository.")] = "",
+    tag: Annotated[
+        list[str] | None, typer.Option(help="Stack Exchange: with this tag; ros and ros2 if none. May be repeated.")
+    ] = None,
+    archive: _Archive = None,
+    pages: Annotated[Path | None, typer.Option(help="ROS Answers: a folder of saved question pages.")] = None,
+    store: _Store = None,
+    api: _Api = "",
+    wait: _Wait = 60.0,
+    verbose: _Verbose = False,
+    quiet: _Quiet = False,
+) -> None:
+    """Gather reports into the store; what is there already is only brought up to date.
+
+    Stopped at any point, the same command goes on from there. Exit status 1: stopped since the service asks for a
+    longer wait; everything is kept. Tokens: GITHUB_TOKEN or GH_TOKEN, STACK_EXCHANGE_KEY, or the keyring.
+    """
+    from . import gather_commands as commands
+
+    manner = commands.Manner(store, api, wait, verbose, quiet)
+    raise typer.Exit(
+        commands.gather(
+            what, since=since, pulls=pulls, search=search, tags=tuple(tag or ()), archive=archive, pages=pages,
+            manner=manner,
+        )
+    )  # fmt: skip
+
+
+@app.command("hydrate")
+def hydrate(
+    labels: Annotated[Path | None, typer.Option(help="The labels; those of the corpus when left out.")] = None,
+    texts: Annotated[
+        Path | None, typer.Option("--from", help="Take the texts from this JSON Lines file, and ask nobody.")
+    ] = None,
+    archive: _Archive = None,
+    store: _Store = None,
+    api: _GitHubApi = "",
+    wait: _Wait = 60.0,
+    verbose: _Verbose = False,
+    quiet: _Quiet = False,
+) -> None:
+    """Gather the texts of all labelled reports by their ids, and say which are gone."""
+    from . import gather_commands as commands
+
+    manner = commands.Manner(store, api, wait, verbose, quiet)
+    raise typer.Exit(commands.hydrate(labels, texts, archive=archive, manner=manner))
+
+
+@app.command("refresh")
+def refresh(
+    source: Annotated[
+        list[str] | None, typer.Option(help="Only github, ros-answers or robotics-se. May be repeated.")
+    ] = None,
+    limit: Annotated[int | None, typer.Option(min=1, help="So many at most, those asked for longest ago.")] = None,
+    archive: _Archive = None,
+    store: _Store = None,
+    api: _GitHubApi = "",
+    wait: _Wait = 60.0,
+    verbose: _Verbose = False,
+    quiet: _Quiet = False,
+) -> None:
+    """Ask for every report in the store again: edits are taken over, deleted reports lose their text."""
+    from . import gather_commands as commands
+
+    manner = commands.Manner(store, api, wait, verbose, quiet)
+    raise typer.Exit(commands.refresh(tuple(source or ()), limit, archive=archive, manner=manner))
+
+
+@app.command("export")
+def export(
+    file: Annotated[Path, typer.Argument(help="*.jsonl or *.parquet.")],
+    store: _Store = None,
+) -> None:
+    """Write all reports to a JSON Lines or Parquet file."""
+    from . import gather_commands as commands
+
+    raise typer.Exit(commands.export(file, store=store))
+
+
+@app.command("status")
+def status(store: _Store = None) -> None:
+    """Show what is in the store and how far each gathering is."""
+    from . import gather_commands as commands
+
+    raise typer.Exit(commands.status(store=store))
+
 
 # -- labels ------------------------------------------------------------------------------------------------------------
 
@@ -52,3 +156,19 @@ def label(
             reports, labels, annotator, mode, tuple(source or ()), tuple(repository or ()), listed
         )
     )  # fmt: skip
+
+
+@app.command("stats")
+def stats(
+    labels: Annotated[Path | None, typer.Option(help="A labels file; those of the corpus when left out.")] = None,
+    reports: Annotated[
+        Path | None,
+        typer.Option(help="The texts, for years and distros: a store or a JSON Lines file; the gathered store if any."),
+    ] = None,
+    format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
+    plots: Annotated[Path | None, typer.Option(help="Also draw the numbers into this folder, as SVG and PNG.")] = None,
+) -> None:
+    """Count labels by year, distro, project, kind and phase, and say how far two annotators agree."""
+    from . import label_commands
+
+    raise typer.Exit(label_commands.stats(labels, reports, format, plots))

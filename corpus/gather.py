@@ -1,0 +1,149 @@
+"""From sources into the store: gatherings, hydrating the labelled ids, refreshing what is there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple, Protocol
+
+from .report import Report, repository_of
+from .store import Asked, Gathered, Page, Store, Taken
+
+_REFRESH = "refresh"
+_AT_ONCE = 100
+
+
+class Source(Protocol):
+    """Where reports come from in pages. name: unique to what is asked for; its state is kept under it."""
+
+    @property
+    def name(self) -> str: ...
+
+    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+        """The pages that follow a state; from the first one for None."""
+        ...
+
+
+class Service(Protocol):
+    """Where reports can be asked for by their ids."""
+
+    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
+        """known: (id, ETag of what is at hand, or nothing). The answers come in any order, each id's once."""
+        ...
+
+
+class Progress(NamedTuple):
+    """How far a job is. of: None where nobody knows."""
+
+    done: int
+    of: int | None
+    taken: Taken
+
+
+def gather(source: Source, store: Store, tell: Callable[[Progress], None] = lambda progress: None) -> Taken:
+    """Reads a source to its end, from where it was left. Whatever is raised on the way, the pages told are stored."""
+    taken = Taken()
+    for page in source.pages(store.state(source.name)):
+        taken = taken.plus(store.take(source.name, page))
+        tell(Progress(page.done, page.of, taken))
+    return taken
+
+
+def service_of(id: str) -> str:
+    """Which of report.SOURCES has a report of that id; empty when none has."""
+    if repository_of(id):
+        return "github"
+    name, _, number = id.partition(":")
+    return name if name in ("ros-answers", "robotics-se") and number.isdigit() else ""
+
+
+def missing(store: Store, ids: Iterable[str]) -> dict[str, list[str]]:
+    """Those ids, by service, that the store knows nothing of; what is known to be gone is not missing."""
+    found: dict[str, list[str]] = {}
+    for id in ids:
+        if store.kept(id) is None:
+            found.setdefault(service_of(id), []).append(id)
+    return found
+
+
+def hydrate(
+    service: Service,
+    source: str,
+    ids: list[str],
+    store: Store,
+    tell: Callable[[Progress], None] = lambda progress: None,
+) -> Taken:
+    """Asks a service for ids and stores each answer as it comes. source: one of report.SOURCES."""
+    taken = Taken()
+    for done, asked in enumerate(service.ask((id, "") for id in ids), 1):
+        taken = taken.plus(_settle(asked, source, store))
+        tell(Progress(done, len(ids), taken))
+    return taken
+
+
+def import_reports(reports: Iterable[Report], store: Store, ids: frozenset[str]) -> tuple[Taken, int]:
+    """Stores the texts of ids that are at hand already; those that the store has are left as they are. Returns what
+    became of them, and how many reports were of no such id."""
+    taken, others = Taken(), 0
+    part: list[Gathered] = []
+    for report in reports:
+        kept = store.kept(report.id)
+        if report.id not in ids:
+            others += 1
+        elif kept is not None and not kept.gone:
+            taken = taken.plus(Taken(same=1))
+        else:
+            part.append(Gathered(report, origin="import"))
+            if len(part) == _AT_ONCE:
+                taken, part = taken.plus(store.put(part)), []
+    return taken.plus(store.put(part)), others
+
+
+def refresh(
+    services: Callable[[str, int], Service],
+    store: Store,
+    sources: Iterable[str],
+    limit: int | None = None,
+    tell: Callable[[Progress], None] = lambda progress: None,
+) -> Taken:
+    """Asks for every report again, longest ago first: edits are taken over, what is deleted loses its text here.
+
+    services: gives the service for a source and a number of reports. limit: of reports to ask for. An earlier refresh
+    that was left before its end is gone on with.
+    """
+    state = store.state(_REFRESH) or {}
+    started = float(state.get("started") or store.now())
+    store.take(_REFRESH, Page([], {"started": started}))
+    sources = list(sources)
+    counts = {source: store.count_to_check(source, started) for source in sources}
+    total = min(sum(counts.values()), limit if limit is not None else sum(counts.values()))
+    taken, done = Taken(), 0
+    for source in sources:
+        if not counts[source] or done >= total:
+            continue
+        service = services(source, min(counts[source], total - done))
+        # an archive is read through for each asking, so it is asked once
+        size = counts[source] if source == "ros-answers" else _AT_ONCE
+        while part := store.to_check(source, started, min(size, total - done)):
+            kept = {known.id: known for known in part}
+            for asked in service.ask((known.id, known.etag) for known in part):
+                if asked.what == "gone" and source == "ros-answers" and kept[asked.id].origin == "import":
+                    # the archive never held all questions: that one is not in it says nothing of its deletion
+                    asked = Asked(asked.id, "same")
+                taken = taken.plus(_settle(asked, source, store))
+                done += 1
+                tell(Progress(done, total, taken))
+            if done >= total:
+                break
+    if all(store.count_to_check(source, started) == 0 for source in sources):
+        store.take(_REFRESH, Page([], {}, finished=True))
+    return taken
+
+
+def _settle(asked: Asked, source: str, store: Store) -> Taken:
+    if asked.gathered is not None:
+        return store.put([asked.gathered])
+    if asked.what == "gone":
+        store.forget([(asked.id, source)])
+        return Taken(gone=1)
+    store.seen([asked.id])
+    return Taken(same=1)

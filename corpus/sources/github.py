@@ -1,0 +1,351 @@
+"""Issues and pull requests of GitHub, or of a GitHub Enterprise server.
+
+Lists are read in the order of their last update, each request starting at the time where the one before ended: numbered
+pages of that order shift, and lose reports, whenever somebody comments while they are read. Search gives a thousand
+results at most, so it is read in the order of creation and asked anew from the day where it ended.
+PyGithub parses what comes and runs the searches, over our own client: it alone knows 429, wants no hour of sleep, keeps
+the query of an address that redirects, and asks conditionally for lists.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+from urllib.parse import urlencode, urlsplit
+
+from ..polite import Client, Refused
+from ..report import CorpusError, Report
+from ..store import Asked, Gathered, Page, digest_of
+
+if TYPE_CHECKING:
+    from github import Github
+    from github.Issue import Issue
+
+API = "https://api.github.com"
+PER_PAGE = 100
+SEARCH_LIMIT = 1_000
+"""Results that a search gives at most."""
+_NAME = re.compile(r"[\w-][\w.-]*/(?!\.{1,2}\Z)[\w.-]+\Z")
+_ID = re.compile(r"(?:https://api\.github\.com/repos/)?([\w.-]+/[\w.-]+)(?:#|/(?:issues|pulls?)/)(\d+)\Z")
+_PAGE = re.compile(r"https?://[^/]+/(?:repos/)?([\w.-]+/[\w.-]+)/(?:issues|pulls?)/(\d+)")
+_KEPT = (
+    "number", "title", "body", "state", "state_reason", "created_at", "updated_at", "closed_at", "html_url", "url",
+    "comments", "locked", "active_lock_reason", "draft",
+)  # fmt: skip
+
+
+class Quota(NamedTuple):
+    """Requests that are left, of how many an hour."""
+
+    remaining: int
+    limit: int
+
+
+class GitHub:
+    """A GitHub server. api: its address (`https://api.github.com`, `https://HOST/api/v3`). token: empty for none."""
+
+    def __init__(self, client: Client, api: str = API, token: str = ""):
+        self.client = client
+        self.api = api.rstrip("/")
+        if urlsplit(self.api).scheme not in ("http", "https") or not urlsplit(self.api).hostname:
+            raise CorpusError(f"--api {api}: is no address; give one like {API}")
+        self._token = token
+        self._parser: Github | None = None
+
+    @property
+    def parser(self) -> Github:
+        """PyGithub over our client."""
+        if self._parser is None:
+            self._parser = _pygithub(self)
+        return self._parser
+
+    def headers(self, etag: str = "") -> dict[str, str]:
+        headers = {"Accept": "application/vnd.github+json", "X-GitHub-Api-Version": "2022-11-28"}
+        if self._token:
+            headers["Authorization"] = f"Bearer {self._token}"
+        if etag:
+            headers["If-None-Match"] = etag
+        return headers
+
+    @property
+    def has_token(self) -> bool:
+        return bool(self._token)
+
+    def quota(self) -> Quota | None:
+        """What is left of the main quota; None where the server has none, or does not tell."""
+        from github import GithubException
+
+        try:
+            found = self.parser.get_rate_limit()
+        except (GithubException, CorpusError):
+            return None
+        core: Any = getattr(found, "resources", found)  # `resources` came with PyGithub 2.7
+        return Quota(core.core.remaining, core.core.limit)
+
+    def gathered(self, raw: dict[str, Any], *, etag: str = "", asked: str = "") -> Gathered:
+        """What one object of an answer holds. Raises CorpusError when it is no issue."""
+        from github.Issue import Issue
+
+        try:
+            issue: Issue = self.parser.create_from_raw_data(Issue, raw)
+            return _gathered(issue, raw, etag, asked)
+        except CorpusError:
+            raise
+        except Exception as error:  # PyGithub raises what it likes when a field is of another type
+            raise CorpusError(
+                f"{self.client.service}: an answer holds something that is no issue ({type(error).__name__}); "
+                "check that --api leads to a GitHub server"
+            ) from None
+
+    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
+        """Asks for reports one by one. known: (id, ETag or nothing). What has not changed costs no quota."""
+        for id, etag in known:
+            found = _ID.match(id)
+            if found is None:
+                raise CorpusError(f"{id}: is no issue's id; write owner/name#12")
+            url = f"{self.api}/repos/{found[1]}/issues/{found[2]}"
+            answer, raw = self.client.get_json(
+                url, headers=self.headers(etag), lane="core", accept=(301, 304, 404, 410, 451)
+            )
+            if answer.status == 304:
+                yield Asked(id, "same")
+            elif answer.status == 200 and isinstance(raw, dict):
+                yield Asked(id, "here", self.gathered(raw, etag=answer.headers.get("etag", ""), asked=id))
+            else:
+                yield Asked(id, "gone")
+
+
+class Listed:
+    """The issues of a repository, and its pull requests where asked for, posted since a day (`2024-01-01`) or ever."""
+
+    def __init__(self, server: GitHub, repository: str, *, since: str = "", kinds: tuple[str, ...] = ("issue",)):
+        if not _NAME.match(repository):
+            raise CorpusError(f"github:{repository}: names no repository; write github:owner/name")
+        self._server = server
+        self._repository = repository
+        self._since = since
+        self._kinds = kinds
+        where = "" if server.api == API else f" at {urlsplit(server.api).netloc}"
+        self.name = f"github:{repository.lower()}{where} {'+'.join(kinds)}{f' since {since}' if since else ''}"
+
+    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+        """From a state (None: from the start) to the end of the list. State: the time from which to ask, and the ETag
+        of the last answer, so that asking when nothing is new costs nothing."""
+        state = state or {}
+        since = state.get("since") or (f"{self._since}T00:00:00Z" if self._since else "")
+        etag = state.get("etag", "")
+        done, total = 0, None
+        url = ""
+        while True:
+            url = url or self._address(since)
+            answer, rows = self._server.client.get_json(
+                url, headers=self._server.headers(etag), lane="core", accept=(304,)
+            )
+            if answer.status == 304:
+                yield Page([], {"since": since, "etag": etag}, finished=True, done=done, of=total)
+                return
+            if not isinstance(rows, list):
+                raise CorpusError(f"{self._server.client.service}: answered with no list; check --api")
+            etag = ""
+            done += len(rows)
+            links = answer.links
+            total = done + _left(links, len(rows))
+            newest = max((str(row.get("updated_at") or "") for row in rows), default=since)
+            reports = list(self._reports(rows))
+            moved = self._moved(rows)
+            if "next" not in links:
+                state = {"since": since, "etag": answer.headers.get("etag", "")}
+                yield Page(reports, state, finished=True, done=done, of=done, moved=moved)
+                return
+            # A whole page of one and the same time: the next page of this very list is the only way on.
+            url = self._server_own(links["next"]) if newest <= since else ""
+            since = max(since, newest)
+            yield Page(reports, {"since": since}, done=done, of=total, moved=moved)
+
+    def _moved(self, rows: list[dict[str, Any]]) -> tuple[str, str] | None:
+        """(old, new) name of the repository, where it is no longer the one that was asked for."""
+        place = _PAGE.match(str(rows[0].get("html_url") or "")) if rows else None
+        if place is None or place[1].lower() == self._repository.lower():
+            return None
+        return self._repository, place[1]
+
+    def _address(self, since: str) -> str:
+        asked = {"state": "all", "sort": "updated", "direction": "asc", "per_page": PER_PAGE}
+        if since:
+            asked["since"] = since
+        return f"{self._server.api}/repos/{self._repository}/issues?{urlencode(asked)}"
+
+    def _server_own(self, url: str) -> str:
+        """An address of a Link header, which must be the server's own: the token goes there."""
+        mine, theirs = urlsplit(self._server.api), urlsplit(url)
+        if (mine.scheme, mine.netloc) != (theirs.scheme, theirs.netloc):
+            raise CorpusError(
+                f"{self._server.client.service}: leads to {theirs.netloc} for its next page; check that --api is right"
+            )
+        return url
+
+    def _reports(self, rows: list[dict[str, Any]]) -> Iterator[Gathered]:
+        for row in rows:
+            kind = "pull" if row.get("pull_request") else "issue"
+            if kind not in self._kinds or (self._since and str(row.get("created_at") or "")[:10] < self._since):
+                continue
+            yield self._server.gathered(row, asked=f"{self._repository}#{row.get('number')}")
+
+
+class Searched:
+    """What a search finds. query: as on GitHub's search page (`org:ros2 "undefined symbol"`)."""
+
+    def __init__(self, server: GitHub, query: str, *, since: str = "", kinds: tuple[str, ...] = ("issue",)):
+        self._server = server
+        self._since = since
+        kind = "" if len(kinds) > 1 else " is:issue" if kinds == ("issue",) else " is:pr"
+        self._query = f"{query.strip()}{kind}"
+        where = "" if server.api == API else f" at {urlsplit(server.api).netloc}"
+        self.name = f"github search{where} {self._query}{f' since {since}' if since else ''}"
+
+    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+        """From a state (None: from the start) to the end. State: the moment of creation from which to search."""
+        since = (state or {}).get("created") or self._since
+        done, total = 0, None
+        while True:
+            query = f"{self._query} created:>={since}" if since else self._query
+            newest, read = since, 0
+            for number in range(1, SEARCH_LIMIT // PER_PAGE + 1):
+                count, rows = self._page(query, number)
+                total = count if total is None else total
+                read += len(rows)
+                done += len(rows)
+                newest = max([newest, *(str(row.get("created_at") or "") for row in rows)])
+                finished = not rows or read >= count
+                reports = [self._server.gathered(row) for row in rows]
+                yield Page(reports, {"created": newest}, finished=finished, done=done, of=max(total, done))
+                if finished:
+                    return
+            if newest <= since:
+                raise CorpusError(
+                    f"{self._server.client.service}: more than {SEARCH_LIMIT} results of one second, {since}; "
+                    "narrow the search"
+                )
+            # the reports of that very second come again, and are the same
+            since = newest
+
+    def _page(self, query: str, number: int) -> tuple[int, list[dict[str, Any]]]:
+        """(how many there are in all, those of one page). Asks again while the server says that it ran out of time."""
+        from github import GithubException
+
+        client = self._server.client
+        asked = {"q": query, "sort": "created", "order": "asc", "per_page": PER_PAGE, "page": number}
+        for attempt in range(4):
+            try:
+                _, found = self._server.parser.requester.requestJsonAndCheck("GET", "/search/issues", parameters=asked)
+            except GithubException as error:
+                said = str(error.data.get("message", ""))[:200] if isinstance(error.data, dict) else ""
+                says = f" ({said})" if said else ""
+                raise Refused(
+                    f"{client.service}: the search answered with status {error.status}{says}; check the query",
+                    error.status,
+                ) from None
+            if not found.get("incomplete_results"):
+                return int(found.get("total_count", 0)), found.get("items") or []
+            client.wait(5.0 * 2**attempt, "the search ran out of time")
+        raise CorpusError(f"{client.service}: the search runs out of time again and again; narrow it")
+
+
+def _gathered(issue: Issue, raw: dict[str, Any], etag: str, asked: str) -> Gathered:
+    place = _PAGE.match(issue.html_url or issue.url or "")
+    if place is None:
+        raise CorpusError(f"{issue.html_url}: is no address of an issue; check that --api leads to a GitHub server")
+    created = issue.created_at
+    kept = _reduced(raw)
+    report = Report(
+        id=f"{place[1]}#{place[2]}",
+        url=issue.html_url,
+        source="github",
+        date=created.date().isoformat() if created else None,
+        title=issue.title or "",
+        body=(issue.body or "").replace("\r\n", "\n"),
+        kind="pull" if raw.get("pull_request") else "issue",
+        tags=tuple(label.name for label in issue.labels),
+        author=(raw.get("user") or {}).get("login") or "",
+    )
+    return Gathered(report, kept, digest_of(kept), etag, asked, "github")
+
+
+def _reduced(raw: dict[str, Any]) -> bytes:
+    """An issue as the server gave it, without what identifies people beyond the name and page of its author."""
+    kept: dict[str, Any] = {name: raw[name] for name in _KEPT if name in raw}
+    kept["labels"] = [label.get("name") for label in raw.get("labels") or () if isinstance(label, dict)]
+    if raw.get("pull_request"):
+        kept["pull_request"] = {name: raw["pull_request"].get(name) for name in ("url", "html_url", "merged_at")}
+    if raw.get("milestone"):
+        kept["milestone"] = {"title": raw["milestone"].get("title")}
+    user = raw.get("user")
+    kept["user"] = {"login": user.get("login"), "html_url": user.get("html_url")} if user else None
+    return json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
+
+
+def _left(links: dict[str, str], size: int) -> int:
+    """How many reports follow a page, by the number of the last page; that one is taken for half full."""
+    last = re.search(r"[?&]page=(\d+)", links.get("last", ""))
+    return max(0, (int(last[1]) - 1) * size - size // 2) if last else 0
+
+
+def _pygithub(server: GitHub) -> Github:
+    """PyGithub, its connection replaced by our client. The replacement is of the class, so it is undone at once."""
+    import github
+    from github import Auth
+    from github.Requester import Requester
+
+    class Connection:
+        """What PyGithub takes for a connection; a request is one get() of ours."""
+
+        def __init__(self, host: str, port: int | None = None, **unused: Any):
+            self.host, self.port = host, port
+            self._sent: tuple[str, dict[str, str]] = ("", {})
+
+        def request(self, verb: str, url: str, input: Any, headers: dict[str, str], stream: bool = False) -> None:
+            if verb != "GET":
+                raise CorpusError(f"{verb} {url}: only reading is allowed")
+            parts = urlsplit(server.api)
+            self._sent = (f"{parts.scheme}://{parts.netloc}{url}" if url.startswith("/") else url, headers)
+
+        def getresponse(self) -> Reply:
+            url, headers = self._sent
+            lane = "search" if "/search/" in urlsplit(url).path else "core"
+            # a refused search is PyGithub's to explain; our own errors go through as they are
+            answer, _ = server.client.get_json(url, headers=headers, lane=lane, accept=(404, 422))
+            return Reply(answer.status, answer.headers, answer.body.decode("utf-8", "replace"))
+
+        def close(self) -> None:
+            pass
+
+    class Reply:
+        def __init__(self, status: int, headers: Any, text: str):
+            self.status = status
+            self.headers = headers
+            self._text = text
+
+        def getheaders(self) -> Any:
+            return self.headers.items()
+
+        def read(self) -> str:
+            return self._text
+
+        def close(self) -> None:
+            pass
+
+    try:
+        Requester.injectConnectionClasses(Connection, Connection)  # type: ignore[arg-type]
+        return github.Github(
+            auth=Auth.Token(server._token) if server._token else None,
+            base_url=server.api,
+            per_page=PER_PAGE,
+            retry=None,
+            seconds_between_requests=None,
+            seconds_between_writes=None,
+            lazy=True,
+        )
+    finally:
+        Requester.resetConnectionClasses()

@@ -1,0 +1,112 @@
+"""HTML of posts as Markdown: code, logs, lists and links survive, which a reader of bare text loses."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from bs4 import Tag
+
+_BLOCKS = ("p", "div", "section", "article", "table", "tr", "dl", "dt", "dd", "figure")
+_HEADINGS = ("h1", "h2", "h3", "h4", "h5", "h6")
+_SILENT = ("script", "style", "template", "noscript", "button", "form")
+_TIGHT = re.compile(r"\n{3,}")
+
+
+def soup(html: str):
+    """A parsed page or piece of one."""
+    from bs4 import BeautifulSoup
+
+    return BeautifulSoup(html, "html.parser")
+
+
+def markdown(html: str | Tag) -> str:
+    """The Markdown of a post's HTML, without blank lines at its ends."""
+    return _tidy(_blocks(soup(html) if isinstance(html, str) else html))
+
+
+def _tidy(text: str) -> str:
+    """Blank lines in a row become one, but not inside fenced code."""
+    parts = re.split(r"(^```+\n.*?^```+$)", text, flags=re.DOTALL | re.MULTILINE)
+    return "".join(part if place % 2 else _TIGHT.sub("\n\n", part) for place, part in enumerate(parts)).strip("\n ")
+
+
+def _blocks(element: Tag) -> str:
+    return "".join(_piece(child) for child in element.children)
+
+
+def _piece(node) -> str:
+    from bs4.element import NavigableString, PreformattedString, Tag
+
+    if isinstance(node, PreformattedString):  # comments, declarations
+        return ""
+    if isinstance(node, NavigableString):
+        return re.sub(r"\s+", " ", str(node))
+    if not isinstance(node, Tag) or node.name in _SILENT:
+        return ""
+    name = node.name
+    if name == "pre":
+        return _fenced(node.get_text())
+    if name == "code":
+        return _code(node.get_text())
+    if name == "br":
+        return "\n"
+    if name == "hr":
+        return "\n\n---\n\n"
+    if name == "img":
+        return f"![{node.get('alt') or ''}]({node.get('src') or ''})"
+    inner = _blocks(node)
+    if name == "a":
+        target = node.get("href")
+        text = inner.strip()
+        return f"[{text}]({target})" if target and text and text != target else inner
+    if name in ("strong", "b"):
+        return _marked(inner, "**")
+    if name in ("em", "i"):
+        return _marked(inner, "*")
+    if name in _HEADINGS:
+        return f"\n\n{'#' * int(name[1])} {inner.strip()}\n\n"
+    if name == "li":
+        return _item(node, inner)
+    if name in ("ul", "ol"):
+        return f"\n\n{inner.strip(chr(10))}\n\n"
+    if name == "blockquote":
+        quoted = "\n".join(f"> {line}".rstrip() for line in _tidy(inner).split("\n"))
+        return f"\n\n{quoted}\n\n"
+    if name in ("td", "th"):
+        return f"{inner.strip()} "
+    if name in _BLOCKS:
+        return f"\n\n{inner.strip()}\n\n"
+    return inner
+
+
+def _item(node: Tag, inner: str) -> str:
+    parent = node.parent
+    mark = "-"
+    if parent is not None and parent.name == "ol":
+        mark = f"{1 + sum(1 for _ in node.find_previous_siblings('li'))}."
+    first, *others = _tidy(inner).split("\n")
+    return "\n".join([f"{mark} {first}", *(f"   {line}".rstrip() for line in others)]) + "\n"
+
+
+def _fenced(text: str) -> str:
+    fence = "```"
+    while fence in text:
+        fence += "`"
+    return f"\n\n{fence}\n{text.strip(chr(10))}\n{fence}\n\n"
+
+
+def _code(text: str) -> str:
+    if "\n" in text.strip("\n"):
+        return _fenced(text)
+    fence = "`"
+    while fence in text:
+        fence += "`"
+    room = " " if text.startswith("`") or text.endswith("`") else ""
+    return f"{fence}{room}{text}{room}{fence}" if text else ""
+
+
+def _marked(inner: str, mark: str) -> str:
+    text = inner.strip()
+    return f"{mark}{text}{mark}" if text and "\n\n" not in text else inner

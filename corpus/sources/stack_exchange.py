@@ -1,0 +1,262 @@
+"""Questions of Robotics Stack Exchange through the Stack Exchange API 2.3, the migrated ones of ROS Answers included.
+
+A migrated question starts with a logo that links to where it was and ends with `Originally posted by NAME on ROS
+Answers with karma: 21 on 2015-05-20`: both are taken out of the text, the date and the name are believed rather than
+the migration's, and the id on ROS Answers is kept, so that a question counts once wherever it was gathered.
+Documentation: api.stackexchange.com/docs (paging, throttle, wrapper).
+"""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+from collections.abc import Iterable, Iterator
+from datetime import datetime, timedelta, timezone
+from typing import TYPE_CHECKING, Any, NamedTuple
+from urllib.parse import urlsplit
+
+from ..polite import Client, Refused
+from ..report import CorpusError, Report
+from ..store import Asked, Gathered, Page, digest_of
+from .markup import markdown, soup
+
+if TYPE_CHECKING:
+    from bs4 import Tag
+
+API = "https://api.stackexchange.com/2.3"
+SITE = "robotics"
+PAGE_SIZE = 100
+# Beyond it the API wants a key; reading on from the last date never gets there but for one second's posts.
+_LAST_PAGE = 25
+_OLD = re.compile(r"https?://answers\.ros\.org\.?/questions?/(\d+)")
+_FOOTER = re.compile(
+    r"Originally posted by\s+(?P<name>.{1,200}?)\s+on\s+(?P<site>ROS|Gazebo) Answers"
+    r"(?:\s+with karma:\s*-?\d+)?(?:\s+on\s+(?P<date>\d{4}-\d\d-\d\d))?"
+)
+_PASTED = re.compile(r"(?:Original comments\b|Comment by .* on \d{4}-\d\d-\d\d)")
+_THROTTLED = re.compile(r"(\d+) seconds")
+_KEPT = (
+    "question_id", "title", "body", "tags", "creation_date", "last_activity_date", "last_edit_date", "closed_date",
+    "closed_reason", "score", "view_count", "answer_count", "is_answered", "accepted_answer_id", "link",
+    "content_license",
+)  # fmt: skip
+
+
+class Original(NamedTuple):
+    """What a migrated post says of where it came from; all empty when it was never migrated.
+
+    id: on ROS Answers. date: ISO day. text: the body's HTML without logo and footer.
+    """
+
+    id: str
+    name: str
+    date: str
+    text: str
+
+
+class StackExchange:
+    """The API at an address, with a key or none. The quota is 300 requests a day without one, 10,000 with one."""
+
+    def __init__(self, client: Client, api: str = API, key: str = "", site: str = SITE):
+        self.client = client
+        self.api = api.rstrip("/")
+        self.site = site
+        self._key = key
+        if urlsplit(self.api).scheme not in ("http", "https") or not urlsplit(self.api).hostname:
+            raise CorpusError(f"--api {api}: is no address; give one like {API}")
+
+    def get(self, method: str, lane: str, **asked: object) -> dict[str, Any]:
+        """One answer's wrapper. Obeys `backoff`, which also comes with good answers, and the quota."""
+        params = {"site": self.site, **asked}
+        if self._key:
+            params["key"] = self._key
+        for _ in range(4):
+            answer, found = self.client.get_json(f"{self.api}/{method}", params, lane=lane, accept=(400, 404))
+            if found is None:
+                # the API tells of its limits with status 400 and words of its own
+                try:
+                    found = answer.json()
+                except ValueError:
+                    found = {}
+            if not isinstance(found, dict) or not ("items" in found or "error_id" in found):
+                raise CorpusError(f"{self.client.service}: answered with something unforeseen; check --api")
+            if "backoff" in found:
+                self.client.hold(lane, float(found["backoff"]), "it asks for a pause")
+            if "error_id" not in found:
+                if found.get("quota_remaining") == 0:
+                    self._hold_until_tomorrow()
+                return found
+            said = str(found.get("error_message") or "")[:200]
+            if found.get("error_name") != "throttle_violation":
+                raise Refused(
+                    f"{self.client.service}: refused ({found.get('error_name')}: {said}); check what is asked for",
+                    int(found["error_id"]),
+                )
+            seconds = _THROTTLED.search(said)
+            self.client.wait(float(seconds[1]) + 1 if seconds else 60.0, "too many requests came from here")
+        raise CorpusError(f"{self.client.service}: refuses requests again and again; try tomorrow")
+
+    def _hold_until_tomorrow(self) -> None:
+        now = datetime.fromtimestamp(self.client.clock.now(), timezone.utc)
+        tomorrow = (now + timedelta(days=1)).replace(hour=0, minute=0, second=0, microsecond=0)
+        for lane in ("questions", "ids"):
+            self.client.hold(lane, (tomorrow - now).total_seconds(), "the quota of the day is used up")
+
+    def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
+        """Asks for `robotics-se:98659` and the like, a hundred a request. known: (id, anything)."""
+        ids = {id.rpartition(":")[2]: id for id, _ in known}
+        wanted = list(ids)
+        for start in range(0, len(wanted), PAGE_SIZE):
+            part = wanted[start : start + PAGE_SIZE]
+            found = self.get(
+                f"questions/{';'.join(part)}", "ids", filter="withbody", pagesize=PAGE_SIZE, sort="creation"
+            )
+            there = {str(item.get("question_id")): item for item in found["items"]}
+            for number in part:
+                if number in there:
+                    yield Asked(ids[number], "here", gathered(there[number]))
+                else:
+                    yield Asked(ids[number], "gone")
+
+
+class Tagged:
+    """The questions with a tag, posted since a day (`2024-01-01`) or ever, in the order of their posting."""
+
+    def __init__(self, server: StackExchange, tag: str, *, since: str = ""):
+        self._server = server
+        self._tag = tag
+        self._since = since
+        where = "" if server.api == API else f" at {urlsplit(server.api).netloc}"
+        self.name = f"stack-exchange:{server.site} {tag}{where}{f' since {since}' if since else ''}"
+
+    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+        """From a state (None: from the start) to the end. State: the second of the last question's posting."""
+        since = (state or {}).get("since")
+        if since is None and self._since:
+            since = int(datetime.fromisoformat(self._since).replace(tzinfo=timezone.utc).timestamp())
+        page, done = 1, 0
+        while True:
+            asked: dict[str, object] = {"tagged": self._tag} if self._tag else {}
+            if since is not None:
+                asked["fromdate"] = since
+            found = self._server.get(
+                "questions", "questions", **asked, sort="creation", order="asc", page=page, pagesize=PAGE_SIZE,
+                filter="withbody",
+            )  # fmt: skip
+            items = found["items"]
+            done += len(items)
+            newest = max((int(item["creation_date"]) for item in items), default=since)
+            finished = not items or not found.get("has_more")
+            yield Page([gathered(item) for item in items], {"since": newest}, finished=finished, done=done)
+            if finished:
+                return
+            # The questions of that very second come again, and are the same. Were they the whole page, the next page
+            # is the only way on.
+            page = page + 1 if newest == since else 1
+            if page > _LAST_PAGE:
+                raise CorpusError(
+                    f"{self._server.client.service}: more than {_LAST_PAGE * PAGE_SIZE} questions of one second; "
+                    "narrow the tag"
+                )
+            since = newest
+
+
+def gathered(item: dict[str, Any]) -> Gathered:
+    """A question of the API. Raises CorpusError when it is none."""
+    try:
+        number = int(item["question_id"])
+        posted = datetime.fromtimestamp(int(item["creation_date"]), timezone.utc).date().isoformat()
+        body = str(item["body"])
+    except (KeyError, TypeError, ValueError):
+        raise CorpusError("Stack Exchange: an answer holds something that is no question; check --api") from None
+    original = original_of(body)
+    owner = item.get("owner") or {}
+    report = Report(
+        id=f"robotics-se:{number}",
+        url=item.get("link") or f"https://robotics.stackexchange.com/questions/{number}",
+        source="robotics-se",
+        date=original.date or posted,
+        title=html.unescape(str(item.get("title") or "")),
+        body=markdown(original.text),
+        kind="question",
+        tags=tuple(item.get("tags") or ()),
+        author=original.name or html.unescape(str(owner.get("display_name") or "")),
+        licence=licence(item.get("content_license")),
+        same_as=f"ros-answers:{original.id}" if original.id else "",
+    )
+    kept = {name: item[name] for name in _KEPT if name in item}
+    kept["owner"] = {name: owner[name] for name in ("display_name", "link") if name in owner}
+    raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
+    # views and votes change all the time, and change no report
+    steady = {name: kept[name] for name in ("title", "body", "tags", "owner", "content_license") if name in kept}
+    return Gathered(report, raw, digest_of(json.dumps(steady, sort_keys=True).encode()), origin="stack-exchange")
+
+
+def original_of(body: str) -> Original:
+    """What the HTML of a body says of where it was posted first."""
+    page = soup(body)
+    footers = [(block, found) for block in _leaves(page) if (found := _FOOTER.search(_text(block)))]
+    if not footers:
+        return Original("", "", "", body)
+    block, found = footers[-1]
+    id = ""
+    if found["site"] == "ROS":
+        links = [*page.find_all(_is_logo), *block.find_all("a"), *_heading_link(page)]
+        ids = [_OLD.match(str(link.get("href") or "")) for link in links]
+        id = next((match[1] for match in ids if match), "")
+    _cut(block)
+    for image in page.find_all(_is_logo):
+        image.extract()
+    return Original(id, " ".join(found["name"].split()), found["date"] or "", str(page))
+
+
+def licence(name: object) -> str:
+    """`CC BY-SA 4.0` as SPDX names it."""
+    return str(name or "").strip().replace(" ", "-")
+
+
+def _leaves(page: Tag) -> list[Tag]:
+    """The blocks that hold no other block; the page itself where it has none."""
+    blocks = page.find_all(["p", "div", "li"])
+    return [block for block in blocks if block.find(["p", "div", "li"]) is None] or [page]
+
+
+def _text(block: Tag) -> str:
+    return " ".join(block.get_text().split())
+
+
+def _is_logo(tag: Tag) -> bool:
+    """The image at the head of a migrated post, in the link around it where there is one."""
+    if tag.name == "img":
+        alt = str(tag.get("alt") or "").lower()
+        return "answers logo" in alt and not (tag.parent is not None and tag.parent.name == "a")
+    return tag.name == "a" and any("answers logo" in str(i.get("alt") or "").lower() for i in tag.find_all("img"))
+
+
+def _heading_link(page: Tag) -> list[Tag]:
+    """A link that stands before all text: the logo's, where the image itself was lost."""
+    first = page.find("a", href=_OLD)
+    if first is None or any(str(text).strip() for text in first.find_all_previous(string=True)):
+        return []
+    return [first]
+
+
+def _cut(block: Tag) -> None:
+    """Takes out a footer, with the score after it, the rule before it, and the comments that were pasted below."""
+    following = [node for node in block.find_next_siblings() if node.name]
+    for place, node in enumerate(following):
+        text = _text(node)
+        if _PASTED.match(text):
+            for gone in following[place:]:
+                gone.extract()
+            break
+        if node.name == "hr" or text.startswith("Post score:"):
+            node.extract()
+    before = block.find_previous_sibling()
+    if before is not None and before.name == "hr":
+        before.extract()
+    start = re.search(r"(?:<a[^>]*>\s*)?Originally posted", block.decode_contents())
+    rest = soup(block.decode_contents()[: start.start()] if start else "")
+    block.clear()
+    block.append(rest)
