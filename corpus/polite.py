@@ -13,7 +13,7 @@ import logging
 import random
 import re
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from datetime import datetime, timedelta, timezone
 from email.utils import parsedate_to_datetime
 from pathlib import Path
@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 from urllib.parse import urlencode, urljoin, urlsplit, urlunsplit
 
 import requests
+from urllib3.exceptions import DecodeError, HTTPError, ReadTimeoutError
 
 from .report import CorpusError
 
@@ -287,7 +288,7 @@ class Client:
             target.seek(0)
             target.truncate()
         try:
-            for chunk in response.iter_content(_CHUNK):
+            for chunk in _chunks(response):
                 size += len(chunk)
                 if target is not None:
                     target.write(chunk)
@@ -297,10 +298,10 @@ class Client:
                     raise _Fault("sends its answer too slowly")
                 if size > _LARGEST:
                     raise _Fault(f"sends more than {_LARGEST >> 20} MB")
-        except requests.exceptions.ContentDecodingError:
+        except (requests.exceptions.ContentDecodingError, DecodeError):
             raise _Fault("sent a body that cannot be unpacked") from None
-        except (requests.RequestException, OSError) as error:
-            stalled = isinstance(error, requests.Timeout) or "timed out" in str(error)
+        except (requests.RequestException, HTTPError) as error:
+            stalled = isinstance(error, requests.Timeout | ReadTimeoutError) or "timed out" in str(error)
             raise _Fault("sends its answer too slowly" if stalled else "ended its answer early") from None
         promised = response.headers.get("content-length", "")
         # urllib3 before 2 does not compare; tell() counts bytes as they came, before unpacking
@@ -341,6 +342,16 @@ class Client:
         if answer.status == 429 or _SECONDARY_WORDS.search(answer.body[:4000].decode("utf-8", "replace")):
             return _SECONDARY * 2**before * random.uniform(1.0, 1.25)
         return None
+
+
+def _chunks(response: requests.Response) -> Iterator[bytes]:
+    """A body as it arrives. requests itself waits for whole chunks, so a body that drips would never be given up."""
+    read = getattr(response.raw, "read1", None)
+    if read is None:  # urllib3 before 2
+        yield from response.iter_content(1 << 10)
+        return
+    while chunk := read(_CHUNK, decode_content=True):
+        yield chunk
 
 
 class _Fault(Exception):

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 _BLOCKS = ("p", "div", "section", "article", "table", "tr", "dl", "dt", "dd", "figure")
 _HEADINGS = ("h1", "h2", "h3", "h4", "h5", "h6")
 _SILENT = ("script", "style", "template", "noscript", "button", "form")
-_TIGHT = re.compile(r"\n{3,}")
+_TIGHT = re.compile(r"[ \t]*\n(?:[ \t]*\n)+")
 
 
 def soup(html: str):

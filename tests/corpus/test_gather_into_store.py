@@ -15,25 +15,10 @@ from rosimpact.corpus.sources.github import GitHub, Listed, Searched
 from rosimpact.corpus.sources.ros_answers import Archive, ArchivedFiles, Askbot
 from rosimpact.corpus.sources.stack_exchange import StackExchange, Tagged
 from rosimpact.corpus.store import Store
-
 from server import Services, archived, askbot_item, issue, pull, question, stamp
+from waiting import Hours
 
 NAV = "ros-navigation/navigation2"
-
-
-class Hours:
-    """A clock whose waits take no time."""
-
-    def __init__(self, now: float = 1_700_000_000.0):
-        self.time = now
-        self.slept: list[float] = []
-
-    def now(self) -> float:
-        return self.time
-
-    def sleep(self, seconds: float) -> None:
-        self.slept.append(seconds)
-        self.time += seconds
 
 
 @pytest.fixture
