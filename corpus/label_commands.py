@@ -103,3 +103,34 @@ def _login() -> str:
 
 def _line(text: str) -> str:
     return " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
+
+
+def stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
+    """Prints the numbers of labels, and draws them into a folder. Returns the exit status."""
+    return told(lambda: _stats(labels, reports, format, plots))
+
+
+def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
+    if format not in FORMATS:
+        raise CorpusError(f"--format {format}: unknown; choose text or json")
+    from .labelling import current_labels
+    from .stats import as_json, print_text, stats_of
+    from .store import open_reports, store_path
+
+    file = labels or LABELS_FILE
+    if not file.exists():
+        raise CorpusError(f"{file}: is not there; give a labels file with --labels")
+    found = list(current_labels(file).values())
+    path = store_path(reports)
+    texts = open_reports(path) if reports is not None or path.exists() else None
+    counted = stats_of(found, texts)
+    if format == "json":
+        print(as_json(counted))
+    else:
+        print_text(counted)
+    if plots is not None:
+        from .plots import draw
+
+        written = draw(counted, plots)
+        say(f"{len(written)} plots in {plots}")
+    return 0
