@@ -172,3 +172,23 @@ def stats(
     from . import label_commands
 
     raise typer.Exit(label_commands.stats(labels, reports, format, plots))
+
+
+import_app = typer.Typer(
+    help="Other studies' bug records, mapped to labels.", no_args_is_help=True, rich_markup_mode=None
+)
+app.add_typer(import_app, name="import")
+
+
+@import_app.command("robust")
+def import_robust(
+    folder: Annotated[Path, typer.Argument(help="A clone of github.com/robust-rosin/robust.", metavar="DIR")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Write what has a label to this file, as labels.")
+    ] = None,
+    format: Annotated[str, typer.Option("--format", "-f", help="text counts; json tells of every record.")] = "text",
+) -> None:
+    """Map ROBUST's bug records to labels, as far as their codes tell, and say how sure that is."""
+    from . import label_commands
+
+    raise typer.Exit(label_commands.import_robust(folder, output, format))

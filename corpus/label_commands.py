@@ -134,3 +134,33 @@ def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path |
         written = draw(counted, plots)
         say(f"{len(written)} plots in {plots}")
     return 0
+
+
+def import_robust(folder: Path, output: Path | None, format: str) -> int:
+    """Prints what ROBUST's records map to, and writes those with a label to a file. Returns the exit status."""
+    return told(lambda: _import_robust(folder, output, format))
+
+
+def _import_robust(folder: Path, output: Path | None, format: str) -> int:
+    if format not in FORMATS:
+        raise CorpusError(f"--format {format}: unknown; choose text or json")
+    from .report import write_rows
+    from .robust import CONFIDENCES, read_robust, rows_of, summary
+
+    records = read_robust(folder)
+    say(records.licence)
+    for path, fault in records.unreadable:
+        say(f"{path}: passed over: {fault}")
+    if format == "json":
+        import msgspec
+
+        print(msgspec.json.format(msgspec.json.encode(records.mapped), indent=1).decode())
+    else:
+        print(f"{'':16}{''.join(f'{name:>10}' for name in CONFIDENCES)}")
+        for name, counts in summary(records.mapped).items():
+            print(f"{name:16}{''.join(f'{counts[level]:>10,}' for level in CONFIDENCES)}")
+        print(f"{len(records.mapped):,} records")
+    if output is not None:
+        written = write_rows(output, rows_of(records.mapped))
+        say(f"{output}: {written:,} labels; texts come with `rosimpact corpus hydrate --labels {output}`")
+    return 0
