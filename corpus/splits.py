@@ -1,0 +1,88 @@
+"""Splits of the corpus: folds grouped by repository, and a split by time. The same input gives the same split.
+
+No repository stands on both sides, since reports of one project share words, people and faults. Reports that belong to
+no repository are groups of their own.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from .report import repository_of
+
+FOLDS = 5
+SEED = 20260822
+
+
+class Split(NamedTuple):
+    """Places of the rows to train on and to test on, each rising."""
+
+    train: list[int]
+    test: list[int]
+
+
+def group_of(id: str) -> str:
+    """What must not stand on both sides of a split: the repository, or the report itself where there is none."""
+    return repository_of(id) or id
+
+
+def grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED) -> list[int]:
+    """The fold of each row, 0 to folds - 1: no group in two folds, and in each about the same number of every label.
+
+    ids, labels: of the rows, equally long. Large groups are placed first, each where the labels come out most even;
+    the seed decides between equals. Raises ValueError when there are fewer groups than folds.
+    """
+    if len(ids) != len(labels):
+        raise ValueError(f"{len(ids)} ids and {len(labels)} labels; give one label for each id")
+    content: dict[str, Counter[str]] = defaultdict(Counter)
+    for id, label in zip(ids, labels, strict=True):
+        content[group_of(id)][label] += 1
+    if folds < 2 or len(content) < folds:
+        raise ValueError(f"{folds} folds of {len(content)} groups; give 2 to {len(content)}")
+    total = Counter(labels)
+    groups = sorted(content)
+    random.Random(seed).shuffle(groups)
+    groups.sort(key=lambda group: -sum(content[group].values()))
+    filled = [Counter[str]() for _ in range(folds)]
+    fold_of: dict[str, int] = {}
+    for group in groups:
+
+        def unevenness(fold: int, added: Counter[str] = content[group]) -> tuple[float, int]:
+            # What the fold gains in squared shares of each label: rare labels weigh as much as common ones.
+            gain = sum(((filled[fold][x] + n) ** 2 - filled[fold][x] ** 2) / total[x] ** 2 for x, n in added.items())
+            return gain, sum(filled[fold].values())
+
+        fold = min(range(folds), key=unevenness)
+        filled[fold].update(content[group])
+        fold_of[group] = fold
+    return [fold_of[group_of(id)] for id in ids]
+
+
+def grouped_splits(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED) -> list[Split]:
+    """The splits of grouped_folds: each fold once as the test side."""
+    fold_of = grouped_folds(ids, labels, folds, seed)
+    return [
+        Split([i for i, f in enumerate(fold_of) if f != fold], [i for i, f in enumerate(fold_of) if f == fold])
+        for fold in range(folds)
+    ]
+
+
+def time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_day: str) -> Split:
+    """Rows before a day to train on, rows from that day on to test on.
+
+    dates: ISO days; rows without one are on neither side. first_test_day: an ISO day. Rows of the test side whose
+    repository has rows on the train side stay there: that is how a classifier is used on a project it knows.
+    """
+    dated = [(i, date[:10]) for i, date in enumerate(dates) if date and date[:4].isdigit()]
+    if len(ids) != len(dates):
+        raise ValueError(f"{len(ids)} ids and {len(dates)} dates; give one date, or None, for each id")
+    return Split([i for i, day in dated if day < first_test_day], [i for i, day in dated if day >= first_test_day])
+
+
+def unseen(ids: Sequence[str], split: Split) -> list[int]:
+    """The rows of a split's test side whose group is not on its train side."""
+    seen = {group_of(ids[i]) for i in split.train}
+    return [i for i in split.test if group_of(ids[i]) not in seen]
