@@ -269,8 +269,8 @@ def _tell_quota(server: GitHub, count: int, reporter: Reporter) -> None:
     hours = (count - quota.remaining) / max(1, quota.limit)
     cure = "" if server.has_token else "; GITHUB_TOKEN raises it to 5,000"
     reporter.line(
-        f"GitHub: {count:,} reports to ask for, {quota.remaining:,} requests left of {quota.limit:,} an hour: this takes "
-        f"{span(hours * 3600)} at least{cure}"
+        f"GitHub: {count:,} reports to ask for, {quota.remaining:,} requests left of {quota.limit:,} an hour: that is "
+        f"{span(hours * 3600)} or more{cure}"
     )
 
 

@@ -320,9 +320,9 @@ class Store:
     def _put(self, gathered: Gathered, now: float) -> Taken:
         report = gathered.report
         key = report.id.lower()
+        self._own(key)
         if gathered.asked and gathered.asked.lower() != key:
             self._move(gathered.asked.lower(), key)
-        key = self._key(report.id)
         if report.same_as:
             self._db.execute("INSERT OR REPLACE INTO copy VALUES (?, ?)", (key, report.same_as.lower()))
         digest = gathered.digest or digest_of(gathered.raw or msgspec.json.encode(report))
@@ -351,13 +351,18 @@ class Store:
         )
         return Taken(changed=1) if rows and not rows[0][1] else Taken(new=1)
 
+    def _own(self, key: str) -> None:
+        """A source says that a report has this id: it is no former name of another one, though it may have been."""
+        if self._all("SELECT 1 FROM alias WHERE old = ?", (key,)):
+            self._db.execute("DELETE FROM alias WHERE old = ?", (key,))
+            self._db.execute("UPDATE wanted SET key = ? WHERE lower(id) = ?", (key, key))
+
     def _move(self, old: str, key: str) -> None:
         """A report that was known, or asked for, under an old id is the one of another key."""
         if self._all("SELECT 1 FROM report WHERE key = ?", (key,)):
             self._db.execute("DELETE FROM report WHERE key = ?", (old,))
         else:
             self._db.execute("UPDATE report SET key = ? WHERE key = ?", (key, old))
-        self._db.execute("DELETE FROM alias WHERE old = ?", (key,))
         self._db.execute("UPDATE alias SET key = ? WHERE key = ?", (key, old))
         self._db.execute("UPDATE wanted SET key = ? WHERE key = ?", (key, old))
         self._db.execute("INSERT OR REPLACE INTO alias VALUES (?, ?)", (old, key))
@@ -375,6 +380,7 @@ class Store:
                 url = report.url.replace(f"/{old}/", f"/{new}/")
                 packed = zlib.compress(msgspec.json.encode(msgspec.structs.replace(report, id=now_id, url=url)), _LEVEL)
             self._db.execute("UPDATE report SET id = ?, report = ? WHERE key = ?", (now_id, packed, key))
+            self._own(now_id.lower())
             self._move(key, now_id.lower())
 
     def _forget(self, id: str, source: str, now: float) -> int:

@@ -138,6 +138,7 @@ class Listed:
         etag = state.get("etag", "")
         done, total = 0, None
         url = ""
+        last: dict[Any, dict[str, Any]] = {}
         while True:
             url = url or self._address(since)
             answer, rows = self._server.client.get_json(
@@ -146,14 +147,17 @@ class Listed:
             if answer.status == 304:
                 yield Page([], {"since": since, "etag": etag}, finished=True, done=done, of=total)
                 return
-            if not isinstance(rows, list):
+            if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
                 raise CorpusError(f"{self._server.client.service}: answered with no list; check --api")
             etag = ""
-            done += len(rows)
+            # each request starts with the last moment of the one before
+            again, last = last, {row.get("number"): row for row in rows}
+            fresh = [row for row in rows if again.get(row.get("number")) != row]
+            done += len(fresh)
             links = answer.links
             total = done + _left(links, len(rows))
             newest = max((str(row.get("updated_at") or "") for row in rows), default=since)
-            reports = list(self._reports(rows))
+            reports = list(self._reports(fresh))
             moved = self._moved(rows)
             if "next" not in links:
                 state = {"since": since, "etag": answer.headers.get("etag", "")}
@@ -209,6 +213,7 @@ class Searched:
         """From a state (None: from the start) to the end. State: the moment of creation from which to search."""
         since = (state or {}).get("created") or self._since
         done, total = 0, None
+        last: dict[Any, dict[str, Any]] = {}
         while True:
             query = f"{self._query} created:>={since}" if since else self._query
             newest, read = since, 0
@@ -216,10 +221,12 @@ class Searched:
                 count, rows = self._page(query, number)
                 total = count if total is None else total
                 read += len(rows)
-                done += len(rows)
+                again, last = last, {row.get("url"): row for row in rows}
+                fresh = [row for row in rows if again.get(row.get("url")) != row]
+                done += len(fresh)
                 newest = max([newest, *(str(row.get("created_at") or "") for row in rows)])
                 finished = not rows or read >= count
-                reports = [self._server.gathered(row) for row in rows]
+                reports = [self._server.gathered(row) for row in fresh]
                 yield Page(reports, {"created": newest}, finished=finished, done=done, of=max(total, done))
                 if finished:
                     return

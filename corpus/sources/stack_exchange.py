@@ -136,6 +136,7 @@ class Tagged:
         if since is None and self._since:
             since = int(datetime.fromisoformat(self._since).replace(tzinfo=timezone.utc).timestamp())
         page, done = 1, 0
+        last: dict[int, dict[str, Any]] = {}
         while True:
             asked: dict[str, object] = {"tagged": self._tag} if self._tag else {}
             if since is not None:
@@ -145,10 +146,12 @@ class Tagged:
                 filter="withbody",
             )  # fmt: skip
             items = found["items"]
-            done += len(items)
+            again, last = last, {item["question_id"]: item for item in items}
+            fresh = [item for item in items if again.get(item["question_id"]) != item]
+            done += len(fresh)
             newest = max((int(item["creation_date"]) for item in items), default=since)
             finished = not items or not found.get("has_more")
-            yield Page([gathered(item) for item in items], {"since": newest}, finished=finished, done=done)
+            yield Page([gathered(item) for item in fresh], {"since": newest}, finished=finished, done=done)
             if finished:
                 return
             # The questions of that very second come again, and are the same. Were they the whole page, the next page

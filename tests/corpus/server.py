@@ -195,6 +195,7 @@ class Services:
     def _handler(services) -> type[BaseHTTPRequestHandler]:
         class Handler(BaseHTTPRequestHandler):
             protocol_version = "HTTP/1.1"
+            wbufsize = -1  # head and body leave together, or each answer takes 40 ms
 
             def do_GET(self) -> None:
                 parts = urlsplit(self.path)

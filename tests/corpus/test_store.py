@@ -1,0 +1,206 @@
+"""The store: one file, read as a stream of reports whoever else has it open, that says what it cannot do."""
+
+from __future__ import annotations
+
+import itertools
+import sqlite3
+import threading
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rosimpact.corpus.report import CorpusError, Report, write_rows
+from rosimpact.corpus.store import Gathered, Page, Store, open_reports, store_path
+
+NAMES = ("a/b#1", "A/b#2", "a/c#1", "a/b#3")
+
+
+def report(id: str, body: str = "text", **more) -> Report:
+    source = "github" if "#" in id else id.partition(":")[0]
+    return Report(id, f"https://example.org/{id}", source, "2024-01-01", "title", body, **more)
+
+
+@pytest.fixture
+def path(tmp_path) -> Path:
+    return tmp_path / "data" / "corpus.sqlite"
+
+
+def test_a_store_and_a_file_give_the_same_reports(path, tmp_path):
+    reports = [report("a/b#1", tags=("bug",)), report("ros-answers:7", author="Ann", licence="CC-BY-SA-3.0")]
+    with Store(path) as store:
+        store.put([Gathered(one) for one in reports])
+    write_rows(tmp_path / "corpus.jsonl", reports)
+    assert list(open_reports(path)) == list(open_reports(tmp_path / "corpus.jsonl")) == reports
+
+
+def test_where_the_store_is(monkeypatch, tmp_path):
+    assert store_path(Path("x.sqlite"), {"ROSIMPACT_CORPUS": "/y"}) == Path("x.sqlite")
+    assert store_path(None, {"ROSIMPACT_CORPUS": str(tmp_path / "y.sqlite")}) == tmp_path / "y.sqlite"
+    monkeypatch.setattr("platformdirs.user_data_dir", lambda name, **more: str(tmp_path / name))
+    assert store_path(None, {}) == tmp_path / "rosimpact" / "corpus.sqlite"
+
+
+def test_a_page_is_written_with_its_state_or_not_at_all(path):
+    with Store(path) as store:
+        store.take("job", Page([Gathered(report("a/b#1"))], {"after": 1}))
+
+        class Broken(Report, frozen=True):
+            @property
+            def source(self) -> str:  # type: ignore[override]
+                raise RuntimeError("a fault in the middle of a page")
+
+        with pytest.raises(Exception, match=r".*"):
+            store.take("job", Page([Gathered(report("a/b#2")), None], {"after": 2}))  # type: ignore[list-item]
+        assert [one.id for one in store.reports()] == ["a/b#1"]
+        assert store.state("job") == {"after": 1}
+
+
+def test_ids_of_github_are_the_same_in_any_case(path):
+    with Store(path) as store:
+        assert store.put([Gathered(report("ANYbotics/x#1"))]).new == 1
+        assert store.put([Gathered(report("anybotics/x#1", body="edited"))]).changed == 1
+        assert [one.body for one in store.reports()] == ["edited"]
+
+
+def test_what_is_the_same_is_not_written_anew(path):
+    ticks = itertools.count(1.0)
+    with Store(path, clock=lambda: next(ticks)) as store:
+        store.put([Gathered(report("a/b#1"))])
+        assert store.put([Gathered(report("a/b#1"))]).same == 1
+        assert store._all("SELECT first, checked, changed FROM report") == [(1.0, 2.0, 1.0)]
+
+
+def test_one_reads_while_another_writes(path):
+    with Store(path) as writer:
+        writer.put([Gathered(report(f"a/b#{n}")) for n in range(500)])
+        reader = open_reports(path)
+        first = next(reader)
+        writer.put([Gathered(report(f"a/c#{n}")) for n in range(500)])
+        assert len([first, *reader]) == 500, "a reader sees what was there when it began"
+
+
+def test_many_write_at_once(path):
+    Store(path).close()
+
+    def write(name: str) -> None:
+        with Store(path) as store:
+            for n in range(30):
+                store.take(name, Page([Gathered(report(f"{name}/x#{n}"))], {"after": n}))
+
+    threads = [threading.Thread(target=write, args=(f"w{n}",)) for n in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    with Store(path) as store:
+        assert len(list(store.reports())) == 120
+        assert [store.state(f"w{n}") for n in range(4)] == [{"after": 29}] * 4
+
+
+def test_many_make_the_file_at_once(path):
+    faults: list[Exception] = []
+
+    def make() -> None:
+        try:
+            Store(path).close()
+        except Exception as error:
+            faults.append(error)
+
+    threads = [threading.Thread(target=make) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert faults == []
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"SQLite format 3\0" + b"\xff" * 5000, "is damaged or no store"),
+        (b"something else entirely, and long enough to be a page" * 100, "is damaged or no store"),
+    ],
+)
+def test_a_file_that_is_no_store_is_left_alone(path, content, message):
+    path.parent.mkdir()
+    path.write_bytes(content)
+    with pytest.raises(CorpusError, match=message):
+        Store(path)
+    assert path.read_bytes() == content
+
+
+def test_a_database_of_something_else_is_left_alone(path):
+    path.parent.mkdir()
+    with sqlite3.connect(path) as db:
+        db.execute("CREATE TABLE theirs (x)")
+    db.close()
+    with pytest.raises(CorpusError, match="is a database of something else"):
+        Store(path)
+    with sqlite3.connect(path) as db:
+        assert db.execute("SELECT name FROM sqlite_master").fetchall() == [("theirs",)]
+    db.close()
+
+
+def test_a_store_of_a_newer_version_is_not_touched(path):
+    Store(path).close()
+    with sqlite3.connect(path) as db:
+        db.execute("PRAGMA user_version = 99")
+    db.close()
+    with pytest.raises(CorpusError, match=r"made by a newer rosimpact \(layout 99\); update rosimpact"):
+        Store(path)
+
+
+def test_a_folder_cannot_be_a_store(tmp_path):
+    with pytest.raises(CorpusError, match="cannot be"):
+        Store(tmp_path)
+
+
+def test_reports_of_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(CorpusError, match=r"cannot be read: No such file .*; give a JSON Lines file, or a store"):
+        next(open_reports(tmp_path / "none"))
+
+
+def test_moves_there_and_back_lose_nothing(path):
+    with Store(path) as store:
+        store.put([Gathered(report("old/x#1")), Gathered(report("old/x#2"))])
+        store.take("job", Page([Gathered(report("new/x#1"), asked="old/x#1")], {}, moved=("old/x", "new/x")))
+        assert [one.id for one in store.reports()] == ["new/x#1", "new/x#2"]
+        assert store.report("old/x#2") == store.report("new/x#2")
+        store.take("job", Page([Gathered(report("old/x#1"), asked="new/x#1")], {}, moved=("new/x", "old/x")))
+        assert [one.id for one in store.reports()] == ["old/x#1", "old/x#2"]
+        assert store.report("new/x#1") == store.report("old/x#1")
+
+
+STEPS = st.one_of(
+    st.tuples(st.just("put"), st.sampled_from(NAMES), st.sampled_from("xyz")),
+    st.tuples(st.just("move"), st.sampled_from(NAMES), st.sampled_from(NAMES)),
+    st.tuples(st.just("want"), st.sampled_from(NAMES), st.none()),
+    st.tuples(st.just("forget"), st.sampled_from(NAMES), st.none()),
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(STEPS, max_size=12))
+def test_whatever_happens_to_ids_no_report_is_there_twice(tmp_path_factory, steps):
+    """Posted, moved, labelled, deleted in any order: ids stay unique, every text that was put last can be read by the
+    id it was put under, and a store that is opened again says the same."""
+    path = tmp_path_factory.mktemp("s") / "corpus.sqlite"
+    with Store(path) as store:
+        for what, id, other in steps:
+            if what == "put":
+                store.put([Gathered(report(id, body=other))])
+                found = store.report(id)
+                assert found is not None and found.body == other
+            elif what == "move":
+                store.put([Gathered(report(other), asked=id)])
+                assert store.report(id) == store.report(other) is not None
+            elif what == "want":
+                store.want([id])
+            else:
+                store.forget([(id, "github")])
+                assert store.report(id) is None
+        before = list(store.reports())
+        ids = [one.id.lower() for one in before]
+        assert len(ids) == len(set(ids))
+    assert list(open_reports(path)) == before
