@@ -59,7 +59,7 @@ class Services:
         self.incomplete = 0
         self.backoff: int | None = None
         self.after: Callable[[Asked], None] = lambda asked: None
-        self._server = ThreadingHTTPServer(("127.0.0.1", 0), self._handler())
+        self._server = _Server(("127.0.0.1", 0), self._handler())
         self._server.daemon_threads = True
         self._thread = threading.Thread(target=self._server.serve_forever, args=(0.02,), daemon=True)
         self._thread.start()
@@ -238,6 +238,11 @@ class Services:
                 pass
 
         return Handler
+
+
+class _Server(ThreadingHTTPServer):
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Who asked was killed, or has given up: nothing that a test need print."""
 
 
 def _json(value: Any, status: int = 200) -> tuple[int, dict[str, str], bytes]:
