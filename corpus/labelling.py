@@ -124,7 +124,7 @@ def offered(
         if label is None:
             return False
         if mode == "second":
-            return len(label.annotators) == 1 and label.decided == "single" and id not in own
+            return len(label.annotators) == 1 and label.decided in ("single", "imported") and id not in own
         return label.decided == DISPUTED
 
     return [report for report in reports if open_for(report.id)]

@@ -73,13 +73,26 @@ def grouped_splits(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS
 def time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_day: str) -> Split:
     """Rows before a day to train on, rows from that day on to test on.
 
-    dates: ISO days; rows without one are on neither side. first_test_day: an ISO day. Rows of the test side whose
-    repository has rows on the train side stay there: that is how a classifier is used on a project it knows.
+    dates: as day_of reads them; rows without one are on neither side. first_test_day: an ISO day. The test side keeps
+    reports of repositories that the train side knows, since that is how a classifier is used; `unseen` has the others.
+    Raises ValueError when the lists differ in length.
     """
-    dated = [(i, date[:10]) for i, date in enumerate(dates) if date and date[:4].isdigit()]
     if len(ids) != len(dates):
         raise ValueError(f"{len(ids)} ids and {len(dates)} dates; give one date, or None, for each id")
+    dated = [(i, day) for i, date in enumerate(dates) if (day := day_of(date))]
     return Split([i for i, day in dated if day < first_test_day], [i for i, day in dated if day >= first_test_day])
+
+
+def day_of(date: str | None) -> str:
+    """The ISO day of a date, written as `2019-03-10`, with or without a time, or as `Mar 10, 2019`; else empty."""
+    from datetime import datetime
+
+    for text, form in (((date or "")[:10], "%Y-%m-%d"), ((date or "").strip(), "%b %d, %Y")):
+        try:
+            return datetime.strptime(text, form).date().isoformat()
+        except ValueError:
+            continue
+    return ""
 
 
 def unseen(ids: Sequence[str], split: Split) -> list[int]:

@@ -99,8 +99,9 @@ def test_nobody_reads_second_what_they_read_first(file):
         assert [r.id for r in session.queue] == ["acme/arm#2"]
 
 
-def test_labels_of_others_files_can_be_read_second(file):
-    write_rows(file, [Label("acme/arm#3", *msgspec.structs.astuple(UPDATE), ("library-update",), "single")])
+@pytest.mark.parametrize("decided", ["single", "imported"])
+def test_labels_of_others_files_can_be_read_second(file, decided):
+    write_rows(file, [Label("acme/arm#3", *msgspec.structs.astuple(UPDATE), ("library-update",), decided)])
     said(file, "ann", "second", MISSING)
     assert by_id(file)["acme/arm#3"].annotators == ("library-update", "dependency")
 
@@ -282,7 +283,7 @@ def test_only_the_reports_asked_for():
 
 @pytest.mark.parametrize("seed", range(8))
 def test_whatever_is_pressed_labels_are_what_the_journal_says(file, seed):
-    """Random answers, undos, put-offs and kills by several people: the journal, replayed from nothing, gives the file."""
+    """Random answers, undos, put-offs and kills by several people: the journal, replayed, gives the file."""
     chance = random.Random(seed)
     for _ in range(12):
         mode = chance.choice(["first", "second", "disagreements"])

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.corpus.report import LABELS, read_labels
-from rosimpact.corpus.splits import group_of, grouped_folds, grouped_splits, time_split, unseen
+from rosimpact.corpus.splits import day_of, group_of, grouped_folds, grouped_splits, time_split, unseen
 
 IDS = st.builds(lambda repo, number: f"acme/r{repo}#{number}", st.integers(0, 12), st.integers(1, 9))
 
@@ -55,7 +55,7 @@ def test_by_time():
     ids = ["a/b#1", "a/b#2", "c/d#3", "e/f#4", "g/h#5"]
     dates = ["2020-01-01", "2021-06-01", "2021-06-02", None, "Jul 3, 2013"]
     split = time_split(ids, dates, "2021-06-01")
-    assert split == ([0], [1, 2])
+    assert split == ([0, 4], [1, 2])
     assert unseen(ids, split) == [2]
 
 
@@ -64,3 +64,20 @@ def test_lists_of_different_length_are_refused():
         grouped_folds(["a/b#1"], [])
     with pytest.raises(ValueError, match="one date"):
         time_split(["a/b#1"], [], "2020-01-01")
+
+
+@pytest.mark.parametrize(
+    ("date", "day"),
+    [
+        ("2019-03-10", "2019-03-10"),
+        ("2019-03-10T21:33:53Z", "2019-03-10"),
+        ("Mar 10, 2019", "2019-03-10"),
+        ("Mar 5, 2019", "2019-03-05"),
+        (None, ""),
+        ("", ""),
+        ("yesterday", ""),
+        ("2019", ""),
+    ],
+)
+def test_days(date, day):
+    assert day_of(date) == day
