@@ -22,6 +22,7 @@ from ..store import Asked, Gathered, Page, digest_of
 if TYPE_CHECKING:
     from github import Github
     from github.Issue import Issue
+    from github.Requester import Requester
 
 API = "https://api.github.com"
 PER_PAGE = 100
@@ -60,6 +61,12 @@ class GitHub:
         if self._parser is None:
             self._parser = _pygithub(self)
         return self._parser
+
+    @property
+    def requester(self) -> Requester:
+        """What PyGithub sends its requests with."""
+        own = getattr(self.parser, "requester", None)  # public since PyGithub 2.3
+        return own if own is not None else self.parser._Github__requester  # type: ignore[attr-defined]
 
     def headers(self, etag: str = "") -> dict[str, str]:
         headers = {"Accept": "application/vnd.github+json", "X-GitHub-Api-Version": "2022-11-28"}
@@ -246,7 +253,7 @@ class Searched:
         asked = {"q": query, "sort": "created", "order": "asc", "per_page": PER_PAGE, "page": number}
         for attempt in range(4):
             try:
-                _, found = self._server.parser.requester.requestJsonAndCheck("GET", "/search/issues", parameters=asked)
+                _, found = self._server.requester.requestJsonAndCheck("GET", "/search/issues", parameters=asked)
             except GithubException as error:
                 said = str(error.data.get("message", ""))[:200] if isinstance(error.data, dict) else ""
                 says = f" ({said})" if said else ""
@@ -352,7 +359,6 @@ def _pygithub(server: GitHub) -> Github:
             retry=None,
             seconds_between_requests=None,
             seconds_between_writes=None,
-            lazy=True,
         )
     finally:
         Requester.resetConnectionClasses()
