@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .report import LABELS_FILE, SOURCES, CorpusError, Report
-from .told import say, told
+from .told import any_sign, say, told
 
 FORMATS = ("text", "json")
 
@@ -37,6 +37,7 @@ def _label(
         from .label_screen import need_terminal
 
         need_terminal()
+    any_sign()
     texts = chosen(_reports(reports), sources, repositories)
     if listed:
         found = current_labels(file)
@@ -127,6 +128,7 @@ def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path |
     if format == "json":
         print(as_json(counted))
     else:
+        any_sign()
         print_text(counted)
     if plots is not None:
         from .plots import draw

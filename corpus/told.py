@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from collections.abc import Callable
@@ -36,6 +37,12 @@ def told(work: Callable[[], int], interrupted: str = "interrupted") -> int:
 def say(text: str) -> None:
     """A line for people, on standard error, whatever signs it can show."""
     print(text.encode("utf-8", "backslashreplace").decode("utf-8"), file=sys.stderr)
+
+
+def any_sign() -> None:
+    """Lets standard output show what its encoding cannot say as `?`, so that no text of a report ends a command."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
 
 
 def _failed(message: str) -> int:

@@ -190,6 +190,12 @@ def test_a_hostile_text_does_nothing_to_the_terminal(desk):
     assert b"\x1b]0;" not in at.raw and b"\x07" not in at.raw and "\u202e" not in at.shown
 
 
+def test_a_terminal_that_knows_only_ascii(desk):
+    at = desk(PYTHONIOENCODING="ascii", PYTHONUTF8="0")
+    at.see("label?", "Build stops").press("1").see("kind?").press("q")
+    assert at.end() == 0
+
+
 def test_undo_and_the_next_session_goes_on(desk, tmp_path):
     at = desk()
     at.see("label?").press("5").see("phase?").press("4").see("why").press("one\r").see("1 done")

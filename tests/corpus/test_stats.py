@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
 import sys
 from xml.etree import ElementTree
 
@@ -116,6 +118,18 @@ def test_text_on_a_pipe_has_no_colours_and_cuts_nothing(say, files):
     assert long in said.out
     for part in ("5 labels", "noetic", "2013", "undeclared", "adjudicated", "2 the same, 66.7 %", "analytic", "Wilson"):
         assert part in said.out
+
+
+def test_text_where_only_ascii_can_be_shown(files):
+    command = [sys.executable, "-c", "from rosimpact.impact.cli import main; main()", "corpus", "stats", "--labels"]
+    said = subprocess.run(
+        [*command, str(files / "labels.jsonl")],
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+        capture_output=True,
+        text=True,
+    )
+    assert (said.returncode, said.stderr) == (0, "")
+    assert "4 labels" in said.stdout
 
 
 def test_json(say, files):
