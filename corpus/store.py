@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from .report import CorpusError, Report, read_reports
+from .report import CorpusError, Report, read_reports, repository_of
 
 STORE_VARIABLE = "ROSIMPACT_CORPUS"
 _SCHEMA_VERSION = 1
@@ -340,7 +340,7 @@ class Store:
             (
                 key,
                 report.id,
-                report.source,
+                "github" if repository_of(report.id) else report.source,  # who can be asked for it
                 gathered.origin or "import",
                 zlib.compress(text, _LEVEL),
                 zlib.compress(gathered.raw, _LEVEL) if gathered.raw else None,

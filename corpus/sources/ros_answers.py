@@ -33,6 +33,8 @@ TARBALL = "https://codeload.github.com/ros-infrastructure/answers-archive/tar.gz
 LICENCE = "CC-BY-SA-3.0"
 _FOLDER = "content/question"
 _MAP = "answers/ros-to-robotics.json"
+# A question of the archive that was migrated and will not go away
+_SURELY_THERE = "10010"
 _AT_ONCE = 200
 _ROS = re.compile(r"https?://answers\.ros\.org\.?/")
 _QUESTION = re.compile(r"/questions?/(\d+)")
@@ -90,6 +92,11 @@ class Archive:
             if len(part) == _AT_ONCE:
                 yield self._page(part, copies, count, total)
                 part, copies = [], ()
+        if not count and not state:
+            raise CorpusError(
+                f"{self._place}: holds no questions; give a clone of {ARCHIVE}, on a commit that has `{_FOLDER}`, "
+                "with --archive DIR"
+            )
         yield self._page(part, copies, count, count)._replace(state={}, finished=True)
 
     def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
@@ -163,13 +170,27 @@ class ArchivedFiles:
     def __init__(self, client: Client, address: str = FILES):
         self._client = client
         self._address = address.rstrip("/")
+        self._there = False
 
     def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
         """As Archive.ask()."""
         for id, _ in known:
             number = id.rpartition(":")[2]
-            answer = self._client.get(f"{self._address}/{_FOLDER}/{number}.md", accept=(404, 410))
-            yield _asked_for(id, answer.body, f"{number}.md") if answer.status == 200 else Asked(id, "gone")
+            data = self._file(number)
+            if data is None and not self._there:
+                # that one question is missing means something only where others are there
+                self._there = self._file(_SURELY_THERE) is not None
+                if not self._there:
+                    raise CorpusError(
+                        f"{self._client.service}: is not at {self._address} any more; clone {ARCHIVE} and give it with "
+                        "--archive DIR"
+                    )
+            yield Asked(id, "gone") if data is None else _asked_for(id, data, f"{number}.md")
+
+    def _file(self, number: str) -> bytes | None:
+        answer = self._client.get(f"{self._address}/{_FOLDER}/{number}.md", accept=(404, 410))
+        self._there = self._there or answer.status == 200
+        return answer.body if answer.status == 200 else None
 
 
 class SavedPages:

@@ -367,6 +367,23 @@ def test_single_questions_of_the_archive_come_over_the_network(server, store):
     assert (taken.new, taken.gone) == (1, 2)
 
 
+def test_an_archive_that_has_moved_makes_no_question_gone(server, store):
+    service = ArchivedFiles(client("archive"), f"{server.url}/raw")
+    with pytest.raises(CorpusError, match=r"is not at .*/raw any more; clone .* and give it with --archive DIR"):
+        hydrate(service, "ros-answers", ["ros-answers:7"], store)
+    assert store.kept("ros-answers:7") is None
+
+
+def test_a_text_that_names_another_source_is_asked_for_where_its_id_leads(server, store):
+    """As one of the corpus does: found on ROS Answers, posted on GitHub."""
+    id = "https://api.github.com/repos/rospilot/rospilot/issues/72"
+    import_reports([Report(id, id, "ros-answers", None, "t", "old")], store, frozenset([id]))
+    server.issues["rospilot/rospilot"] = [issue("rospilot/rospilot", 72, body="new")]
+    assert refresh(lambda source, count: github(server), store, ALL).changed == 1
+    found = store.report(id)
+    assert found is not None and found.body == "new"
+
+
 # -- refresh -----------------------------------------------------------------------------------------------------------
 
 

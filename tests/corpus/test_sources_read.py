@@ -159,6 +159,21 @@ def test_a_folder_that_is_no_archive_says_what_to_give(tmp_path):
         Archive(tmp_path)
 
 
+def test_a_tarball_without_questions_says_what_to_give(tmp_path):
+    import tarfile
+
+    with tarfile.open(tmp_path / "archive.tar.gz", "w:gz") as tar:
+        tar.add(__file__, "answers-archive/README.md")
+    with pytest.raises(CorpusError, match=r"holds no questions; give a clone of .* with --archive DIR"):
+        list(Archive(tmp_path / "archive.tar.gz").pages(None))
+
+
+def test_a_tarball_that_is_damaged_says_so(tmp_path):
+    (tmp_path / "archive.tar.gz").write_bytes(b"\x1f\x8b nothing of the kind")
+    with pytest.raises(CorpusError, match="is damaged; delete it, and it is fetched again"):
+        list(Archive(tmp_path / "archive.tar.gz").pages(None))
+
+
 def test_the_archive_lists_more_copies_than_its_questions_name(tmp_path):
     (tmp_path / "content/question").mkdir(parents=True)
     (tmp_path / "content/question/9.md").write_bytes(archived(9))
