@@ -18,19 +18,19 @@ DISTROS = (*ROS1, *ROS2)
 # Words that also stand for something else in a report: these count only where ROS or a distro is plainly meant.
 _AMBIGUOUS = ("electric", "hydro", "jade", "lunar", "ardent", "bouncy", "crystal", "dashing", "galactic", "iron",
               "kinetic", "lyrical", "rolling")  # fmt: skip
-_PLAIN = re.compile(rf"\b({'|'.join(name for name in DISTROS if name not in _AMBIGUOUS)})(?![a-z])", re.IGNORECASE)
-_NAMES = "|".join(_AMBIGUOUS)
-_MEANT = (
-    re.compile(rf"\bros[\s_-]?[12]?[\s:/=_-]*[\"'(]?({_NAMES})(?![a-z])", re.IGNORECASE),
-    re.compile(rf"/opt/ros/({_NAMES})\b", re.IGNORECASE),
-    re.compile(rf"\bros_?distro\W{{0,4}}({_NAMES})\b", re.IGNORECASE),
-    re.compile(rf"\b({_NAMES})[\s_-](?:distro|devel|release|ridley|emys|turtle|hawksbill|ninjemys|morenia|loggerhead|"
-               rf"igloo|irwini|kame|mitten|diademata|geochelone|lut|apalone|tip)", re.IGNORECASE),
-    re.compile(rf"(?:noetic|melodic|indigo|humble|foxy|jazzy|groovy|fuerte|kilted)\s*(?:,|/|and|or|to|vs\.?|->|\+|&)\s*"
-               rf"(?:ros2?\s+)?({_NAMES})\b", re.IGNORECASE),
-    re.compile(rf"\b({_NAMES})\s*(?:,|/|and|or|to|vs\.?|->|\+|&)\s*(?:ros2?\s+)?"
-               rf"(?:noetic|melodic|indigo|humble|foxy|jazzy|groovy|fuerte|kilted)\b", re.IGNORECASE),
-)  # fmt: skip
+_NAMED = re.compile(rf"\b(?:{'|'.join(DISTROS)})(?![a-z])")
+_PLAIN = frozenset(DISTROS) - frozenset(_AMBIGUOUS)
+_NEIGHBOURS = rf"(?:{'|'.join(name for name in DISTROS if name in _PLAIN)})"
+_BETWEEN = r"\s*(?:,|/|and|or|to|vs\.?|->|\+|&)\s*(?:ros ?2?\s+)?"
+_NEAR = 40
+"""How many characters before and after a name are looked at."""
+_BEFORE = re.compile(
+    rf"(?:\bros[\s_-]?[12]?[\s:/=_-]*[\"'(]?|/opt/ros/|\bros_?distro\W{{0,4}}|\b{_NEIGHBOURS}{_BETWEEN})\Z"
+)
+_AFTER = re.compile(
+    r"[\s_-](?:distro|devel|release|ridley|emys|turtle|hawksbill|ninjemys|morenia|loggerhead|igloo|irwini|kame|mitten|"
+    rf"diademata|geochelone|lut|apalone)|{_BETWEEN}{_NEIGHBOURS}\b"
+)
 
 
 def distros_in(text: str) -> tuple[str, ...]:
@@ -39,7 +39,14 @@ def distros_in(text: str) -> tuple[str, ...]:
     Names that are ordinary words too, as `iron` or `rolling`, count only beside ROS, a path of ROS, a branch or
     another distro.
     """
-    found = {match.lower() for match in _PLAIN.findall(text)}
-    for pattern in _MEANT:
-        found.update(match.lower() for match in pattern.findall(text))
+    lowered = text.lower()
+    found: set[str] = set()
+    for match in _NAMED.finditer(lowered):
+        name, start, end = match.group(), match.start(), match.end()
+        if name not in found and (
+            name in _PLAIN
+            or _BEFORE.search(lowered[max(0, start - _NEAR) : start])
+            or _AFTER.match(lowered[end : end + _NEAR])
+        ):
+            found.add(name)
     return tuple(name for name in DISTROS if name in found)
