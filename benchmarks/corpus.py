@@ -132,15 +132,15 @@ def serve(count: int, port) -> None:
     server.serve_forever()
 
 
-def measured(arguments: list[str], environment: dict[str, str]) -> tuple[float, int]:
-    """Wall seconds and peak memory in MB of one `rosimpact` process."""
+def measured(arguments: list[str], environment: dict[str, str]) -> tuple[float, float, int]:
+    """Wall seconds, seconds of CPU and peak memory in MB of one `rosimpact` process."""
     start = time.perf_counter()
     command = [sys.executable, "-c", "from rosimpact.impact.cli import main; main()", *arguments]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, env=environment)
     _, status, usage = os.wait4(process.pid, 0)
     if os.waitstatus_to_exitcode(status) != 0:
         raise SystemExit(f"rosimpact {' '.join(arguments)} failed with status {os.waitstatus_to_exitcode(status)}")
-    return time.perf_counter() - start, usage.ru_maxrss // 1024
+    return time.perf_counter() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss // 1024
 
 
 def paces(store: Path) -> list[float]:
@@ -178,14 +178,16 @@ def main() -> None:
                 else ["stack-exchange", "--tag", "ros2", "--api", f"{address}/2.3"]
             )
         print(f"{args.reports:,} synthetic reports from {args.source}; {os.cpu_count()} cores")
-        took, peak = measured(["corpus", "gather", *what, "--quiet"], environment)
-        print(f"gather      {took:7.1f} s   peak {peak} MB   store {store.stat().st_size / 1e6:.0f} MB")
+        took, cpu, peak = measured(["corpus", "gather", *what, "--quiet"], environment)
+        print(
+            f"gather      {took:7.1f} s   CPU {cpu:6.1f} s   peak {peak} MB   store {store.stat().st_size / 1e6:.0f} MB"
+        )
         print(f"  for each {STEP:,}: {' '.join(f'{pace:.1f}' for pace in paces(store))} s")
-        took, peak = measured(["corpus", "gather", *what, "--quiet"], environment)
-        print(f"again       {took:7.1f} s   peak {peak} MB   nothing new")
+        took, cpu, peak = measured(["corpus", "gather", *what, "--quiet"], environment)
+        print(f"again       {took:7.1f} s   CPU {cpu:6.1f} s   peak {peak} MB   nothing new")
         for suffix in (".jsonl", ".parquet"):
-            took, peak = measured(["corpus", "export", str(Path(scratch, f"out{suffix}"))], environment)
-            print(f"{suffix:<11} {took:7.1f} s   peak {peak} MB")
+            took, cpu, peak = measured(["corpus", "export", str(Path(scratch, f"out{suffix}"))], environment)
+            print(f"{suffix:<11} {took:7.1f} s   CPU {cpu:6.1f} s   peak {peak} MB")
         with Path(scratch, "out.jsonl").open("rb") as file:
             count = sum(1 for _ in file)
         if count != args.reports:

@@ -80,7 +80,7 @@ class Services:
 
     def answer(self, asked: Asked) -> tuple[int, dict[str, str], bytes]:
         """What a request gets when nothing goes wrong."""
-        path = asked.path
+        path = asked.path = asked.path.removeprefix("/api/v3")  # where GitHub Enterprise has its API
         if path == "/rate_limit":
             core = {"limit": 5000, "remaining": self.quota, "reset": 2_000_000_000, "used": 0, "resource": "core"}
             return _json({"resources": {"core": core, "search": core}, "rate": core})

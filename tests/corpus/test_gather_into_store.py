@@ -16,7 +16,7 @@ from rosimpact.corpus.sources.github import GitHub, Listed, Searched
 from rosimpact.corpus.sources.ros_answers import Archive, ArchivedFiles, Askbot
 from rosimpact.corpus.sources.stack_exchange import StackExchange, Tagged
 from rosimpact.corpus.store import Gathered, Store
-from server import Services, archived, askbot_item, issue, pull, question, stamp
+from server import Fault, Services, archived, askbot_item, issue, pull, question, stamp
 from waiting import Hours
 
 NAV = "ros-navigation/navigation2"
@@ -167,6 +167,29 @@ def test_a_search_goes_beyond_the_thousand_results_that_github_gives(server, sto
     assert len(server.asked) == 1
 
 
+def test_a_server_of_github_enterprise(server, store):
+    server.issues[NAV] = [issue(NAV, n, url="https://ghe.example.org") for n in range(1, 131)]
+    hub = GitHub(client(), f"{server.url}/api/v3", "t")
+    gather(Listed(hub, NAV), store)
+    gather(Searched(hub, f"repo:{NAV} transform"), store)
+    assert hub.quota() == (10_000, 5_000)
+    report = store.report(f"{NAV}#130")
+    assert report is not None and report.url == f"https://ghe.example.org/{NAV}/issues/130"
+    assert len(ids(store)) == 130
+
+
+def test_an_issue_that_was_transferred_is_found_where_it_is_now(server, store):
+    server.issues["ros2/rclcpp"] = [issue("ros2/rclcpp", 31, body="moved here")]
+    place = {"Location": f"{server.url}/repos/ros2/rclcpp/issues/31"}
+    server.fail(Fault(301, place))
+    store.want(["ros2/ros2#7"])
+    hydrate(github(server), "github", ["ros2/ros2#7"], store)
+    gather(Listed(github(server), "ros2/rclcpp"), store)
+    assert [(one.id, one.url, one.body) for one in store.reports()] == [
+        ("ros2/ros2#7", "https://github.com/ros2/rclcpp/issues/31", "moved here")
+    ]
+
+
 def test_a_search_that_ran_out_of_time_is_asked_again(server, store):
     server.issues[NAV] = many(NAV, 30)
     server.incomplete = 2
@@ -175,8 +198,6 @@ def test_a_search_that_ran_out_of_time_is_asked_again(server, store):
 
 
 def test_a_search_that_github_cannot_read_says_what_github_said(server, store):
-    from server import Fault
-
     server.fail(Fault(422, body=b'{"message": "Validation Failed"}'))
     with pytest.raises(CorpusError, match=r"status 422 \(Validation Failed\); check the query"):
         gather(Searched(github(server), "repo:("), store)
