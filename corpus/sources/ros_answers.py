@@ -23,6 +23,7 @@ from ..polite import Client, Refused
 from ..report import CorpusError, Report
 from ..store import Asked, Gathered, Page, digest_of
 from .markup import markdown, soup
+from .person import public_name
 
 if TYPE_CHECKING:
     from bs4 import BeautifulSoup, Tag
@@ -308,10 +309,10 @@ def parse_archived(data: bytes, name: str) -> tuple[Gathered, str] | None:
         body=body,
         kind="question",
         tags=tuple(tag.strip() for tag in str(head.get("tags") or "").split(",") if tag.strip()),
-        author=str(head.get("owner_display_name") or ""),
+        author=public_name(head.get("owner_display_name")),
         licence=LICENCE,
     )
-    kept: dict[str, Any] = {key: head[key] for key in _WHOLE if key in head}
+    kept: dict[str, Any] = _named({key: head[key] for key in _WHOLE if key in head})
     kept["answers"] = [_post(answer) for answer in head.get("answers") or () if isinstance(answer, dict)]
     kept["comments"] = [_post(comment) for comment in head.get("comments") or () if isinstance(comment, dict)]
     kept["body_markdown"] = body
@@ -334,7 +335,7 @@ def parse_item(item: dict[str, Any]) -> Gathered:
                      "answer_ids", "accepted_answer_id", "view_count", "score", "closed", "closed_reason")
         if name in item
     }  # fmt: skip
-    kept["author"] = {"username": author.get("username")}
+    kept["author"] = {"username": public_name(author.get("username"))}
     report = Report(
         id=f"ros-answers:{number}",
         url=str(item.get("url") or ""),
@@ -344,7 +345,7 @@ def parse_item(item: dict[str, Any]) -> Gathered:
         body=markdown(str(item.get("text") or item.get("summary") or "")),
         kind="question",
         tags=tuple(str(tag) for tag in item.get("tags") or ()),
-        author=str(author.get("username") or ""),
+        author=public_name(author.get("username")),
         licence=LICENCE,
     )
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
@@ -379,11 +380,17 @@ def parse_page(html: str) -> Gathered | None:
         body=markdown(body),
         kind="question",
         tags=tuple(dict.fromkeys(tag for tag in tags if tag)),
-        author=author,
+        author=public_name(author),
         licence=LICENCE,
     )
     # The page itself shows everybody's pictures and scores: only what the report was read from is kept.
-    kept = {"html": body.decode_contents(), "title": title, "tags": tags, "author": author, "closed": closed}
+    kept = {
+        "html": body.decode_contents(),
+        "title": title,
+        "tags": tags,
+        "author": public_name(author),
+        "closed": closed,
+    }
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
     return Gathered(report, raw, origin="pages")
 
@@ -414,9 +421,15 @@ def _snake(mapping: dict) -> dict[str, Any]:
 
 def _post(post: dict) -> dict[str, Any]:
     post = _snake(post)
-    kept = {key: post[key] for key in _POST if key in post}
+    kept = _named({key: post[key] for key in _POST if key in post})
     comments = [_post(comment) for comment in post.get("comments") or () if isinstance(comment, dict)]
     return {**kept, "comments": comments} if comments else kept
+
+
+def _named(post: dict[str, Any]) -> dict[str, Any]:
+    if "owner_display_name" in post:
+        post["owner_display_name"] = public_name(post["owner_display_name"])
+    return post
 
 
 def _day(stamp: object) -> str | None:

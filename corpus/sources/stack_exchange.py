@@ -20,6 +20,7 @@ from ..polite import Client, Refused
 from ..report import CorpusError, Report
 from ..store import Asked, Gathered, Page, digest_of
 from .markup import markdown, soup
+from .person import public_name
 
 if TYPE_CHECKING:
     from bs4 import Tag
@@ -184,12 +185,12 @@ def gathered(item: dict[str, Any]) -> Gathered:
         body=markdown(original.text),
         kind="question",
         tags=tuple(item.get("tags") or ()),
-        author=original.name or html.unescape(str(owner.get("display_name") or "")),
+        author=public_name(original.name or html.unescape(str(owner.get("display_name") or ""))),
         licence=licence(item.get("content_license")),
         same_as=f"ros-answers:{original.id}" if original.id else "",
     )
     kept = {name: item[name] for name in _KEPT if name in item}
-    kept["owner"] = {name: owner[name] for name in ("display_name", "link") if name in owner}
+    kept["owner"] = {name: public_name(owner[name]) for name in ("display_name", "link") if name in owner}
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
     # views and votes change all the time, and change no report
     steady = {name: kept[name] for name in ("title", "body", "tags", "owner", "content_license") if name in kept}

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.corpus.report import CorpusError
 from rosimpact.corpus.sources.markup import markdown
+from rosimpact.corpus.sources.person import public_name
 from rosimpact.corpus.sources.ros_answers import (
     Archive,
     Askbot,
@@ -62,6 +63,24 @@ def test_code_survives_whatever_it_holds(code):
 @given(st.text(max_size=300))
 def test_any_text_is_some_html(text):
     assert isinstance(markdown(text), str)
+
+
+@pytest.mark.parametrize(
+    ("given", "kept"),
+    [("Ann B", "Ann B"), ("ann@example.org", "ann"), ("ann@home", "ann@home"), ("@ann", "@ann"), (None, "")],
+)
+def test_a_name_that_is_a_mail_address_is_not_kept_as_one(given, kept):
+    assert public_name(given) == kept
+
+
+def test_mail_addresses_as_names_stay_out_of_what_is_kept():
+    found = parse_archived(archived(1).replace(b"fergs\n", b"f@example.org\n"), "1.md")
+    item = parse_item(askbot_item(1, author={"id": 1, "username": "m@example.org"}))
+    asked = gathered(question(1, owner={"display_name": "m@example.org"}))
+    assert found is not None
+    for one in (found[0], item, asked):
+        assert b"example.org" not in one.raw.replace(b"answers.example.org", b"")
+    assert (item.report.author, asked.report.author) == ("m", "m")
 
 
 # -- the archive of ROS Answers ----------------------------------------------------------------------------------------
