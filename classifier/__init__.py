@@ -1,1 +1,3 @@
 """Triage: sends a new bug report to the check that fits it."""
+
+__version__ = "0.1.0"

@@ -10,6 +10,8 @@ from typing import Annotated
 
 import typer
 
+from ..classifier.cli import app as classifier_app
+from ..classifier.cli import triage
 from ..corpus.cli import app as corpus_app
 from ..corpus.study_cli import app as study_app
 
@@ -29,6 +31,8 @@ data_app = typer.Typer(
 app.add_typer(env_app, name="env")
 app.add_typer(data_app, name="data")
 app.add_typer(corpus_app, name="corpus")
+app.add_typer(classifier_app, name="classifier")
+app.command()(triage)
 app.add_typer(study_app, name="study")
 
 

@@ -1,0 +1,279 @@
+"""Training: labelled reports to a model; the same reports give the same model.
+
+One linear model (logistic regression) reads the words of all views and the signs. The annotators' reasons, which are in
+the project's own words, are learnt from too, as short reports of half the weight. Probabilities are calibrated and the
+point below which the model abstains is chosen on reports of repositories that the model in question has not seen.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import warnings
+from collections import Counter
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.sparse import csr_matrix, hstack, vstack
+from sklearn.decomposition import TruncatedSVD
+from sklearn.linear_model import LogisticRegression
+from sklearn.model_selection import StratifiedGroupKFold
+
+from ..corpus.report import LABELS, CorpusError, Report, read_labels, read_reports
+from .features import Signs, Words
+from .model import FORMAT, ClassifierError, Model, packed, packed_lines, softmax
+from .reading import VIEWS, Reading, read, read_reason
+from .signs import DIGEST, SIGNS
+
+FEWEST = 8
+"""Reports that each label in use needs."""
+DIMENSIONS = 48
+"""Of the space in which the nearest reports are sought."""
+SEED = 20
+INNER_FOLDS = 5
+ANSWERED = 0.65
+RIGHT = 0.90
+"""The shares of reports that are answered, and of answers that are right, from which abstaining is chosen."""
+
+Progress = Callable[[str, int, int], None]
+_DAY = re.compile(r"\d{4}-\d\d-\d\d\Z")
+
+
+class Example(NamedTuple):
+    """A labelled report as it is learnt from. twice: whether two annotators read it."""
+
+    report: Report
+    label: str
+    why: str
+    twice: bool
+    reading: Reading
+
+
+class Settings(NamedTuple):
+    """What is learnt from; changed for ablations only."""
+
+    views: tuple[str, ...] = tuple(VIEWS)
+    signs: bool = True
+    reasons: float = 0.5
+    strength: float = 5.0
+
+
+class Linear(NamedTuple):
+    """A fitted linear model. words and signs turn readings into the columns of coefficients (labels × columns)."""
+
+    labels: tuple[str, ...]
+    words: dict[str, Words]
+    signs: Signs | None
+    coefficients: np.ndarray
+    intercept: np.ndarray
+
+    def scores(self, readings: Sequence[Reading]) -> np.ndarray:
+        """One row a report, one column a label."""
+        return np.asarray(_matrix(self.words, self.signs, readings) @ self.coefficients.T) + self.intercept
+
+
+def examples(labels: Path, reports: Path, progress: Progress | None = None) -> list[Example]:
+    """Labelled reports in the order of their ids. Raises ClassifierError when there are too few to learn from."""
+    try:
+        known = {label.id: label for label in read_labels(labels)}
+        texts = {report.id: report for report in read_reports(reports) if report.id in known}
+    except CorpusError as error:
+        raise ClassifierError(str(error)) from None
+    found: list[Example] = []
+    for number, id in enumerate(sorted(texts), 1):
+        report, label = texts[id], known[id]
+        if progress:
+            progress("reading reports", number, len(texts))
+        reading = read(report.title, report.body)
+        found.append(Example(report, label.label, label.why, label.decided != "single", reading))
+    if not found:
+        raise ClassifierError(
+            f"{reports}: holds none of the {len(known)} reports labelled in {labels}; "
+            "gather them with `rosimpact corpus hydrate`, or give the file that belongs to these labels"
+        )
+    counts = Counter(example.label for example in found)
+    few = [label for label, count in counts.items() if count < FEWEST]
+    if len(counts) < 2 or few:
+        say = ", ".join(f"{label} {counts[label]}" for label in LABELS if counts[label])
+        raise ClassifierError(
+            f"{labels}: too few labelled reports with texts ({say}); every label in use needs {FEWEST}, and there must "
+            "be two labels: label more, or leave the rare label out"
+        )
+    if len({example.report.group for example in found}) < 2:
+        raise ClassifierError(
+            f"{reports}: all reports are of one repository; without a second one nothing can be calibrated: add one"
+        )
+    return found
+
+
+def digests(found: Sequence[Example]) -> dict[str, str]:
+    """SHA-256 of the labels and of the texts that were learnt from."""
+    labels, texts = hashlib.sha256(), hashlib.sha256()
+    for example in found:
+        report = example.report
+        labels.update(f"{report.id}\t{example.label}\t{example.why}\n".encode())
+        texts.update(f"{report.id}\t{report.title}\t{report.body}\n".encode("utf-8", "surrogatepass"))
+    return {"labels_digest": labels.hexdigest(), "texts_digest": texts.hexdigest()}
+
+
+def splits(found: Sequence[Example], folds: int, seed: int) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Grouped by repository and stratified by label: pairs of rows to learn from and rows to judge."""
+    groups = [example.report.group for example in found]
+    labels = [example.label for example in found]
+    folds = max(2, min(folds, len(set(groups))))
+    splitter = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # a label with fewer reports than folds is split as well as can be
+        return list(splitter.split(np.zeros(len(found)), labels, groups))
+
+
+def fit(found: Sequence[Example], settings: Settings = Settings()) -> Linear:  # noqa: B008
+    """Fits the linear model. Raises ClassifierError when only one label is left."""
+    readings = [example.reading for example in found]
+    groups = [example.report.group for example in found]
+    homes = len(set(groups))
+    reports = 4 if len(found) >= 400 else 2
+    words = {view: Words(view, reports, min(3, homes)).fit(readings, groups) for view in settings.views}
+    signs = Signs().fit(readings) if settings.signs else None
+    rows = _matrix(words, signs, readings)
+    labels = np.array([example.label for example in found])
+    weights = np.ones(len(found))
+    told = [example for example in found if example.why] if settings.reasons else []
+    if told:
+        rows = vstack([rows, _reasons(words, signs, told)]).tocsr()
+        labels = np.concatenate([labels, [example.label for example in told]])
+        weights = np.concatenate([weights, np.full(len(told), settings.reasons)])
+    present = tuple(label for label in LABELS if label in set(labels))
+    if len(present) < 2:
+        raise ClassifierError(f"only `{present[0]}` is left to learn from in one part of the reports; label more")
+    regression = LogisticRegression(C=settings.strength, class_weight="balanced", max_iter=2_000)
+    regression.fit(rows, labels, sample_weight=weights)
+    order = [list(regression.classes_).index(label) for label in present]
+    coefficients, intercept = regression.coef_, regression.intercept_
+    if len(present) == 2:
+        coefficients, intercept = (
+            np.vstack([-coefficients, coefficients]) / 2,
+            np.array([-intercept[0], intercept[0]]) / 2,
+        )
+    return Linear(present, words, signs, coefficients[order], intercept[order])
+
+
+class Calibration(NamedTuple):
+    """temperature divides the scores; below threshold, a probability, the model abstains."""
+
+    temperature: float
+    threshold: float
+
+
+def calibrate(
+    found: Sequence[Example],
+    settings: Settings = Settings(),
+    seed: int = SEED,
+    step: Callable[[], None] = lambda: None,
+) -> Calibration:
+    """Calibration by grouped cross-validation inside the given reports.
+
+    The temperature is the likeliest one. The threshold is the lowest at which 90 in 100 answers are right, or the one
+    that answers 65 in 100 if that is lower.
+    """
+    present = tuple(label for label in LABELS if label in {example.label for example in found})
+    scores = np.full((len(found), len(present)), -30.0)
+    for learn, judge in splits(found, INNER_FOLDS, seed):
+        model = fit([found[row] for row in learn], settings)
+        part = model.scores([found[row].reading for row in judge])
+        scores[np.ix_(judge, [present.index(label) for label in model.labels])] = part
+        step()
+    truth = np.array([present.index(example.label) for example in found])
+
+    def loss(logarithm: float) -> float:
+        chances = softmax(scores / np.exp(logarithm))[np.arange(len(truth)), truth]
+        return float(-np.log(np.maximum(chances, 1e-12)).mean())
+
+    temperature = float(np.exp(minimize_scalar(loss, bounds=(-2.0, 2.0), method="bounded").x))
+    chances = softmax(scores / temperature)
+    sure = chances.max(axis=1)
+    right = chances.argmax(axis=1) == truth
+    order = np.argsort(-sure, kind="stable")
+    precision = np.cumsum(right[order]) / np.arange(1, len(order) + 1)
+    good = np.flatnonzero(precision >= RIGHT)
+    quantile = float(np.quantile(sure, 1 - ANSWERED))
+    threshold = min(quantile, float(sure[order[good[-1]]])) if len(good) else quantile
+    return Calibration(round(temperature, 6), round(threshold, 6))
+
+
+def train(found: Sequence[Example], seed: int = SEED, progress: Progress | None = None) -> Model:
+    """A model of all the reports given. Raises ClassifierError."""
+    done = [0]
+
+    def step() -> None:
+        done[0] += 1
+        if progress:
+            progress("fitting", done[0], INNER_FOLDS + 1)
+
+    calibration = calibrate(found, seed=seed, step=step)
+    linear = fit(found)
+    step()
+    words = np.concatenate([_idf(linear.words[view]) for view in VIEWS])
+    assert linear.signs is not None
+    rows = _matrix(linear.words, None, [example.reading for example in found])
+    size = max(2, min(DIMENSIONS, rows.shape[1] - 1, len(found) - 1))
+    if rows.shape[1] > size:
+        basis = TruncatedSVD(size, random_state=seed).fit(rows).components_.T
+    else:
+        basis = np.eye(rows.shape[1])
+    vectors = np.asarray(rows @ basis)
+    vectors /= np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+    import sklearn
+
+    from . import __version__
+
+    about = {
+        "format": FORMAT,
+        "signs": DIGEST,
+        "rosimpact": __version__,
+        "scikit-learn": sklearn.__version__,
+        "labels": list(linear.labels),
+        "temperature": calibration.temperature,
+        "threshold": calibration.threshold,
+        "seed": seed,
+        "reports": len(found),
+        "newest": max((date for example in found if _DAY.match(date := example.report.date or "")), default=""),
+        **digests(found),
+    }
+    arrays = {
+        "about": packed(about),
+        "coefficients": linear.coefficients.astype(np.float32),
+        "intercept": linear.intercept,
+        "weights": words.astype(np.float32),
+        "sign means": np.asarray(linear.signs.scaler_.mean_),
+        "sign scales": np.asarray(linear.signs.scaler_.scale_),
+        "projection": basis.astype(np.float16),
+        "vectors": vectors.astype(np.float16),
+        "known": packed([[example.report.id, example.report.url, example.label] for example in found]),
+    }
+    for view in VIEWS:
+        arrays[f"vocabulary {view}"] = packed_lines(list(linear.words[view].vocabulary_))
+    return Model(arrays)
+
+
+def _idf(words: Words) -> np.ndarray:
+    return np.asarray(words.weights_.idf_) if words.vocabulary_ else np.zeros(0)
+
+
+def _matrix(words: dict[str, Words], signs: Signs | None, readings: Sequence[Reading]) -> csr_matrix:
+    parts = [VIEWS[view].weight * words[view].transform(readings) for view in words]
+    if signs is not None:
+        parts.append(csr_matrix(signs.transform(readings)))
+    return csr_matrix(hstack(parts))
+
+
+def _reasons(words: dict[str, Words], signs: Signs | None, told: Sequence[Example]) -> csr_matrix:
+    """The annotators' reasons as rows; they have words only, and no signs."""
+    grams = [read_reason(example.why) for example in told]
+    parts = [VIEWS[view].weight * words[view].transform_grams(row[view] for row in grams) for view in words]
+    if signs is not None:
+        parts.append(csr_matrix((len(told), len(SIGNS))))
+    return csr_matrix(hstack(parts))

@@ -1,0 +1,251 @@
+"""Triage: one report, or a stream of them, to a label, its reasons, reports like it, and the check to run."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import sys
+from collections.abc import Collection, Iterable, Iterator
+from html import unescape
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import urlsplit
+
+from .model import ClassifierError, Known, Model, Reason, Verdict
+from .reading import read
+from .text import DISTROS
+
+GITHUB_API = "ROSIMPACT_GITHUB_API"
+STACK_API = "ROSIMPACT_STACK_EXCHANGE_API"
+"""Environment variables that name other servers than the public ones."""
+
+CHECKS: dict[str, tuple[tuple[str, str], ...]] = {
+    "library-update": (("check", "rosimpact check{targets}"),),
+    "dependency": (("check", "rosimpact check{targets}"),),
+    "inconsistency": (("values", "rosimpact values"), ("graph", "rosimpact graph")),
+    "message-logic": (("logic", "rosimpact logic"),),
+    "other": (),
+}
+"""By label, what looks into such a report: the command it needs, and how it is called. Only what exists is named."""
+
+_ISSUE = re.compile(r"/([\w.-]+)/([\w.-]+)/(?:issues|pull)/(\d+)(?:/.*)?\Z")
+_QUESTION = re.compile(r"/(?:questions|q)/(\d+)(?:/.*)?\Z")
+_DISTRO = re.compile(rf"\b(?:{'|'.join((*DISTROS['ros1'], *DISTROS['ros2']))})\b", re.IGNORECASE)
+_TARGETED = ("kinetic", "lunar", "melodic", "noetic", *DISTROS["ros2"])
+_ADDRESS = re.compile(r"https?://\S+\Z")
+_TIMEOUT = 20.0
+
+
+class Post(NamedTuple):
+    """A report as it came in."""
+
+    id: str
+    title: str
+    body: str
+
+
+class Triage(NamedTuple):
+    """What is said of a report. checks: commands to run next, those that exist."""
+
+    id: str
+    verdict: Verdict
+    reasons: list[Reason]
+    nearest: list[Known]
+    checks: list[str]
+
+
+def triage(model: Model, post: Post, commands: Collection[str]) -> Triage:
+    """Judges a report. commands: those that the command line has."""
+    reading = read(post.title, post.body)
+    verdict = model.verdict(reading)
+    return Triage(
+        post.id,
+        verdict,
+        model.reasons(reading, verdict.label),
+        model.nearest(reading),
+        checks(verdict.label, post, commands),
+    )
+
+
+def checks(label: str, post: Post, commands: Collection[str]) -> list[str]:
+    """The commands that look into a report of this label, with the distros it names as targets."""
+    named = dict.fromkeys(name.lower() for name in _DISTRO.findall(f"{post.title}\n{post.body}"))
+    targets = "".join(f" --target {name}" for name in named if name in _TARGETED)
+    return [call.format(targets=targets) for command, call in CHECKS.get(label, ()) if command in commands]
+
+
+def as_json(found: Triage) -> str:
+    """One JSON object with all there is to say."""
+    verdict = found.verdict
+    return json.dumps(
+        {
+            "id": found.id,
+            "label": verdict.label,
+            "probabilities": {label: round(chance, 6) for label, chance in verdict.probabilities.items()},
+            "abstained": verdict.abstained,
+            "reasons": [reason._replace(weight=round(reason.weight, 4))._asdict() for reason in found.reasons],
+            "nearest": [known._replace(likeness=round(known.likeness, 4))._asdict() for known in found.nearest],
+            "run": found.checks,
+        },
+        ensure_ascii=False,
+    )
+
+
+def as_text(found: Triage) -> str:
+    """The same for people."""
+    verdict = found.verdict
+    sure = f"{100 * verdict.probabilities[verdict.label]:.0f} %"
+    if verdict.abstained:
+        lines = [f"unsure: {verdict.label} at {sure} is the likeliest; a person should read it"]
+    else:
+        lines = [f"{verdict.label} ({sure})"]
+    order = sorted(verdict.probabilities.items(), key=lambda item: -item[1])
+    lines.append("  " + ", ".join(f"{label} {100 * chance:.0f} %" for label, chance in order))
+    if found.reasons:
+        lines += ["", f"what spoke for {verdict.label}:"]
+        lines += [f"  {reason.where:5s} {reason.what}  +{reason.weight:.2f}" for reason in found.reasons]
+    if found.nearest:
+        lines += ["", "known reports like it:"]
+        lines += [f"  {known.likeness:.2f} {known.label:15s} {known.url or known.id}" for known in found.nearest]
+    lines.append("")
+    if found.checks:
+        lines += ["run next:", *(f"  {call}" for call in found.checks)]
+    elif verdict.label == "other":
+        lines.append("no check looks into reports of this label")
+    else:
+        lines.append(f"no command of this version looks into reports of the label {verdict.label} yet")
+    return "\n".join(lines) + "\n"
+
+
+def row(model: Model, post: Post) -> str:
+    """A line of the stream: id, label, probabilities, abstained."""
+    verdict = model.verdict(read(post.title, post.body))
+    chances = {label: round(chance, 6) for label, chance in verdict.probabilities.items()}
+    answer = {"id": post.id, "label": verdict.label, "probabilities": chances, "abstained": verdict.abstained}
+    return json.dumps(answer, ensure_ascii=False)
+
+
+def posts(lines: Iterable[str], name: str) -> Iterator[Post]:
+    """The reports of JSON Lines with `id`, `title` and `body`. name: of the file. Raises ClassifierError."""
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        post = post_of(line)
+        if post is None:
+            raise ClassifierError(f"{name}:{number}: is no JSON object with `title` or `body` as texts; mend the line")
+        yield post
+
+
+def post_of(line: str) -> Post | None:
+    """A report from a line of JSON; None when it is none."""
+    try:
+        value = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(value, dict) or not ({"title", "body"} & value.keys()):
+        return None
+    title, body, id = value.get("title") or "", value.get("body") or "", value.get("id", "")
+    if not isinstance(title, str) or not isinstance(body, str) or not isinstance(id, str | int):
+        return None
+    return Post(str(id), title, body)
+
+
+def from_text(text: str, id: str = "") -> Post:
+    """A report from plain text: its first line is the title."""
+    title, _, body = text.strip().partition("\n")
+    return Post(id, title.lstrip("# ").strip(), body.strip())
+
+
+def is_address(text: str) -> bool:
+    """Whether an argument is the address of a page rather than a report or a file."""
+    return bool(_ADDRESS.match(text))
+
+
+def fetch(url: str) -> Post:
+    """A GitHub issue or pull request, or a question of Robotics Stack Exchange. Raises ClassifierError."""
+    place = urlsplit(url)
+    host = (place.hostname or "").removeprefix("www.")
+    issue = _ISSUE.match(place.path.rstrip("/"))
+    question = _QUESTION.match(place.path.rstrip("/"))
+    if host == "answers.ros.org":
+        raise ClassifierError(
+            f"{url}: answers.ros.org is gone; give the question's address on robotics.stackexchange.com, or its text"
+        )
+    if issue and "stackexchange" not in host:
+        owner, name, number = issue.groups()
+        base = os.environ.get(GITHUB_API, "https://api.github.com").rstrip("/")
+        token = os.environ.get("GITHUB_TOKEN") or os.environ.get("GH_TOKEN") or ""
+        headers = {"Accept": "application/vnd.github+json"} | ({"Authorization": f"Bearer {token}"} if token else {})
+        found = _asked(url, f"{base}/repos/{owner}/{name}/issues/{number}", {}, headers)
+        return Post(f"{owner}/{name}#{number}", str(found.get("title") or ""), str(found.get("body") or ""))
+    if question and host.endswith("stackexchange.com"):
+        base = os.environ.get(STACK_API, "https://api.stackexchange.com/2.3").rstrip("/")
+        site = host.split(".")[0]
+        asked = {"site": site, "filter": "withbody"}
+        items = _asked(url, f"{base}/questions/{question.group(1)}", asked, {}).get("items")
+        if not isinstance(items, list) or not items or not isinstance(items[0], dict):
+            raise ClassifierError(f"{url}: there is no such question; check the address")
+        title, body = unescape(str(items[0].get("title") or "")), str(items[0].get("body") or "")
+        return Post(f"{site}:{question.group(1)}", title, _markdown(body))
+    raise ClassifierError(
+        f"{url}: is no issue, pull request or question that can be fetched; give one of GitHub or "
+        "robotics.stackexchange.com, or the text itself"
+    )
+
+
+def _asked(url: str, address: str, query: dict[str, str], headers: dict[str, str]) -> dict:
+    import requests
+
+    text = "or give the text itself"
+    try:
+        answer = requests.get(address, params=query, headers=headers, timeout=_TIMEOUT)
+    except requests.RequestException as error:
+        raise ClassifierError(
+            f"{url}: {urlsplit(address).hostname} cannot be reached ({type(error).__name__}); try again online, {text}"
+        ) from None
+    if answer.status_code in (404, 410):
+        raise ClassifierError(f"{url}: is not there, or not public; check the address, set GITHUB_TOKEN, {text}")
+    if answer.status_code in (403, 429):
+        raise ClassifierError(f"{url}: asked too often (status {answer.status_code}); wait, set GITHUB_TOKEN, {text}")
+    try:
+        found = answer.json() if answer.ok else None
+    except ValueError:
+        found = None
+    if not isinstance(found, dict):
+        raise ClassifierError(f"{url}: the server answered {answer.status_code} and no report; try again later, {text}")
+    return found
+
+
+def _markdown(html: str) -> str:
+    """Text of a question with its code fenced, as reports elsewhere have it."""
+    from bs4 import BeautifulSoup
+
+    page = BeautifulSoup(html, "html.parser")
+    for block in page.find_all("pre"):
+        block.replace_with(f"\n```\n{block.get_text()}\n```\n")
+    return page.get_text()
+
+
+def from_argument(argument: str) -> Post | Path | None:
+    """What an argument of the command line means: a report, a file to read, or None for standard input."""
+    if argument == "-":
+        return None
+    if is_address(argument):
+        return fetch(argument)
+    try:
+        path = Path(argument)
+        if path.is_file():
+            return path
+    except (OSError, ValueError):
+        pass
+    if re.fullmatch(r"\S+\.(?:jsonl?|md|txt)", argument):
+        raise ClassifierError(f"{argument}: there is no such file; give an existing one, an address or a text")
+    return from_text(argument)
+
+
+def triage_all(model: Model, lines: Iterable[str], name: str) -> None:
+    """JSON Lines to JSON Lines on standard output, each written as soon as it is known."""
+    for post in posts(lines, name):
+        sys.stdout.write(row(model, post) + "\n")
+        sys.stdout.flush()
