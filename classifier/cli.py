@@ -103,7 +103,8 @@ def train(
     else:
         about = model.about
         _write(
-            f"{output}: {about['reports']:,} reports, {len(model.labels)} labels; abstains below {model.threshold:.2f}\n"
+            f"{output}: {about['reports']:,} reports, {len(model.labels)} labels, "
+            f"abstains below {model.threshold:.2f}\n"
             f"labels {about['labels_digest']}\ntexts  {about['texts_digest']}\n"
         )
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..corpus.report import LABELS
 from .model import softmax
-from .training import SEED, Example, Progress, Settings, calibrate, digests, fit, splits
+from .training import EVERYTHING, SEED, Example, Progress, Settings, calibrate, digests, fit, splits
 
 FOLDS = 10
 BINS = 15
@@ -46,7 +46,7 @@ _KEYWORDS = (
 
 
 class Judged(NamedTuple):
-    """What was said of each report by a model that had not seen its repository. chances: reports × LABELS."""
+    """What was said of each report by a model that had not seen its repository. chances: reports by LABELS."""
 
     chances: np.ndarray
     abstained: np.ndarray
@@ -61,10 +61,10 @@ class Score(NamedTuple):
 
 
 def out_of_fold(
-    found: Sequence[Example], settings: Settings = Settings(), *, calibrated: bool, seed: int = SEED,  # noqa: B008
+    found: Sequence[Example], settings: Settings = EVERYTHING, *, calibrated: bool, seed: int = SEED,
     progress: Progress | None = None, name: str = "",
 ) -> Judged:  # fmt: skip
-    """Judges every report by a model trained on other repositories. calibrated: inside each fold, which takes longer."""
+    """Judges every report by a model trained on other repositories. calibrated: in each fold, which takes longer."""
     chances = np.zeros((len(found), len(LABELS)))
     abstained = np.zeros(len(found), bool)
     parts = splits(found, FOLDS, seed)
@@ -74,7 +74,7 @@ def out_of_fold(
         model = fit(seen, settings)
         scores = model.scores([found[row].reading for row in judge])
         part = softmax(scores / (calibration.temperature if calibration else 1.0))
-        chances[np.ix_(judge, [LABELS.index(label) for label in model.labels])] = part
+        chances[np.ix_(judge, np.array([LABELS.index(label) for label in model.labels]))] = part
         if calibration:
             abstained[judge] = part.max(axis=1) < calibration.threshold
         if progress:
@@ -132,8 +132,8 @@ def macro_f1(truth: np.ndarray, said: np.ndarray) -> float:
 
 
 def interval(
-    number: Callable[[np.ndarray, np.ndarray], float], truth: np.ndarray, said: np.ndarray, groups: Sequence[str],
-    seed: int = SEED, resamples: int = RESAMPLES,
+    number: Callable[[np.ndarray, np.ndarray], float], truth: np.ndarray, said: np.ndarray,
+    groups: Sequence[str] | np.ndarray, seed: int = SEED, resamples: int = RESAMPLES,
 ) -> Score:  # fmt: skip
     """A number and its 95 % interval, bootstrapped over groups."""
     _, codes = np.unique(np.array(groups), return_inverse=True)
@@ -206,7 +206,7 @@ def evaluate(
             {"answered": share, "right": float(right[order[: max(1, round(share * len(order)))]].mean())}
             for share in COVERAGES
         ],
-        "abstaining": {"answered": float(answered.mean()), "right": float(right[answered].mean())},
+        "abstaining": {"answered": float(answered.mean()), "right": _share(right, answered)},
     }
     others = rivals(found, seed, progress)
     if ablations:
@@ -237,8 +237,8 @@ def as_text(result: dict) -> str:
         return f"{value['value']:.3f} ({value['low']:.3f} to {value['high']:.3f})"
 
     lines = [
-        f"{result['reports']:,} reports of {result['repositories']} repositories, {result['folds']} folds by repository; "
-        "95 % intervals",
+        f"{result['reports']:,} reports of {result['repositories']} repositories, {result['folds']} folds "
+        "by repository; 95 % intervals",
         "",
         f"{'':32s} {'reports':>7s}  {'right':>5s}  macro-F1",
     ]
@@ -261,7 +261,7 @@ def as_text(result: dict) -> str:
     lines += ["", f"calibration error (bins of equal mass): {result['calibration_error']:.3f}"]
     lines.append(
         f"abstaining: answers {100 * result['abstaining']['answered']:.1f} %, of which "
-        f"{100 * result['abstaining']['right']:.1f} % are right"
+        f"{100 * (result['abstaining']['right'] or 0):.1f} % are right"
     )
     lines += ["", "surest part   right"]
     lines += [f"{100 * row['answered']:9.0f} %   {100 * row['right']:.1f} %" for row in result["risk_coverage"]]

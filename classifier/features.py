@@ -1,7 +1,7 @@
 """Transformers from reports to numbers, for training with scikit-learn.
 
-Each takes what `Reading` holds of a report and gives one row. What they learn is a vocabulary, weights and scales: plain
-arrays, which the model file holds, so that triage needs no scikit-learn.
+Each takes what `Reading` holds of a report and gives one row. What they learn is a vocabulary, weights and scales:
+plain arrays, which the model file holds, so that triage needs no scikit-learn.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from .signs import LIMIT, SIGNS
 class Words(BaseEstimator, TransformerMixin):
     """TF-IDF of the n-grams of one view of a report.
 
-    An n-gram is kept when it stands in `reports` reports of `groups` repositories or more: what one author wrote, or one
-    project alone uses, is not learnt.
+    An n-gram is kept when it stands in `reports` reports of `groups` repositories or more: what one author wrote, or
+    one project alone uses, is not learnt.
     """
 
     def __init__(self, view: str, reports: int = 4, groups: int = 3):

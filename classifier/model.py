@@ -1,8 +1,8 @@
 """The trained classifier: a file of plain arrays, and what it says of a report.
 
-The file is NumPy's npz without objects: names, vocabulary, weights and the known reports' vectors. Nothing in it is code,
-nothing is unpickled, and scikit-learn, with which it was trained, is not needed to use it; so no version of it has to
-match. What has to match are the signs of signs.py and the format: a model for others is refused.
+The file is NumPy's npz without objects: names, vocabulary, weights and the known reports' vectors. Nothing in it is
+code, nothing is unpickled, and scikit-learn, with which it was trained, is not needed to use it; so no version of that
+has to match. What has to match are the signs of signs.py and the format: a model for others is refused.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ class Known(NamedTuple):
 
 
 class Reason(NamedTuple):
-    """What spoke for the label. where: `title`, `text`, `log` or `sign`. weight: what it added to the label's score over
-    the mean of the others."""
+    """What spoke for the label. where: `title`, `text`, `log` or `sign`. weight: what it added to the label's score
+    over the mean of the others."""
 
     where: str
     what: str
@@ -96,11 +96,12 @@ class Model:
         return values @ self._coefficients[columns] + signs @ self._coefficients[words:] + self.arrays["intercept"]
 
     def verdict(self, reading: Reading) -> Verdict:
-        """Label, calibrated probabilities, and whether they are too near to each other to answer."""
+        """Label, calibrated probabilities, and whether it abstains: unsure of the label, or no word known."""
         chances = softmax(self.scores(reading) / self.temperature)
         best = int(chances.argmax())
         probabilities = {label: float(chance) for label, chance in zip(self.labels, chances, strict=True)}
-        return Verdict(self.labels[best], probabilities, bool(chances[best] < self.threshold))
+        known = any(gram in known for view, known in self._columns.items() for gram in reading.grams[view])
+        return Verdict(self.labels[best], probabilities, not known or bool(chances[best] < self.threshold))
 
     def reasons(self, reading: Reading, label: str, most: int = 8) -> list[Reason]:
         """The words and signs that spoke most for a label, strongest first."""

@@ -25,7 +25,8 @@ _MOST = 8
 _DISTRO = rf"(?:{'|'.join(name for names in DISTROS.values() for name in names)})"
 _PLATFORM = rf"(?:{'|'.join(PLATFORMS)}|os ?x|mac os|arch linux|visual studio)"
 _LIBRARY = (
-    r"(?:opencv|boost|pcl|eigen|qt|cmake|gcc|g\+\+|clang|python|ogre|vtk|gazebo|ubuntu|numpy|protobuf|tinyxml|yaml-?cpp|"
+    r"(?:opencv|boost|pcl|eigen|qt|cmake|gcc|g\+\+|clang|python|ogre|vtk|gazebo|ubuntu|numpy"
+    r"|protobuf|tinyxml|yaml-?cpp|"
     r"llvm|sip|pyqt|pyside|kernel|osg|bullet|fcl|octomap|gtsam|ceres|urdfdom|console_bridge|poco|asio|libusb|cuda|"
     r"jsoncpp|fmt|spdlog|lua|java|msvc|matplotlib|setuptools|pip|sphinx|empy|pyyaml|mavlink|px4|ardupilot|firmware|"
     r"ignition|sdk|librealsense|openni|ffmpeg|assimp|rviz|moveit)"
@@ -45,7 +46,8 @@ _UPDATE = (
     ),
     (
         "two distros compared",
-        rf"\b{_DISTRO}\b[^.\n]{{0,60}}\b(?:but|while|whereas|works?|worked|than|vs|to|and|from)\b[^.\n]{{0,60}}\b{_DISTRO}\b",
+        rf"\b{_DISTRO}\b[^.\n]{{0,60}}\b(?:but|while|whereas|works?|worked|than|vs|to|and"
+        rf"|from)\b[^.\n]{{0,60}}\b{_DISTRO}\b",
         "tp",
     ),
     ("upgrade", r"\b(?:upgrad|updat)(?:e|ed|es|ing)\b", "tp"),
@@ -57,7 +59,8 @@ _UPDATE = (
     ),
     (
         "worked before",
-        r"\b(?:used to|previously|worked (?:fine|well|before|in|on|with|until|perfectly)|was working|no longer|any ?more"
+        r"\b(?:used to|previously|worked (?:fine|well|before|in|on|with|until|perfectly)|was working"
+        r"|no longer|any ?more"
         rf"|works? (?:fine |well |ok )?(?:on|in|with|under) (?:ros )?(?:the )?(?:previous|old|\w+ ?\d|{_DISTRO})"
         r"|stopped working|before the)",
         "tp",
@@ -89,7 +92,8 @@ _UPDATE = (
     (
         "Python 2 code",
         r"print statement|missing parentheses|has_key|iteritems|basestring|xrange|unicode'? is not defined|raw_input"
-        r"|stringio|configparser|bytes-like|'str' does not support|must be str, not|dict_keys|__metaclass__|cpickle|urllib2"
+        r"|stringio|configparser|bytes-like|'str' does not support|must be str, not|dict_keys"
+        r"|__metaclass__|cpickle|urllib2"
         r"|invalid token|taberror|syntaxerror",
         "a",
     ),
@@ -121,7 +125,8 @@ _UPDATE = (
     (
         "support for a version",
         r"\b(?:support|fix(?:es)?|compil\w*|build\w*|compatib\w*|work\w*) (?:for |on |with |in |under |against )+"
-        rf"(?:ros[ -]?2? ?)?(?:{_DISTRO}|{_PLATFORM}|gcc|g\+\+|clang|c\+\+|boost|opencv|python|qt|cmake|eigen|pcl|gazebo)",
+        rf"(?:ros[ -]?2? ?)?(?:{_DISTRO}|{_PLATFORM}|gcc|g\+\+|clang|c\+\+|boost|opencv|python|qt"
+        rf"|cmake|eigen|pcl|gazebo)",
         "tp",
     ),
     ("undefined symbol", r"undefined symbol|symbol lookup error|undefined reference|unresolved external", "a"),
@@ -137,7 +142,8 @@ _UPDATE = (
     ("apt upgrade", r"apt(?:-get)? (?:dist-)?upgrade|apt(?:-get)? update", "a"),
     (
         "apt cannot satisfy",
-        r"dpkg: error|trying to overwrite|unmet dependenc|held broken|not going to be install|not installable|broken packages",
+        r"dpkg: error|trying to overwrite|unmet dependenc|held broken|not going to be install"
+        r"|not installable|broken packages",
         "a",
     ),
     ("firmware", r"\bfirmware|\bsdk\b|px4|ardupilot|\bdriver version", "tp"),
@@ -196,7 +202,8 @@ _DEPENDENCY = (
     ("depend", r"\bdepend(?:s|ency|encies|ing|ed)?\b", "tpc"),
     (
         "dependency missing",
-        r"(?:missing|undeclared|add(?:ed|s|ing)?|lack\w*|needs?|required|forgot\w*|unmet|not (?:listed|declared|specified)"
+        r"(?:missing|undeclared|add(?:ed|s|ing)?|lack\w*|needs?|required|forgot\w*|unmet|not (?:listed"
+        r"|declared|specified)"
         r"|without|no)\b[^.\n]{0,35}\bdepend",
         "tp",
     ),
@@ -208,7 +215,8 @@ _DEPENDENCY = (
     ),
     (
         "dependency superfluous",
-        r"(?:remove|drop|circular|cyclic|unnecessary|unneeded|unused|superfluous|wrong|spurious|extra|duplicate|redundant"
+        r"(?:remove|drop|circular|cyclic|unnecessary|unneeded|unused|superfluous|wrong|spurious|extra"
+        r"|duplicate|redundant"
         r"|useless|obsolete)\w*\b[^.\n]{0,30}\bdepend",
         "tp",
     ),
@@ -233,7 +241,8 @@ _DEPENDENCY = (
     ),
     (
         "not released",
-        r"\b(?:not|n't|never|un)[ -]?(?:yet )?(?:been )?releas|release (?:\S{1,30} ){0,4}(?:into|for|to|on)\b|bloom|no binar"
+        r"\b(?:not|n't|never|un)[ -]?(?:yet )?(?:been )?releas|release (?:\S{1,30} ){0,4}(?:into|for"
+        r"|to|on)\b|bloom|no binar"
         r"|not (?:yet )?(?:in|available) (?:in|on|from|for|via|through)|deb packages?|debian package",
         "tp",
     ),
@@ -250,7 +259,8 @@ _DEPENDENCY = (
     ),
     (
         "build macro",
-        r"catkin_package|catkin_depends|ament_target_dependencies|ament_export|target_link_libraries|include_directories"
+        r"catkin_package|catkin_depends|ament_target_dependencies|ament_export|target_link_libraries"
+        r"|include_directories"
         r"|catkin_include|catkin_libraries|ament_package|rosidl_",
         "tpc",
     ),
@@ -304,14 +314,16 @@ _INCONSISTENCY = (
     ),
     (
         "stamp",
-        r"\btime ?-?stamps?\b|\bstamp(?:s|ed)?\b|header\.stamp|sim_?time|\bclock\b|ros::time|rospy\.time|time sync|\bntp\b"
+        r"\btime ?-?stamps?\b|\bstamp(?:s|ed)?\b|header\.stamp|sim_?time|\bclock\b|ros::time"
+        r"|rospy\.time|time sync|\bntp\b"
         r"|time jump|epoch",
         "tpc",
     ),
     (
         "unit",
         r"\b(?:units?|degrees?|radians?|rad/s|deg/s|m/s|met(?:er|re)s?|millimet\w+|mm|cm|gauss|tesla|celsius|kelvin"
-        r"|percent\w*|volts?|enu|ned|conversion|scal(?:e|ed|ing)|factor|sign|flipp\w*|invert\w*|negative|swapp\w*|mirror\w*)\b",
+        r"|percent\w*|volts?|enu|ned|conversion|scal(?:e|ed|ing)|factor|sign|flipp\w*|invert\w*"
+        r"|negative|swapp\w*|mirror\w*)\b",
         "tp",
     ),
     ("REP", r"\brep[ -]?\d+", "a"),
@@ -324,7 +336,8 @@ _INCONSISTENCY = (
     (
         "wrong value",
         r"\b(?:wrong|incorrect|invalid|bad|unexpected|bogus|zero|garbage|strange|inconsistent|mismatch\w*|always|empty"
-        r"|constant|false)\b[^.\n]{0,30}\b(?:value|data|unit|frame|stamp|time|range|order|sign|orientation|pose|position"
+        r"|constant|false)\b[^.\n]{0,30}\b(?:value|data|unit|frame|stamp|time|range|order|sign"
+        r"|orientation|pose|position"
         r"|field|topic|type|name|message|velocity|header|size|axis|axes|reading|covariance|joint)",
         "tp",
     ),
@@ -374,7 +387,8 @@ _INCONSISTENCY = (
     (
         "network",
         r"ros_master_uri|ros_ip|ros_hostname|ros_domain_id|\bhostname|multi-?cast|firewall|\bport\b|\bdocker\b"
-        r"|two (?:machines|computers)|remote (?:machine|pc)|\bnetwork\b|\bwi-?fi\b|\bdds\b|fastrtps|fastdds|cyclone|\brmw",
+        r"|two (?:machines|computers)|remote (?:machine|pc)|\bnetwork\b|\bwi-?fi\b|\bdds\b|fastrtps"
+        r"|fastdds|cyclone|\brmw",
         "tpc",
     ),
     ("rosserial", r"rosserial|lost sync|\bbaud|arduino|serial port", "a"),
@@ -388,7 +402,8 @@ _INCONSISTENCY = (
     ),
     (
         "axis",
-        r"\b(?:x|y|z|roll|pitch|yaw)\b[ -/]{0,3}(?:axis|axes|direction)|\baxis\b|\baxes\b|right[- ]hand|orientation|heading"
+        r"\b(?:x|y|z|roll|pitch|yaw)\b[ -/]{0,3}(?:axis|axes|direction)|\baxis\b|\baxes\b"
+        r"|right[- ]hand|orientation|heading"
         r"|coordinate",
         "tp",
     ),
@@ -410,27 +425,32 @@ _LOGIC = (
     ("publish", r"\bpublish\w*|\badvertis\w+|\bpub\b", "tp"),
     (
         "publishes never or always",
-        r"(?:no longer|never|not|n't|stops?|stopped|only|fails? to|without|nothing|keeps?|continu\w+|still|always|start\w*"
+        r"(?:no longer|never|not|n't|stops?|stopped|only|fails? to|without|nothing|keeps?|continu\w+"
+        r"|still|always|start\w*"
         r"|stop|cease\w*|doesnt)\b[^.\n]{0,25}\b(?:publish\w*|advertis\w*|sen[dt]\w*|emit\w*|broadcast\w*)",
         "tp",
     ),
     (
         "condition and publish",
-        r"(?:no longer|never|not|n't|stops?|stopped|only|fails? to|keeps?|continu\w+|always|start\w*|unless|until|once|when"
+        r"(?:no longer|never|not|n't|stops?|stopped|only|fails? to|keeps?|continu\w+|always|start\w*"
+        r"|unless|until|once|when"
         r"|if|stale|old|repeat)\b.{0,40}\b(?:publish|advertis|broadcast|republish|topic|message)",
         "t",
     ),
     (
         "publish under a condition",
-        r"\b(?:publish\w*|sen[dt]\w*|emit\w*|broadcast\w*|messages?)\b[^.\n]{0,40}\b(?:only|once|when|until|unless|after"
-        r"|before|if|even|twice|too|every|continuous\w*|immediately|again|periodic\w*|stale|old|duplicat\w*|repeat\w*|delay\w*"
+        r"\b(?:publish\w*|sen[dt]\w*|emit\w*|broadcast\w*|messages?)\b[^.\n]{0,40}\b(?:only|once|when"
+        r"|until|unless|after"
+        r"|before|if|even|twice|too|every|continuous\w*|immediately|again|periodic\w*|stale|old"
+        r"|duplicat\w*|repeat\w*|delay\w*"
         r"|late|early)\b",
         "tp",
     ),
     ("latched", r"\blatch\w*|transient[_ ]local|late[- ]join|\bcached?\b|keep_last", "tp"),
     (
         "first or lost message",
-        r"\b(?:first|initial|last|some|lost|drop\w*|miss\w*|duplicate\w*|old|stale|outdated|skipp\w*|queued)\b[^.\n]{0,20}"
+        r"\b(?:first|initial|last|some|lost|drop\w*|miss\w*|duplicate\w*|old|stale|outdated|skipp\w*"
+        r"|queued)\b[^.\n]{0,20}"
         r"\b(?:messages?|msgs?|publish\w*|samples?|data|scans?|images?|transforms?)\b",
         "tp",
     ),
@@ -449,7 +469,8 @@ _LOGIC = (
     (
         "topic silent",
         r"(?:topics?|echo|subscri\w+)\b[^.\n]{0,50}"
-        r"\b(?:nothing|empty|no (?:data|message|output|msg)|silent|not (?:publish|updat|receiv)|no new|not being|never)",
+        r"\b(?:nothing|empty|no (?:data|message|output|msg)|silent|not (?:publish|updat|receiv)|no new"
+        r"|not being|never)",
         "tp",
     ),
     ("no messages", r"\bno (?:data|messages?|msgs?|images?|output|scans?|odom\w*|new|more|longer)\b", "tp"),
@@ -468,7 +489,8 @@ _LOGIC = (
     ("wait", r"wait_?for|waiting for|wait until|\bsleep\b", "a"),
     (
         "subscribers counted",
-        r"get_?num_?(?:subscribers|connections)|number of subscribers|subscribers? (?:connect|count|is|are)|no subscribers"
+        r"get_?num_?(?:subscribers|connections)|number of subscribers|subscribers? (?:connect|count|is"
+        r"|are)|no subscribers"
         r"|\blazy|on demand",
         "a",
     ),
@@ -479,13 +501,15 @@ _OTHER = (
     (
         "crash",
         r"seg(?:mentation)? ?fault|sigsegv|core dump|\bcrash\w*|sigabrt|\babort\w*|\bassert(?:ion)?\b|terminate called"
-        r"|double free|backtrace|\bgdb\b|valgrind|memory leak|deadlock|race condition|\bhang(?:s|ing)?\b|freez\w+|mutex",
+        r"|double free|backtrace|\bgdb\b|valgrind|memory leak|deadlock|race condition|\bhang(?:s"
+        r"|ing)?\b|freez\w+|mutex",
         "a",
     ),
     (
         "wish",
         r"(?:feature|enhancement) request|would be (?:nice|great|useful|good|helpful|cool|handy|awesome)|it'?d be"
-        r"|(?:i would|i'd) like|we (?:should|could)|allow (?:to|for|the|user)|please add|ability to|propos|suggest|\bwish"
+        r"|(?:i would|i'd) like|we (?:should|could)|allow (?:to|for|the|user)|please add|ability to"
+        r"|propos|suggest|\bwish"
         r"|add (?:support|an?|the|option|ability|method|parameter)|nice to have|\bimplement|\btodo\b",
         "tp",
     ),
@@ -501,7 +525,8 @@ _OTHER = (
     ("service or action", r"\bservices?\b|\bactions?\b|actionlib|\bclient\b|\bserver\b", "tp"),
     (
         "change named",
-        r"^\s{0,3}(?:fix(?:es|ed)?|add(?:s|ed)?|removed?s?|updated?s?|support|allow|make|use|changed?s?|improve|implement"
+        r"^\s{0,3}(?:fix(?:es|ed)?|add(?:s|ed)?|removed?s?|updated?s?|support|allow|make|use"
+        r"|changed?s?|improve|implement"
         r"|install|set|enable|bug ?fix)\b",
         "t",
     ),
@@ -517,7 +542,8 @@ _VOCABULARIES = {
     "documentation": "doc documentation wiki readme tutorial typo comment changelog example",
     "GUI": "gui button window dialog widget icon menu panel plugin display mouse click color colour texture plot view",
     "performance": "cpu memory performance optimize leak speed slow load efficient latency",
-    "tidying": "refactor cleanup rename style lint format whitespace indent test coverage duplication simplify cosmetic",
+    "tidying": "refactor cleanup rename style lint format whitespace indent test coverage duplication cosmetic "
+    "simplify",
     "continuous integration": "travis ci workflow codecov appveyor action pipeline",
     "robot model": "urdf xacro mesh collision sdf gazebo",
     "planning": "planner planning costmap plan trajectory path localization slam map amcl kinematic ik controller goal",

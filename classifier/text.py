@@ -14,11 +14,15 @@ from typing import NamedTuple
 LONGEST = 30_000
 """Characters of a body that are read; the cause is told before that, and what follows is log."""
 
-DISTROS = {
-    "ros1": ["boxturtle", "cturtle", "diamondback", "electric", "fuerte", "groovy", "hydro", "indigo", "jade", "kinetic", "lunar", "melodic", "noetic"],
-    "ros2": ["ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic", "humble", "iron", "jazzy", "kilted", "lyrical", "rolling"],
-}
-PLATFORMS = ["lucid", "maverick", "natty", "oneiric", "precise", "quantal", "raring", "saucy", "trusty", "utopic", "vivid", "wily", "xenial", "yakkety", "zesty", "artful", "bionic", "focal", "jammy", "noble", "resolute", "wheezy", "jessie", "stretch", "buster", "bullseye", "bookworm", "trixie", "ubuntu", "debian", "raspbian", "fedora", "rhel", "centos", "gentoo", "archlinux", "opensuse", "macos", "osx", "homebrew", "windows", "yocto", "openembedded", "nixos", "conda"]
+_ROS_1 = "boxturtle cturtle diamondback electric fuerte groovy hydro indigo jade kinetic lunar melodic noetic"
+_ROS_2 = "ardent bouncy crystal dashing eloquent foxy galactic humble iron jazzy kilted lyrical rolling"
+_PLATFORMS = (
+    "lucid maverick natty oneiric precise quantal raring saucy trusty utopic vivid wily xenial yakkety zesty artful "
+    "bionic focal jammy noble resolute wheezy jessie stretch buster bullseye bookworm trixie ubuntu debian raspbian "
+    "fedora rhel centos gentoo archlinux opensuse macos osx homebrew windows yocto openembedded nixos conda"
+)
+DISTROS = {"ros1": tuple(_ROS_1.split()), "ros2": tuple(_ROS_2.split())}
+PLATFORMS = tuple(_PLATFORMS.split())
 
 _FENCED = re.compile(
     r"```.*?(?:```|\Z)|~~~.*?(?:~~~|\Z)|\{\{\{.*?(?:\}\}\}|\Z)|<pre>.*?(?:</pre>|\Z)|<code>.*?(?:</code>|\Z)",

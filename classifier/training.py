@@ -13,7 +13,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -61,8 +61,11 @@ class Settings(NamedTuple):
     strength: float = 5.0
 
 
+EVERYTHING = Settings()
+
+
 class Linear(NamedTuple):
-    """A fitted linear model. words and signs turn readings into the columns of coefficients (labels × columns)."""
+    """A fitted linear model. words and signs turn readings into the columns of coefficients (labels by columns)."""
 
     labels: tuple[str, ...]
     words: dict[str, Words]
@@ -130,7 +133,7 @@ def splits(found: Sequence[Example], folds: int, seed: int) -> list[tuple[np.nda
         return list(splitter.split(np.zeros(len(found)), labels, groups))
 
 
-def fit(found: Sequence[Example], settings: Settings = Settings()) -> Linear:  # noqa: B008
+def fit(found: Sequence[Example], settings: Settings = EVERYTHING) -> Linear:
     """Fits the linear model. Raises ClassifierError when only one label is left."""
     readings = [example.reading for example in found]
     groups = [example.report.group for example in found]
@@ -143,13 +146,13 @@ def fit(found: Sequence[Example], settings: Settings = Settings()) -> Linear:  #
     weights = np.ones(len(found))
     told = [example for example in found if example.why] if settings.reasons else []
     if told:
-        rows = vstack([rows, _reasons(words, signs, told)]).tocsr()
+        rows = csr_matrix(vstack([rows, _reasons(words, signs, told)]))
         labels = np.concatenate([labels, [example.label for example in told]])
         weights = np.concatenate([weights, np.full(len(told), settings.reasons)])
     present = tuple(label for label in LABELS if label in set(labels))
     if len(present) < 2:
         raise ClassifierError(f"only `{present[0]}` is left to learn from in one part of the reports; label more")
-    regression = LogisticRegression(C=settings.strength, class_weight="balanced", max_iter=2_000)
+    regression: Any = LogisticRegression(C=settings.strength, class_weight="balanced", max_iter=2_000)
     regression.fit(rows, labels, sample_weight=weights)
     order = [list(regression.classes_).index(label) for label in present]
     coefficients, intercept = regression.coef_, regression.intercept_
@@ -170,7 +173,7 @@ class Calibration(NamedTuple):
 
 def calibrate(
     found: Sequence[Example],
-    settings: Settings = Settings(),
+    settings: Settings = EVERYTHING,
     seed: int = SEED,
     step: Callable[[], None] = lambda: None,
 ) -> Calibration:
@@ -184,7 +187,7 @@ def calibrate(
     for learn, judge in splits(found, INNER_FOLDS, seed):
         model = fit([found[row] for row in learn], settings)
         part = model.scores([found[row].reading for row in judge])
-        scores[np.ix_(judge, [present.index(label) for label in model.labels])] = part
+        scores[np.ix_(judge, np.array([present.index(label) for label in model.labels]))] = part
         step()
     truth = np.array([present.index(example.label) for example in found])
 
@@ -192,7 +195,8 @@ def calibrate(
         chances = softmax(scores / np.exp(logarithm))[np.arange(len(truth)), truth]
         return float(-np.log(np.maximum(chances, 1e-12)).mean())
 
-    temperature = float(np.exp(minimize_scalar(loss, bounds=(-2.0, 2.0), method="bounded").x))
+    best: Any = minimize_scalar(loss, bounds=(-2.0, 2.0), method="bounded")
+    temperature = float(np.exp(best.x))
     chances = softmax(scores / temperature)
     sure = chances.max(axis=1)
     right = chances.argmax(axis=1) == truth
@@ -219,11 +223,13 @@ def train(found: Sequence[Example], seed: int = SEED, progress: Progress | None 
     words = np.concatenate([_idf(linear.words[view]) for view in VIEWS])
     assert linear.signs is not None
     rows = _matrix(linear.words, None, [example.reading for example in found])
-    size = max(2, min(DIMENSIONS, rows.shape[1] - 1, len(found) - 1))
-    if rows.shape[1] > size:
-        basis = TruncatedSVD(size, random_state=seed).fit(rows).components_.T
+    columns = len(words)
+    size = max(2, min(DIMENSIONS, columns - 1, len(found) - 1))
+    if columns > size:
+        space: Any = TruncatedSVD(size, random_state=seed)
+        basis = np.asarray(space.fit(rows).components_).T
     else:
-        basis = np.eye(rows.shape[1])
+        basis = np.eye(columns)
     vectors = np.asarray(rows @ basis)
     vectors /= np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
     import sklearn

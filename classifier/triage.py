@@ -145,10 +145,10 @@ def post_of(line: str) -> Post | None:
         return None
     if not isinstance(value, dict) or not ({"title", "body"} & value.keys()):
         return None
-    title, body, id = value.get("title") or "", value.get("body") or "", value.get("id", "")
-    if not isinstance(title, str) or not isinstance(body, str) or not isinstance(id, str | int):
+    title, body, id = value.get("title"), value.get("body"), value.get("id", "")
+    if not isinstance(title, str | None) or not isinstance(body, str | None) or not isinstance(id, str | int):
         return None
-    return Post(str(id), title, body)
+    return Post(str(id), title or "", body or "")
 
 
 def from_text(text: str, id: str = "") -> Post:

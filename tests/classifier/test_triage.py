@@ -1,0 +1,280 @@
+"""`rosimpact triage`: one report, a stream of them, an address; what it prints and how it fails."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import threading
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import pytest
+from rosimpact.classifier.model import load
+from rosimpact.classifier.triage import CHECKS, Post, checks, from_text, is_address, post_of, triage
+from rosimpact.impact.cli import app
+from typer.testing import CliRunner
+
+UPDATE = "does not compile since the upgrade from humble to jazzy\nerror: undefined symbol after apt upgrade on jazzy"
+ACTION = Path(__file__).parents[2] / "examples" / "triage-action" / "triage_issue.py"
+
+
+def run(*arguments: str, input: str | bytes | None = None):
+    return CliRunner().invoke(app, ["triage", *arguments], input=input)
+
+
+class Server:
+    """Answers as api.github.com and api.stackexchange.com do, and keeps what was asked."""
+
+    def __init__(self) -> None:
+        self.pages: dict[str, tuple[int, bytes]] = {}
+        self.posted: list[tuple[str, dict, str]] = []
+        outer = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_GET(self):
+                status, body = outer.pages.get(self.path.split("?")[0], (404, b'{"message": "Not Found"}'))
+                self._answer(status, body)
+
+            def do_POST(self):
+                sent = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+                outer.posted.append((self.path, sent, self.headers["Authorization"]))
+                self._answer(200, json.dumps([{"name": name} for name in sent["labels"]]).encode())
+
+            def _answer(self, status: int, body: bytes):
+                self.send_response(status)
+                self.send_header("Content-Length", str(len(body)))
+                self.end_headers()
+                self.wfile.write(body)
+
+            def log_message(self, *unused):
+                pass
+
+        self.http = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self.address = f"http://127.0.0.1:{self.http.server_port}"
+        threading.Thread(target=self.http.serve_forever, daemon=True).start()
+
+
+@pytest.fixture
+def server(monkeypatch):
+    made = Server()
+    monkeypatch.setenv("ROSIMPACT_GITHUB_API", made.address)
+    monkeypatch.setenv("ROSIMPACT_STACK_EXCHANGE_API", made.address)
+    monkeypatch.delenv("GITHUB_TOKEN", raising=False)
+    yield made
+    made.http.shutdown()
+    made.http.server_close()
+
+
+class TestOneReport:
+    def test_text_names_label_reasons_like_reports_and_what_to_run(self):
+        result = run(UPDATE)
+        assert result.exit_code == 0
+        assert result.stdout.startswith("library-update (")
+        assert "what spoke for library-update:" in result.stdout
+        assert result.stdout.count("https://") == 5
+        assert "rosimpact check --target humble --target jazzy" in result.stdout
+
+    def test_json_says_the_same(self):
+        found = json.loads(run(UPDATE, "--format", "json").stdout)
+        assert found["label"] == "library-update"
+        assert found["abstained"] is False
+        assert sum(found["probabilities"].values()) == pytest.approx(1, abs=1e-4)
+        assert {"where", "what", "weight"} == set(found["reasons"][0])
+        assert len(found["nearest"]) == 5
+        assert found["run"] == ["rosimpact check --target humble --target jazzy"]
+
+    def test_a_file_and_standard_input_give_what_the_text_gives(self, tmp_path):
+        file = tmp_path / "issue.md"
+        file.write_text(UPDATE)
+        text = run(UPDATE).stdout
+        assert run(str(file)).stdout == text
+        assert run("-", input=UPDATE).stdout == text
+
+    def test_a_report_without_a_word_is_one_it_is_unsure_of(self):
+        assert run("zzqx wvyk").stdout.startswith("unsure: ")
+
+    @pytest.mark.parametrize("text", ["\udcff\x00 bytes", "\u202e\u0000", "a" * 3000, "🤖" * 50, "{", "[1]", "null"])
+    def test_any_text_is_answered(self, text, tmp_path):
+        file = tmp_path / "x"
+        file.write_bytes(text.encode("utf-8", "surrogateescape"))
+        assert run(str(file)).exit_code == 0
+
+
+class TestChecks:
+    @pytest.mark.parametrize(
+        ("label", "text", "commands", "calls"),
+        [
+            ("dependency", "fails on jazzy", {"check"}, ["rosimpact check --target jazzy"]),
+            ("dependency", "no distro named", {"check"}, ["rosimpact check"]),
+            ("dependency", "on hydro and Noetic", {"check"}, ["rosimpact check --target noetic"]),
+            ("inconsistency", "", {"check"}, []),
+            ("inconsistency", "", {"check", "graph"}, ["rosimpact graph"]),
+            ("inconsistency", "", {"values", "graph"}, ["rosimpact values", "rosimpact graph"]),
+            ("message-logic", "", {"logic"}, ["rosimpact logic"]),
+            ("other", "", {"check", "logic"}, []),
+        ],
+    )
+    def test_only_commands_that_exist_are_named(self, label, text, commands, calls):
+        assert checks(label, Post("", text, ""), commands) == calls
+
+    def test_the_command_line_has_what_it_names(self):
+        from typer.main import get_command
+
+        commands = set(get_command(app).commands)
+        for label in CHECKS:
+            for call in checks(label, Post("", "", ""), commands):
+                assert call.split()[1] in commands
+
+    def test_without_a_command_it_says_so(self):
+        from rosimpact.classifier.triage import as_text
+
+        found = triage(load(), from_text("wrong frame_id: values in degrees, radians expected"), frozenset())
+        assert found.verdict.label == "inconsistency"
+        assert "no command of this version looks into reports of the label inconsistency yet" in as_text(found)
+
+
+class TestStream:
+    ROWS = "".join(
+        json.dumps({"id": id, "title": title, "body": None}) + "\n"
+        for id, title in (("a", "undefined symbol since the upgrade to noetic"), (7, "a dark theme would be nice"))
+    )
+
+    @pytest.mark.parametrize("arguments", [("-",), ("--jsonl", "-")])
+    def test_lines_in_lines_out(self, arguments):
+        result = run(*arguments, input=self.ROWS)
+        found = [json.loads(line) for line in result.stdout.splitlines()]
+        assert [row["id"] for row in found] == ["a", "7"]
+        assert [row["label"] for row in found] == ["library-update", "other"]
+        assert all(set(row) == {"id", "label", "probabilities", "abstained"} for row in found)
+
+    def test_a_file(self, tmp_path):
+        file = tmp_path / "r.jsonl"
+        file.write_text(self.ROWS)
+        assert run(str(file)).stdout == run("-", input=self.ROWS).stdout
+
+    def test_an_answer_comes_before_the_next_question(self):
+        command = [sys.executable, "-c", "from rosimpact.impact.cli import main; main()", "triage", "--jsonl", "-"]
+        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+            assert process.stdin and process.stdout
+            for id in ("1", "2"):
+                process.stdin.write(json.dumps({"id": id, "title": "x"}) + "\n")
+                process.stdin.flush()
+                assert json.loads(process.stdout.readline())["id"] == id
+            process.stdin.close()
+            assert process.wait() == 0
+
+    def test_a_broken_line_is_named_after_the_answers_before_it(self):
+        result = run("--jsonl", "-", input=self.ROWS + '{"title": 3}\n')
+        assert result.exit_code == 2
+        assert len(result.stdout.splitlines()) == 2
+        assert "standard input:3: is no JSON object" in result.stderr
+
+    @pytest.mark.parametrize("line", ["", "3", "[]", "{}", '{"title": []}', "[" * 100_000, '{"id": {}, "title": ""}'])
+    def test_what_is_no_report(self, line):
+        assert post_of(line) is None
+
+
+class TestAddresses:
+    def test_an_issue(self, server):
+        page = {"title": "undefined symbol since the upgrade to noetic", "body": None}
+        server.pages["/repos/o/r/issues/12"] = (200, json.dumps(page).encode())
+        for url in ("https://github.com/o/r/issues/12", "https://github.com/o/r/pull/12/files"):
+            found = json.loads(run(url, "-f", "json").stdout)
+            assert (found["id"], found["label"]) == ("o/r#12", "library-update")
+
+    def test_a_question(self, server):
+        page = {"items": [{"title": "R&amp;D: no rosdep key for x", "body": "<p>rosdep fails</p><pre>no key</pre>"}]}
+        server.pages["/questions/98"] = (200, json.dumps(page).encode())
+        found = json.loads(run("https://robotics.stackexchange.com/questions/98/no-key", "-f", "json").stdout)
+        assert (found["id"], found["label"]) == ("robotics:98", "dependency")
+
+    @pytest.mark.parametrize(
+        ("status", "body", "says"),
+        [
+            (404, b"{}", "is not there, or not public"),
+            (410, b"{}", "is not there, or not public"),
+            (403, b"{}", "asked too often"),
+            (429, b"{}", "asked too often"),
+            (502, b"<html>", "answered 502 and no report"),
+            (200, b"<html>", "answered 200 and no report"),
+            (200, b"[]", "answered 200 and no report"),
+        ],
+    )
+    def test_a_server_that_refuses(self, server, status, body, says):
+        server.pages["/repos/o/r/issues/1"] = (status, body)
+        result = run("https://github.com/o/r/issues/1")
+        assert result.exit_code == 2
+        assert result.stderr.startswith("rosimpact: https://github.com/o/r/issues/1: ")
+        assert says in result.stderr
+
+    def test_offline(self, monkeypatch):
+        monkeypatch.setenv("ROSIMPACT_GITHUB_API", "http://127.0.0.1:9")
+        result = run("https://github.com/o/r/issues/1")
+        assert result.exit_code == 2
+        assert "cannot be reached" in result.stderr
+        assert len(result.stderr.splitlines()) == 1
+
+    @pytest.mark.parametrize(
+        ("url", "says"),
+        [
+            ("https://answers.ros.org/question/1/x/", "answers.ros.org is gone"),
+            ("https://example.org/x", "is no issue, pull request or question"),
+            ("https://github.com/o/r", "is no issue, pull request or question"),
+        ],
+    )
+    def test_other_addresses(self, url, says):
+        result = run(url)
+        assert result.exit_code == 2
+        assert says in result.stderr
+
+    def test_a_text_that_holds_an_address_is_a_text(self):
+        assert not is_address("see https://github.com/o/r/issues/1")
+
+
+class TestErrors:
+    @pytest.mark.parametrize(
+        ("arguments", "says"),
+        [
+            (("x", "--format", "xml"), "--format xml: unknown"),
+            (("missing.jsonl",), "missing.jsonl: there is no such file"),
+            (("",), "the report is empty"),
+            (("x", "--jsonl"), "--jsonl: needs a file"),
+            (("x", "--model", "none.npz"), "none.npz: cannot be read"),
+        ],
+    )
+    def test_one_line_and_status_2(self, arguments, says):
+        result = run(*arguments)
+        assert result.exit_code == 2
+        assert says in result.stderr
+        assert len(result.stderr.splitlines()) == 1
+
+
+class TestAction:
+    def act(self, server, tmp_path, issue: dict):
+        event = tmp_path / "event.json"
+        event.write_text(json.dumps({"action": "opened", "issue": issue}))
+        folder = Path(sys.executable).parent
+        environment = {
+            "PATH": f"{folder}:/usr/bin:/bin",
+            "GITHUB_EVENT_PATH": str(event),
+            "GITHUB_REPOSITORY": "o/r",
+            "GITHUB_TOKEN": "secret",
+            "GITHUB_API_URL": server.address,
+        }
+        return subprocess.run(
+            [sys.executable, str(ACTION)], env=environment, capture_output=True, text=True, check=False
+        )
+
+    def test_a_new_issue_is_labelled(self, server, tmp_path):
+        title, body = UPDATE.split("\n")
+        done = self.act(server, tmp_path, {"number": 5, "title": title, "body": body})
+        assert done.returncode == 0, done.stderr
+        assert server.posted == [
+            ("/repos/o/r/issues/5/labels", {"labels": ["triage: library-update"]}, "Bearer secret")
+        ]
+
+    def test_an_issue_it_is_unsure_of_is_left_alone(self, server, tmp_path):
+        done = self.act(server, tmp_path, {"number": 5, "title": "zzqx wvyk", "body": None})
+        assert done.returncode == 0, done.stderr
+        assert server.posted == []
