@@ -151,7 +151,7 @@ def fit(found: Sequence[Example], settings: Settings = EVERYTHING) -> Linear:
         weights = np.concatenate([weights, np.full(len(told), settings.reasons)])
     present = tuple(label for label in LABELS if label in set(labels))
     if len(present) < 2:
-        raise ClassifierError(f"only one label is left to learn from in one part of the reports; label more")
+        raise ClassifierError("only one label is left to learn from in one part of the reports; label more")
     regression: Any = LogisticRegression(C=settings.strength, class_weight="balanced", max_iter=2_000)
     regression.fit(rows, labels, sample_weight=weights)
     order = [list(regression.classes_).index(label) for label in present]

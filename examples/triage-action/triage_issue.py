@@ -1,4 +1,4 @@
-"""Labels the issue of a GitHub event with what it is about; leaves it alone when unsure, or when no check looks into it.
+"""Labels the issue of a GitHub event with what it is about; leaves it alone when unsure, or when it is `other`.
 
 Reads GITHUB_EVENT_PATH, GITHUB_REPOSITORY, GITHUB_TOKEN and GITHUB_API_URL, as GitHub sets them in a workflow.
 """
