@@ -41,7 +41,7 @@ LABEL_COLOURS = {
 
 _STYLE: dict[Any, Any] = {
     "figure.dpi": 100,
-    "savefig.dpi": 150,
+    "savefig.dpi": 120,
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
     "font.family": "DejaVu Sans",

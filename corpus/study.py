@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -148,25 +149,25 @@ def _execute(path: Path, settings: dict[str, Any], output: Path, progress: Calla
         if cell.cell_type == "code" and sys.stderr.isatty():
             progress(f"    cell {cell_index + 1} of {total}")
 
-    # No kernel of the user's own: the notebook runs with the Python that runs this. Sockets are files, where files can
-    # be: what goes through a TCP port can be read by others on the machine.
-    manager = AsyncKernelManager(
-        kernel_name="python3",
-        kernel_spec_manager=KernelSpecManager(kernel_dirs=[]),
-        transport="tcp" if os.name == "nt" else "ipc",
-    )
-    client = NotebookClient(
-        notebook, km=manager, timeout=None, record_timing=False, on_cell_execute=started, allow_errors=False,
-        resources={"metadata": {"path": str(output.resolve())}},
-    )  # fmt: skip
     environment = {**os.environ, SETTINGS: json.dumps(settings), "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
     failure = ""
-    try:
-        client.execute(env=environment)
-    except CellExecutionError as error:
-        failure = f"cell {_failed_cell(notebook)}: {error.ename}: {' '.join(str(error.evalue).split())[:300]}"
-    except (CellTimeoutError, DeadKernelError) as error:
-        failure = f"the kernel ended: {' '.join(str(error).split())[:300]}"
+    with tempfile.TemporaryDirectory(prefix="rosimpact-") as sockets:
+        # No kernel of the user's own: the notebook runs with the Python that runs this. Sockets are files, where files
+        # can be: what goes through a TCP port can be read by others on the machine.
+        as_files = {} if os.name == "nt" else {"transport": "ipc", "ip": str(Path(sockets) / "kernel")}
+        specs = KernelSpecManager(kernel_dirs=[])
+        manager = AsyncKernelManager(kernel_name="python3", kernel_spec_manager=specs, **as_files)
+        client = NotebookClient(
+            notebook, km=manager, timeout=None, record_timing=False, on_cell_execute=started, allow_errors=False,
+            resources={"metadata": {"path": str(output.resolve())}},
+        )  # fmt: skip
+        client.owns_km = True  # so that it ends the kernel
+        try:
+            client.execute(env=environment)
+        except CellExecutionError as error:
+            failure = f"cell {_failed_cell(notebook)}: {error.ename}: {' '.join(str(error.evalue).split())[:300]}"
+        except (CellTimeoutError, DeadKernelError, RuntimeError) as error:
+            failure = f"the kernel ended: {' '.join(str(error).split())[:300]}"
     made = tuple(name for name in expected if _drawn(output / "figures", name))
     if not failure and len(made) < len(expected):
         failure = f"made no figure {', '.join(f'`{name}`' for name in expected if name not in made)}"

@@ -437,7 +437,8 @@ def lags(older: History, newer: History) -> list[Lag]:
 def behind(older: History, newer: History, day: str) -> list[Behind]:
     """Packages that both carry on a day and whose version is lower in the older one.
 
-    The days count from the first on which the newer distro had a version above the one that the older still has.
+    The days count from the first on which the newer distro had a version above the one that the older still has, at the
+    earliest from the newer one's announced release.
     """
     old, new = older.versions(day), newer.versions(day)
     found = []
@@ -448,7 +449,7 @@ def behind(older: History, newer: History, day: str) -> list[Behind]:
                 for ts, version in newer._steps[package]
                 if version is not None and parts(version) > parts(old[package])
             )
-            start = newer.sync_of(since) or day
+            start = max(newer.sync_of(since) or day, newer.begin)
             found.append(Behind(package, old[package], new[package], max(0, _days_between(start, day))))
     return found
 
