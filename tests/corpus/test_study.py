@@ -1,0 +1,123 @@
+"""`rosimpact study run`: notebooks that fail fail the run; what is committed holds no texts and no paths."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rosimpact.corpus.curves import pooled_share, survival
+from rosimpact.corpus.figures import apart
+from rosimpact.corpus.report import CorpusError
+from rosimpact.corpus.study import NOTEBOOKS, command, run
+
+DRAWS = """
+import matplotlib.pyplot as plt
+from rosimpact.corpus.figures import Page
+page = Page.open("01_made")
+figure, axes = plt.subplots()
+axes.plot([0, 1], [1, 0])
+page.show(figure, "line")
+"""
+
+
+def folder_with(tmp_path, source, figures=("line",), texts=False):
+    folder = tmp_path / "notebooks"
+    folder.mkdir(exist_ok=True)
+    cell = {"cell_type": "code", "id": "c1", "metadata": {}, "execution_count": None, "outputs": [], "source": source}
+    about = {"rosimpact": {"figures": list(figures), "texts": texts}}
+    text = json.dumps({"cells": [cell], "metadata": about, "nbformat": 4, "nbformat_minor": 5})
+    (folder / "01_made.ipynb").write_text(text)
+    return folder
+
+
+def test_figures_are_written_and_two_runs_are_equal(tmp_path):
+    folder = folder_with(tmp_path, DRAWS)
+    for name in ("one", "two"):
+        (outcome,) = run(output=tmp_path / name, notebooks=folder)
+        assert (outcome.failure, outcome.figures) == ("", ("line",))
+    for file in ("01_made.ipynb", "figures/line.svg", "figures/line.png"):
+        assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ("raise ValueError('no such data')", "cell 1: ValueError: no such data"),
+        (DRAWS.replace("axes.plot([0, 1], [1, 0])", ""), "figure `line` is empty"),
+        ("1 + 1", "made no figure `line`"),
+    ],
+)
+def test_a_notebook_without_its_figure_fails_the_run(tmp_path, capfd, source, said):
+    folder = folder_with(tmp_path, source)
+    assert command(output=tmp_path / "out", notebooks=folder) == 1
+    assert f"01_made.ipynb: {said}" in re.sub(r"cell 1: ValueError: (figure)", r"\1", capfd.readouterr().err)
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"names": ["07"]}, "no notebook `07`"),
+        ({"full": True}, "reads the reports' texts"),
+        ({"full": True, "reports": Path("none.jsonl")}, "no such file"),
+        ({"reports": Path("none.jsonl")}, "add --full"),
+    ],
+)
+def test_what_cannot_be_started(tmp_path, more, said):
+    with pytest.raises(CorpusError, match=said):
+        run(output=tmp_path / "out", notebooks=folder_with(tmp_path, DRAWS, texts=True), **more)
+
+
+def test_without_the_extra(tmp_path, monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(CorpusError, match=r"pip install 'rosimpact\[study\]'"):
+        run(output=tmp_path)
+
+
+def test_a_small_form_of_each_notebook(tmp_path):
+    outcomes = run(output=tmp_path / "out")
+    assert [(one.name, one.failure) for one in outcomes if one.failure] == []
+    assert all(one.figures for one in outcomes)
+
+
+def test_what_is_committed_holds_outputs_but_no_paths_and_no_long_quotes():
+    for path in NOTEBOOKS.glob("*.ipynb"):
+        cells = [cell for cell in json.loads(path.read_text())["cells"] if cell["cell_type"] == "code"]
+        shown = [
+            "".join(value)
+            for cell in cells
+            for one in cell["outputs"]
+            for kind, value in {**one.get("data", {}), "said": one.get("text", "")}.items()
+            if not kind.startswith("image/")
+        ]
+        assert any(shown), f"{path.name} has no outputs"
+        assert not re.search(r"(?<![\w.])/(?:home|tmp|root|work|usr|var|mnt)/", "\n".join(shown))
+        cells_of_tables = [
+            cell for text in shown for line in text.splitlines() if "|" in line for cell in line.split("|")
+        ]
+        assert all(len(cell.split()) <= 30 for cell in cells_of_tables)
+
+
+def test_survival_by_hand():
+    # Five followed: ends at 1, 2 and 4; two still stood at 2 and 5.
+    curve = survival([1, 2, 2, 4, 5], [True, True, False, True, False])
+    assert curve.x.tolist() == [0, 1, 2, 4, 5]
+    assert curve.y == pytest.approx([1, 0.8, 0.6, 0.3, 0.3])
+    assert (curve.low <= curve.y).all() and (curve.y <= curve.high).all()
+    assert curve.at(3)[0] == pytest.approx(0.6)
+    assert curve.first_below(0.5) == 4
+    with pytest.raises(ValueError, match="nothing was followed"):
+        survival([], [])
+
+
+def test_a_share_of_groups_that_are_alike_has_no_width():
+    curve = pooled_share(np.array([[1, 2], [1, 2]]), [4, 4], [0, 1], draws=50)
+    for values in (curve.y, curve.low, curve.high):
+        assert values == pytest.approx([0.25, 0.5])
+    wide = pooled_share(np.array([[0], [4]]), [4, 4], [0], draws=200)
+    assert wide.low[0] < 0.5 < wide.high[0]
+
+
+def test_names_stay_apart():
+    assert apart([0.0, 0.01, 0.5], 0.1, 0, 1) == pytest.approx([0, 0.1, 0.5])
+    assert apart([0.95, 0.99], 0.1, 0, 1) == pytest.approx([0.9, 1])
