@@ -39,3 +39,21 @@ def study_run(
     from . import study
 
     raise typer.Exit(study.command(names or (), full, reports, output, notebooks, quiet))
+
+
+@app.command("predict")
+def study_predict(
+    reports: Annotated[Path, typer.Option(help="The reports' texts, JSON Lines.")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder for both files; that of the notebooks by default.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+) -> None:
+    """Judge every labelled report by a model that has not seen its repository, for 02_triage; ids and numbers only.
+
+    Writes triage_predictions.jsonl and triage_beside.json. It takes some minutes.
+    """
+    from . import study_triage
+    from .study import NOTEBOOKS
+
+    raise typer.Exit(study_triage.command(reports, output or NOTEBOOKS / "data", quiet))

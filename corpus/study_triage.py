@@ -1,0 +1,182 @@
+"""What the classifier said of each labelled report, as facts that can be shipped: ids, labels and chances, no texts.
+
+`rosimpact study predict` writes two files, from which the study of triage is made where no texts are at hand:
+`triage_predictions.jsonl`, a Prediction a line, and `triage_beside.json`, the scores of simpler means and of ablations.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import msgspec
+
+from .report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, read_labels, repository_of
+from .told import say, told
+
+if TYPE_CHECKING:
+    from ..classifier.evaluate import Judged
+    from ..classifier.training import Example
+
+PREDICTIONS, BESIDE = "triage_predictions.jsonl", "triage_beside.json"
+DIGITS = 5
+"""Decimals of the shipped probabilities."""
+
+
+class Prediction(msgspec.Struct, frozen=True):
+    """What a model that had not seen the report's repository said of it.
+
+    label: the true one. probabilities: by LABELS, calibrated. abstained: whether the model would not answer. length: of
+    title and body, in characters. source, wording, decided: as in Report and Label.
+    """
+
+    id: str
+    label: str
+    probabilities: tuple[float, ...]
+    abstained: bool
+    length: int
+    source: str
+    wording: str
+    decided: str
+
+    @property
+    def group(self) -> str:
+        """What must not stand on both sides of a split, as Report has it."""
+        return repository_of(self.id) or self.id
+
+    @property
+    def twice(self) -> bool:
+        """Whether two annotators read it."""
+        return self.decided != "single"
+
+
+class Measured(NamedTuple):
+    """predictions: of all labelled reports with texts. beside: name of another means to its scores, as
+    classifier/evaluate.py gives them. digests: SHA-256 of the labels and of the texts that were used."""
+
+    predictions: list[Prediction]
+    beside: dict[str, Any]
+    digests: dict[str, str]
+
+
+def command(reports: Path, output: Path, quiet: bool = False) -> int:
+    """Measures the classifier on the reports' texts and writes both files to a folder. Returns the exit status."""
+
+    def work() -> int:
+        found = measured(reports, None if quiet else _progress())
+        write(found, output)
+        say(f"{len(found.predictions):,} predictions and {len(found.beside)} means beside: {output}")
+        return 0
+
+    return told(work, "interrupted; nothing was written")
+
+
+def measured(reports: Path, progress: Callable[[str, int, int], None] | None = None) -> Measured:
+    """Judges every labelled report out of fold, by the classifier, by simpler means and with parts left out.
+
+    reports: the file that holds the texts. It takes some minutes. Raises CorpusError.
+    """
+    from ..classifier import evaluate as e
+    from ..classifier.model import ClassifierError
+    from ..classifier.training import digests, examples
+
+    try:
+        found = examples(LABELS_FILE, reports, progress)
+        judged = e.out_of_fold(found, calibrated=True, progress=progress)
+        said = e.rivals(found, progress=progress)
+        for name, settings in e.ABLATIONS.items():
+            part = e.out_of_fold(found, settings, calibrated=False, progress=progress, name=name)
+            said[name] = part.chances.argmax(axis=1)
+    except ClassifierError as error:
+        raise CorpusError(str(error)) from None
+    return Measured(predictions_of(found, judged), beside_of(found, said), digests(found))
+
+
+def predictions_of(found: Sequence[Example], judged: Judged) -> list[Prediction]:
+    """The facts of labelled reports and of what was said of them."""
+    decided = {label.id: label.decided for label in read_labels()}
+    return [
+        Prediction(
+            example.report.id, example.label, tuple(round(float(chance), DIGITS) for chance in chances), bool(silent),
+            len(example.report.title) + len(example.report.body), example.report.source, example.report.wording,
+            decided.get(example.report.id, "single"),
+        )
+        for example, chances, silent in zip(found, judged.chances, judged.abstained, strict=True)
+    ]  # fmt: skip
+
+
+def beside_of(found: Sequence[Example], said: Mapping[str, Any]) -> dict[str, Any]:
+    """Scores of what other means said: name to `macro_f1` with its interval, `read_twice_original` and `right`."""
+    import numpy as np
+
+    from ..classifier import evaluate as e
+
+    truth = e.truths(found)
+    groups = [example.report.group for example in found]
+    second = np.array([example.twice and example.report.wording == "original" for example in found])
+    return {
+        name: {
+            "macro_f1": e.interval(e.macro_f1, truth, answer, groups)._asdict(),
+            "read_twice_original": e.macro_f1(truth[second], answer[second]) if second.any() else None,
+            "right": float((answer == truth).mean()),
+        }
+        for name, answer in said.items()
+    }
+
+
+def write(found: Measured, folder: Path) -> None:
+    """Writes both files; they are replaced only when all is computed."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = b"".join(msgspec.json.encode(one) + b"\n" for one in found.predictions)
+    text = json.dumps({**found.digests, "beside": found.beside}, indent=1) + "\n"
+    for name, content in ((PREDICTIONS, lines), (BESIDE, text.encode())):
+        part = folder / f"{name}.part"
+        part.write_bytes(content)
+        part.replace(folder / name)
+
+
+def read(folder: Path) -> Measured:
+    """What `write` wrote. Raises CorpusError that names the file and line."""
+    path = folder / PREDICTIONS
+    decoder = msgspec.json.Decoder(Prediction)
+    predictions = []
+    for number, line in enumerate(_bytes(path).splitlines(), 1):
+        try:
+            one = decoder.decode(line)
+        except msgspec.DecodeError as error:
+            raise CorpusError(f"{path}:{number}: {error}; {_AGAIN}") from None
+        known = one.label in LABELS and one.source in SOURCES and one.wording in WORDINGS
+        if not known or len(one.probabilities) != len(LABELS):
+            raise CorpusError(f"{path}:{number}: `{one.id}` is no prediction of these labels; {_AGAIN}")
+        predictions.append(one)
+    path = folder / BESIDE
+    try:
+        about = json.loads(_bytes(path))
+        digests = {name: about[name] for name in ("labels_digest", "texts_digest")}
+        return Measured(predictions, about["beside"], digests)
+    except (ValueError, KeyError, TypeError) as error:
+        raise CorpusError(f"{path}: cannot be read: {error}; {_AGAIN}") from None
+
+
+_AGAIN = "make it again with `rosimpact study predict`"
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise CorpusError(f"{path}: cannot be read: {error.strerror}; {_AGAIN}") from None
+
+
+def _progress() -> Callable[[str, int, int], None]:
+    last = ""
+
+    def show(what: str, done: int, total: int) -> None:
+        nonlocal last
+        if what != last:
+            say(f"{what}: {total} steps")
+        last = what
+
+    return show
