@@ -1,10 +1,13 @@
 """The life of a distro: the same answers as DistroTarget, closures and steps on small graphs made by hand."""
 
 import datetime
+import json
+import sqlite3
 
 import pytest
 from rosimpact.impact.targets.distro import DistroTarget, TargetError
-from rosimpact.impact.targets.history import Graph, History, kind_of_step, lags
+from rosimpact.impact.targets.history import Behind, Graph, History, Life, Sync, behind, kind_of_step, lags
+from rosimpact.impact.targets.snapshot import FACT_SCHEMA, SCHEMA
 
 
 @pytest.mark.parametrize(
@@ -65,3 +68,108 @@ def test_drift_begins_at_nothing_and_counts_what_differs():
     later = one.versions(day)
     differing = sum(later.get(name) != version for name, version in start.items())
     assert drift.by_start[0, 60] == pytest.approx(differing / len(start))
+
+
+class Made:
+    """Data made by hand, asked as the shipped snapshot is."""
+
+    date = "2021-12-31"
+
+    def __init__(self, distros, releases, syncs=(), dependencies=()):
+        """distros: name to ISO day of its release. releases: (distro, day, repository, version or None, packages).
+        syncs: (distro, day), each holding what was released the day before. dependencies: (distro, package, names)."""
+        self._data = sqlite3.connect(":memory:")
+        self._data.executescript(SCHEMA + FACT_SCHEMA)
+        put = self._data.execute
+        ids = {name: number for number, name in enumerate(distros, 1)}
+        for name, released in distros.items():
+            put("INSERT INTO distro VALUES (?, ?, 2, 3, 'active')", (ids[name], name))
+            fact = {"released": released, "end_of_life": None, "lts": False, "platform": "ubuntu focal"}
+            put("INSERT INTO distro_fact VALUES (?, ?)", (name, json.dumps(fact)))
+        for number, (distro, day, repository, version, packages) in enumerate(releases, 1):
+            put("INSERT OR IGNORE INTO repository(name) VALUES (?)", (repository,))
+            ((home,),) = put("SELECT id FROM repository WHERE name = ?", (repository,)).fetchall()
+            put("INSERT INTO packages VALUES (?, ?)", (number, packages))
+            put("INSERT INTO release VALUES (?, ?, ?, ?, ?)", (ids[distro], home, noon(day), version, number))
+        for distro, day in syncs:
+            put("INSERT INTO sync VALUES (?, ?, ?)", (ids[distro], day, noon(day) - 43200))
+        for number, (distro, package, names) in enumerate(dependencies, 1):
+            put("INSERT INTO package VALUES (?, ?)", (number, package))
+            put("INSERT INTO dependencies VALUES (?, ?)", (number, "\n".join(f"{name}\tb" for name in names)))
+            put("INSERT INTO manifest VALUES (?, ?, '1.0.0', ?, 'ament_cmake')", (ids[distro], number, number))
+
+    def rows(self, sql, parameters=()):
+        return self._data.execute(sql, parameters).fetchall()
+
+    def row(self, sql, parameters=()):
+        return next(iter(self.rows(sql, parameters)), None)
+
+
+def noon(day):
+    return int(datetime.datetime.fromisoformat(f"{day}T12:00:00+00:00").timestamp())
+
+
+def test_how_long_versions_live():
+    data = Made(
+        {"amber": "2021-01-01"},
+        [
+            ("amber", "2020-12-01", "core", "1.0.0-1", "core"),  # ends before the distro is announced: left out
+            ("amber", "2020-12-10", "core", "1.1.0-1", "core"),  # counts from the announcement
+            ("amber", "2021-01-11", "core", "1.1.0-2", "core"),  # built again: the same version
+            ("amber", "2021-01-31", "core", "1.2.0-1", "core"),  # stands to the end of the data
+            ("amber", "2021-03-01", "tool", "2.0.0-1", "tool"),
+            ("amber", "2021-03-11", "tool", None, ""),  # taken out
+        ],
+    )
+    assert sorted(History("amber", data).lives()) == [
+        Life("core", 29, True),
+        Life("core", 334, False),
+        Life("tool", 10, True),
+    ]
+
+
+def test_what_each_sync_changes():
+    packages = {"base": "1.0.0-1", "app": "1.0.0-1", "tool": "1.0.0-1", "lone": "1.0.0-1"}
+    data = Made(
+        {"amber": "2021-01-01"},
+        [("amber", "2021-01-01", name, version, name) for name, version in packages.items()]
+        + [
+            ("amber", "2021-02-03", "base", "2.0.0-1", "base"),
+            ("amber", "2021-02-03", "lone", None, ""),
+            ("amber", "2021-02-04", "new", "0.1.0-1", "new"),
+            ("amber", "2021-03-03", "tool", "1.1.0-1", "tool"),
+            ("amber", "2021-03-04", "app", "1.0.0-2", "app"),  # built again: no change
+        ],
+        syncs=[("amber", day) for day in ("2021-02-01", "2021-03-01", "2021-04-01")],
+        dependencies=[("amber", "app", ["base"]), ("amber", "tool", ["app"])],
+    )
+    assert History("amber", data).sync_changes() == [
+        # base changed, and app and tool have it beneath them; lone went and new came
+        Sync("amber", "2021-03-01", 4, 1, 1, 1, 1, 0, 3, ("base",)),
+        Sync("amber", "2021-04-01", 4, 1, 0, 0, 0, 1, 1, ()),
+    ]
+
+
+def test_what_is_behind_and_since_when():
+    data = Made(
+        {"amber": "2021-01-01", "beryl": "2021-06-01"},
+        [
+            ("amber", "2021-01-01", "same", "1.0.0-1", "same"),
+            ("amber", "2021-01-01", "early", "1.0.0-1", "early"),
+            ("amber", "2021-01-01", "late", "1.0.0-1", "late"),
+            ("amber", "2021-01-01", "ahead", "3.0.0-1", "ahead"),
+            ("amber", "2021-01-01", "gone", "1.0.0-1", "gone"),
+            ("beryl", "2021-05-01", "same", "1.0.0-7", "same"),
+            ("beryl", "2021-05-01", "early", "2.0.0-1", "early"),  # before the announcement: counts from then
+            ("beryl", "2021-05-01", "late", "1.0.0-1", "late"),
+            ("beryl", "2021-07-01", "late", "1.0.1-1", "late"),
+            ("beryl", "2021-08-01", "late", "1.10.0-1", "late"),
+            ("beryl", "2021-05-01", "ahead", "2.9.0-1", "ahead"),
+        ],
+    )
+    older, newer = History("amber", data), History("beryl", data)
+    assert behind(older, newer, "2021-09-01") == [
+        Behind("early", "1.0.0", "2.0.0", 92),
+        Behind("late", "1.0.0", "1.10.0", 62),
+    ]
+    assert [item.package for item in behind(older, newer, "2021-06-15")] == ["early"]
