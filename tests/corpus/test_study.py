@@ -1,15 +1,26 @@
 """`rosimpact study run`: notebooks that fail fail the run; what is committed holds no texts and no paths."""
 
+import csv
 import json
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rosimpact.classifier.evaluate import Judged
+from rosimpact.classifier.reading import read as read_text
+from rosimpact.classifier.training import Example
+from rosimpact.corpus import study_triage
 from rosimpact.corpus.curves import pooled_share, survival
 from rosimpact.corpus.figures import apart
-from rosimpact.corpus.report import CorpusError
+from rosimpact.corpus.report import KINDS, LABELS, CorpusError, Report, read_labels
 from rosimpact.corpus.study import NOTEBOOKS, command, run
+from rosimpact.impact.cli import app
+from rosimpact.impact.rules.rule import all_rules
+from typer.testing import CliRunner
+
+DATA = NOTEBOOKS / "data"
+DOCS = NOTEBOOKS.parent / "docs"
 
 DRAWS = """
 import matplotlib.pyplot as plt
@@ -38,6 +49,15 @@ def test_figures_are_written_and_two_runs_are_equal(tmp_path):
         assert (outcome.failure, outcome.figures) == ("", ("line",))
     for file in ("01_made.ipynb", "figures/line.svg", "figures/line.png"):
         assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
+
+
+def test_the_command_line(tmp_path):
+    folder = folder_with(tmp_path, DRAWS)
+    options = ["--notebooks", str(folder), "--output", str(tmp_path / "out")]
+    result = CliRunner().invoke(app, ["study", "run", "01", *options])
+    assert (result.exit_code, (tmp_path / "out/figures/line.svg").is_file()) == (0, True)
+    result = CliRunner().invoke(app, ["study", "run", "07", *options])
+    assert result.exit_code == 2
 
 
 @pytest.mark.parametrize(
@@ -96,6 +116,90 @@ def test_what_is_committed_holds_outputs_but_no_paths_and_no_long_quotes():
             cell for text in shown for line in text.splitlines() if "|" in line for cell in line.split("|")
         ]
         assert all(len(cell.split()) <= 30 for cell in cells_of_tables)
+
+
+# The shipped facts
+
+
+def rows_of(name):
+    with (DATA / name).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_every_kind_has_its_rules_and_every_rule_named_exists():
+    rows = rows_of("rules_of_kinds.csv")
+    kinds = [(label, kind) for label in LABELS for kind in KINDS.get(label, ("",))]
+    assert [(row["label"], row["kind"]) for row in rows] == kinds
+    assert {rule for row in rows for rule in row["rules"].split()} <= all_rules().keys()
+    for row in rows:
+        assert row["extent"] in ("yes", "in part", "hardly", "no")
+        assert (row["extent"] == "no") == (row["rules"] == "")
+
+
+def test_what_robust_counts_is_what_its_page_says():
+    page = (DOCS / "labels.md").read_text(encoding="utf-8")
+    table = page[page.index("| | sure | likely | unmapped |") :].split("\n\n")[0].splitlines()[2:]
+    cells = [[cell.strip(" `") or "0" for cell in line.strip("|").split("|")] for line in table]
+    assert [list(row.values()) for row in rows_of("robust.csv")] == cells
+
+
+def test_the_shipped_predictions_are_of_the_committed_labels():
+    labels = {label.id: (label.label, label.decided) for label in read_labels()}
+    found = study_triage.read(DATA)
+    assert {one.id: (one.label, one.decided) for one in found.predictions} == labels
+    assert all(abs(sum(one.probabilities) - 1) < 1e-3 for one in found.predictions)
+    assert {row["id"] for row in rows_of("triage_errors_read.csv")} <= labels.keys()
+
+
+def test_predictions_hold_no_text_and_can_be_read_again(tmp_path):
+    report = Report("acme/arm#1", "https://x", "github", None, "Fails on jazzy", "secret words")
+    example = Example(
+        report=report, label="dependency", twice=False, reading=read_text(report.title, report.body)
+    )
+    judged = Judged(np.array([[0.1, 0.6, 0.1, 0.1, 0.1]]), np.array([True]))
+    beside = study_triage.beside_of([example, example], {"majority": np.array([1, 1])})
+    assert beside["majority"]["right"] == 1
+    found = study_triage.Measured(
+        study_triage.predictions_of([example], judged), beside, {"labels_digest": "1", "texts_digest": "2"}
+    )
+    study_triage.write(found, tmp_path)
+    assert study_triage.read(tmp_path) == found
+    assert "secret" not in "".join(path.read_text() for path in tmp_path.iterdir())
+    (one,) = found.predictions
+    assert (one.length, one.group, one.twice, one.abstained) == (26, "acme/arm", False, True)
+
+
+@pytest.mark.parametrize(
+    ("file", "change", "said"),
+    [
+        ("triage_predictions.jsonl", None, "No such file"),
+        ("triage_predictions.jsonl", ('"label":"other"', '"label":"wish"'), r"jsonl:\d+: `.*` is no prediction"),
+        ("triage_predictions.jsonl", ('"id"', '"name"'), "jsonl:1: .*missing required field"),
+        ("triage_beside.json", ('"beside"', '"other"'), "cannot be read"),
+    ],
+)
+def test_damaged_facts_name_the_file_and_the_cure(tmp_path, file, change, said):
+    for name in (study_triage.PREDICTIONS, study_triage.BESIDE):
+        text = (DATA / name).read_text(encoding="utf-8")
+        if name != file:
+            (tmp_path / name).write_text(text)
+        elif change:
+            (tmp_path / name).write_text(text.replace(*change))
+    with pytest.raises(CorpusError, match=said) as error:
+        study_triage.read(tmp_path)
+    assert "rosimpact study predict" in str(error.value)
+
+
+def test_predicting_from_a_file_that_is_not_there(tmp_path, capfd):
+    assert study_triage.command(tmp_path / "none.jsonl", tmp_path / "out", quiet=True) == 2
+    assert "none.jsonl" in capfd.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("page", [DOCS / "study.md", NOTEBOOKS / "README.md"])
+def test_the_pages_name_the_notebooks_there_are(page):
+    named = set(re.findall(r"\b\d\d_\w+(?=\.ipynb)", page.read_text(encoding="utf-8")))
+    assert named == {path.stem for path in NOTEBOOKS.glob("*.ipynb")}
 
 
 def test_survival_by_hand():
