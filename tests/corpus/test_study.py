@@ -153,9 +153,7 @@ def test_the_shipped_predictions_are_of_the_committed_labels():
 
 def test_predictions_hold_no_text_and_can_be_read_again(tmp_path):
     report = Report("acme/arm#1", "https://x", "github", None, "Fails on jazzy", "secret words")
-    example = Example(
-        report=report, label="dependency", twice=False, reading=read_text(report.title, report.body)
-    )
+    example = Example(report=report, label="dependency", twice=False, reading=read_text(report.title, report.body))
     judged = Judged(np.array([[0.1, 0.6, 0.1, 0.1, 0.1]]), np.array([True]))
     beside = study_triage.beside_of([example, example], {"majority": np.array([1, 1])})
     assert beside["majority"]["right"] == 1
