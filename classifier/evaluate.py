@@ -14,6 +14,7 @@ import numpy as np
 
 from ..corpus.report import LABELS
 from .model import softmax
+from .reading import VIEWS
 from .training import EVERYTHING, SEED, Example, Progress, Settings, calibrate, digests, fit, splits
 
 FOLDS = 10
@@ -23,11 +24,11 @@ COVERAGES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 
 ABLATIONS: dict[str, Settings] = {
     "words and signs, nothing left out": Settings(),
-    "without the annotators' reasons": Settings(reasons=0.0),
+    "without letters": Settings(views=tuple(view for view in VIEWS if view != "letters")),
     "without signs": Settings(signs=False),
-    "without generalised words": Settings(views=("title", "prose", "errors")),
-    "without plain words": Settings(views=("title-general", "prose-general", "errors-general")),
-    "without error lines": Settings(views=("title", "prose", "title-general", "prose-general")),
+    "without generalised words": Settings(views=("title", "prose", "errors", "letters")),
+    "without plain words": Settings(views=("title-general", "prose-general", "errors-general", "letters")),
+    "without error lines": Settings(views=("title", "prose", "title-general", "prose-general", "letters")),
     "title words and signs only": Settings(views=("title", "title-general")),
 }
 

@@ -50,11 +50,7 @@ class Words(BaseEstimator, TransformerMixin):
 
     def transform(self, readings: Sequence[Reading]) -> csr_matrix:
         """One row of unit length a report."""
-        return self.transform_grams(reading.grams[self.view] for reading in readings)
-
-    def transform_grams(self, grams: Iterable[Mapping[str, int]]) -> csr_matrix:
-        """The same for n-grams that are counted already."""
-        counts = self._counts(grams)
+        counts = self._counts(reading.grams[self.view] for reading in readings)
         return csr_matrix(self.weights_.transform(counts)) if self.vocabulary_ else counts
 
     def _counts(self, grams: Iterable[Mapping[str, int]]) -> csr_matrix:

@@ -17,7 +17,7 @@ import numpy as np
 from .reading import VIEWS, Reading
 from .signs import DIGEST, LIMIT, SIGNS
 
-FORMAT = 1
+FORMAT = 2
 SHIPPED = Path(__file__).parent / "data" / "model.npz"
 
 
@@ -100,8 +100,8 @@ class Model:
         chances = softmax(self.scores(reading) / self.temperature)
         best = int(chances.argmax())
         probabilities = {label: float(chance) for label, chance in zip(self.labels, chances, strict=True)}
-        known = any(gram in known for view, known in self._columns.items() for gram in reading.grams[view])
-        return Verdict(self.labels[best], probabilities, not known or bool(chances[best] < self.threshold))
+        abstains = not self._knows(reading) or bool(chances[best] < self.threshold)
+        return Verdict(self.labels[best], probabilities, abstains)
 
     def reasons(self, reading: Reading, label: str, most: int = 8) -> list[Reason]:
         """The words and signs that spoke most for a label, strongest first."""
@@ -112,8 +112,9 @@ class Model:
         found: dict[tuple[str, str], float] = {}
         for column, weight in zip(columns, values * lead[columns], strict=True):
             view, gram = self._names[column]
-            key = (VIEWS[view].shown, gram)
-            found[key] = found.get(key, 0.0) + float(weight)
+            if VIEWS[view].shown:
+                key = (VIEWS[view].shown, gram)
+                found[key] = found.get(key, 0.0) + float(weight)
         signs = self._signs(reading) * lead[len(self._names) :]
         for name, strength, weight in zip(SIGNS, reading.signs, signs, strict=True):
             if strength > 0:
@@ -126,11 +127,16 @@ class Model:
         columns, values = self._words(reading)
         vector = values @ self.arrays["projection"][columns].astype(np.float32)
         length = float(np.linalg.norm(vector))
-        if length < 1e-9 or not len(self.seen):
+        if length < 1e-9 or not len(self.seen) or not self._knows(reading):
             return []
         likeness = self.arrays["vectors"].astype(np.float32) @ (vector / length)
         order = np.argsort(-likeness, kind="stable")[:most]
         return [Known(*self.seen[place], likeness=float(likeness[place])) for place in order]
+
+    def _knows(self, reading: Reading) -> bool:
+        """Whether the model knows any word of a report; letters it always does."""
+        words = ((reading.grams[view], known) for view, known in self._columns.items() if VIEWS[view].shown)
+        return any(gram in known for grams, known in words for gram in grams)
 
     def _words(self, reading: Reading) -> tuple[np.ndarray, np.ndarray]:
         columns: list[int] = []

@@ -7,16 +7,17 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from .signs import signs_of
-from .text import general_words, n_grams, parts_of, plain_words
+from .text import general_words, letters, n_grams, parts_of, plain_words
 
-LONGEST_VIEW = 1_000
-"""Words of a view that are read."""
+TITLE, BEGINNING = 250, 1_500
+"""Characters of title and body that are read letter by letter."""
 
 
 class View(NamedTuple):
     """One way to read a report: which text, as which words, in runs of how many at most, with which weight.
 
-    shown: how it is called where a word is shown to a person.
+    shown: how it is called where a word is shown to a person; empty for what would tell a person nothing. rare: how
+    many times more reports than others its n-grams must stand in. most: words that are read.
     """
 
     words: Callable[[str], list[str]]
@@ -24,6 +25,8 @@ class View(NamedTuple):
     longest: int
     weight: float
     shown: str
+    rare: int = 1
+    most: int = 1_000
 
 
 VIEWS = {
@@ -33,6 +36,7 @@ VIEWS = {
     "title-general": View(general_words, "title", 3, 0.7, "title"),
     "prose-general": View(general_words, "text", 3, 1.0, "text"),
     "errors-general": View(general_words, "errors", 2, 0.6, "log"),
+    "letters": View(letters, "whole", 1, 1.0, "", rare=2, most=10_000),
 }
 """Names of the views, which the model file uses too."""
 
@@ -47,15 +51,13 @@ class Reading(NamedTuple):
 def read(title: str, body: str) -> Reading:
     """Reads a report; any text will do."""
     parts = parts_of(title, body)
-    texts = {"title": parts.title, "text": f"{parts.title}\n{parts.prose}", "errors": parts.errors}
-    words = {name: view.words(texts[view.part])[:LONGEST_VIEW] for name, view in VIEWS.items()}
+    texts = {
+        "title": parts.title,
+        "text": f"{parts.title}\n{parts.prose}",
+        "errors": parts.errors,
+        # The title counts twice.
+        "whole": f"{title[:TITLE]} . {title[:TITLE]} . {body[:BEGINNING]}",
+    }
+    words = {name: view.words(texts[view.part])[: view.most] for name, view in VIEWS.items()}
     grams = {name: Counter(n_grams(words[name], view.longest)) for name, view in VIEWS.items()}
     return Reading(grams, signs_of(parts, words["prose-general"]))
-
-
-def read_reason(why: str) -> dict[str, Counter[str]]:
-    """The n-grams of an annotator's reason, as if it were title and text of a report."""
-    return {
-        name: Counter(n_grams(view.words(why), view.longest)) if view.part != "errors" else Counter()
-        for name, view in VIEWS.items()
-    }

@@ -113,6 +113,20 @@ def general_words(text: str) -> list[str]:
     return found
 
 
+def letters(text: str) -> list[str]:
+    """Runs of three to five letters or signs inside each word, its ends marked by blanks: what is left of a word in
+    names, paths and messages of compilers."""
+    found: list[str] = []
+    for word in text.lower().encode("utf-8", "ignore").decode().split():
+        marked = f" {word[:_LONGEST_WORD]} "
+        for length in (3, 4, 5):
+            if len(marked) <= length:
+                found.append(marked)
+                break
+            found.extend(marked[start : start + length] for start in range(len(marked) - length + 1))
+    return found
+
+
 def n_grams(words: list[str], longest: int) -> list[str]:
     """All runs of one to `longest` words, joined by a space."""
     found = list(words)

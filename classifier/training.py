@@ -1,8 +1,7 @@
 """Training: labelled reports to a model; the same reports give the same model.
 
-One linear model (logistic regression) reads the words of all views and the signs. The annotators' reasons, which are in
-the project's own words, are learnt from too, as short reports of half the weight. Probabilities are calibrated and the
-point below which the model abstains is chosen on reports of repositories that the model in question has not seen.
+One linear model (logistic regression) reads the words of all views and the signs. Probabilities are calibrated, and the
+point below which the model abstains is chosen, on reports of repositories that the model in question has not seen.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from scipy.sparse import csr_matrix, hstack, vstack
+from scipy.sparse import csr_matrix, hstack
 from sklearn.decomposition import TruncatedSVD
 from sklearn.linear_model import LogisticRegression
 from sklearn.model_selection import StratifiedGroupKFold
@@ -25,8 +24,8 @@ from sklearn.model_selection import StratifiedGroupKFold
 from ..corpus.report import LABELS, CorpusError, Report, read_labels, read_reports
 from .features import Signs, Words
 from .model import FORMAT, ClassifierError, Model, packed, packed_lines, softmax
-from .reading import VIEWS, Reading, read, read_reason
-from .signs import DIGEST, SIGNS
+from .reading import VIEWS, Reading, read
+from .signs import DIGEST
 
 FEWEST = 8
 """Reports that each label in use needs."""
@@ -47,7 +46,6 @@ class Example(NamedTuple):
 
     report: Report
     label: str
-    why: str
     twice: bool
     reading: Reading
 
@@ -57,8 +55,7 @@ class Settings(NamedTuple):
 
     views: tuple[str, ...] = tuple(VIEWS)
     signs: bool = True
-    reasons: float = 0.5
-    strength: float = 5.0
+    strength: float = 3.0
 
 
 EVERYTHING = Settings()
@@ -91,7 +88,7 @@ def examples(labels: Path, reports: Path, progress: Progress | None = None) -> l
         if progress:
             progress("reading reports", number, len(texts))
         reading = read(report.title, report.body)
-        found.append(Example(report, label.label, label.why, label.decided != "single", reading))
+        found.append(Example(report, label.label, label.decided != "single", reading))
     if not found:
         raise ClassifierError(
             f"{reports}: holds none of the {len(known)} reports labelled in {labels}; "
@@ -117,7 +114,7 @@ def digests(found: Sequence[Example]) -> dict[str, str]:
     labels, texts = hashlib.sha256(), hashlib.sha256()
     for example in found:
         report = example.report
-        labels.update(f"{report.id}\t{example.label}\t{example.why}\n".encode())
+        labels.update(f"{report.id}\t{example.label}\n".encode())
         texts.update(f"{report.id}\t{report.title}\t{report.body}\n".encode("utf-8", "surrogatepass"))
     return {"labels_digest": labels.hexdigest(), "texts_digest": texts.hexdigest()}
 
@@ -139,21 +136,17 @@ def fit(found: Sequence[Example], settings: Settings = EVERYTHING) -> Linear:
     groups = [example.report.group for example in found]
     homes = len(set(groups))
     reports = 4 if len(found) >= 400 else 2
-    words = {view: Words(view, reports, min(3, homes)).fit(readings, groups) for view in settings.views}
+    words = {
+        view: Words(view, reports * VIEWS[view].rare, min(3, homes)).fit(readings, groups) for view in settings.views
+    }
     signs = Signs().fit(readings) if settings.signs else None
     rows = _matrix(words, signs, readings)
     labels = np.array([example.label for example in found])
-    weights = np.ones(len(found))
-    told = [example for example in found if example.why] if settings.reasons else []
-    if told:
-        rows = csr_matrix(vstack([rows, _reasons(words, signs, told)]))
-        labels = np.concatenate([labels, [example.label for example in told]])
-        weights = np.concatenate([weights, np.full(len(told), settings.reasons)])
     present = tuple(label for label in LABELS if label in set(labels))
     if len(present) < 2:
         raise ClassifierError("only one label is left to learn from in one part of the reports; label more")
     regression: Any = LogisticRegression(C=settings.strength, class_weight="balanced", max_iter=2_000)
-    regression.fit(rows, labels, sample_weight=weights)
+    regression.fit(rows, labels)
     order = [list(regression.classes_).index(label) for label in present]
     coefficients, intercept = regression.coef_, regression.intercept_
     if len(present) == 2:
@@ -273,13 +266,4 @@ def _matrix(words: dict[str, Words], signs: Signs | None, readings: Sequence[Rea
     parts = [VIEWS[view].weight * words[view].transform(readings) for view in words]
     if signs is not None:
         parts.append(csr_matrix(signs.transform(readings)))
-    return csr_matrix(hstack(parts))
-
-
-def _reasons(words: dict[str, Words], signs: Signs | None, told: Sequence[Example]) -> csr_matrix:
-    """The annotators' reasons as rows; they have words only, and no signs."""
-    grams = [read_reason(example.why) for example in told]
-    parts = [VIEWS[view].weight * words[view].transform_grams(row[view] for row in grams) for view in words]
-    if signs is not None:
-        parts.append(csr_matrix((len(told), len(SIGNS))))
     return csr_matrix(hstack(parts))

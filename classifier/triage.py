@@ -7,12 +7,13 @@ import os
 import re
 import sys
 from collections.abc import Collection, Iterable, Iterator
+from functools import cache
 from html import unescape
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import urlsplit
 
-from .model import ClassifierError, Known, Model, Reason, Verdict
+from .model import ClassifierError, Known, Model, Reason, Verdict, load
 from .reading import read
 from .text import DISTROS
 
@@ -66,6 +67,17 @@ def triage(model: Model, post: Post, commands: Collection[str]) -> Triage:
         model.nearest(reading),
         checks(verdict.label, post, commands),
     )
+
+
+def suggest(title: str, body: str) -> tuple[str, dict[str, float]]:
+    """The likeliest label of a report and the probability of each, by the shipped model. Raises ClassifierError."""
+    verdict = _shipped().verdict(read(title, body))
+    return verdict.label, verdict.probabilities
+
+
+@cache
+def _shipped() -> Model:
+    return load()
 
 
 def checks(label: str, post: Post, commands: Collection[str]) -> list[str]:

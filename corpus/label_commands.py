@@ -61,13 +61,14 @@ def _label(
 
 
 def suggest(title: str, body: str) -> tuple[str, dict[str, float]]:
-    """The classifier's likeliest label of a report, and the probability of each. Raises CorpusError when there is no
-    classifier."""
+    """The classifier's likeliest label of a report, and the probability of each. Raises CorpusError."""
+    from ..classifier.model import ClassifierError
+    from ..classifier.triage import suggest as triaged
+
     try:
-        from ..classifier.triage import suggest as triaged
-    except ImportError as error:
-        raise CorpusError(f"the classifier cannot be loaded ({error})") from None
-    return triaged(title, body)
+        return triaged(title, body)
+    except ClassifierError as error:
+        raise CorpusError(str(error)) from None
 
 
 def _nothing(mode: str, texts: list[Report]) -> str:

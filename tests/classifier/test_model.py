@@ -146,7 +146,7 @@ class TestRefusals:
         with pytest.raises(ClassifierError, match="cannot be read"):
             load(tmp_path / "none.npz")
 
-    @pytest.mark.parametrize("change", [{"format": 2}, {"signs": "0"}])
+    @pytest.mark.parametrize("change", [{"format": 1}, {"signs": "0"}])
     def test_a_model_for_other_features(self, tmp_path, model, change):
         arrays = model.arrays | {"about": packed(model.about | change)}
         file = tmp_path / "m.npz"
