@@ -8,7 +8,6 @@ import re
 import sys
 from collections.abc import Collection, Iterable, Iterator
 from functools import cache
-from html import unescape
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import urlsplit
@@ -36,6 +35,8 @@ _DISTRO = re.compile(rf"\b(?:{'|'.join((*DISTROS['ros1'], *DISTROS['ros2']))})\b
 _TARGETED = ("kinetic", "lunar", "melodic", "noetic", *DISTROS["ros2"])
 _ADDRESS = re.compile(r"https?://\S+\Z")
 _TIMEOUT = 20.0
+_PATIENCE = 15.0
+_TRIES = 3
 
 
 class Post(NamedTuple):
@@ -175,7 +176,12 @@ def is_address(text: str) -> bool:
 
 
 def fetch(url: str) -> Post:
-    """A GitHub issue or pull request, or a question of Robotics Stack Exchange. Raises ClassifierError."""
+    """A GitHub issue or pull request, or a question of Stack Exchange. Raises ClassifierError."""
+    from ..corpus.polite import Client
+    from ..corpus.report import CorpusError
+    from ..corpus.sources import github, stack_exchange
+    from ..corpus.tokens import github_token, stack_exchange_key
+
     place = urlsplit(url)
     host = (place.hostname or "").removeprefix("www.")
     issue = _ISSUE.match(place.path.rstrip("/"))
@@ -184,59 +190,38 @@ def fetch(url: str) -> Post:
         raise ClassifierError(
             f"{url}: answers.ros.org is gone; give the question's address on robotics.stackexchange.com, or its text"
         )
-    if issue and "stackexchange" not in host:
-        owner, name, number = issue.groups()
-        base = os.environ.get(GITHUB_API, "https://api.github.com").rstrip("/")
-        token = os.environ.get("GITHUB_TOKEN") or os.environ.get("GH_TOKEN") or ""
-        headers = {"Accept": "application/vnd.github+json"} | ({"Authorization": f"Bearer {token}"} if token else {})
-        found = _asked(url, f"{base}/repos/{owner}/{name}/issues/{number}", {}, headers)
-        return Post(f"{owner}/{name}#{number}", str(found.get("title") or ""), str(found.get("body") or ""))
-    if question and host.endswith("stackexchange.com"):
-        base = os.environ.get(STACK_API, "https://api.stackexchange.com/2.3").rstrip("/")
-        site = host.split(".")[0]
-        asked = {"site": site, "filter": "withbody"}
-        items = _asked(url, f"{base}/questions/{question.group(1)}", asked, {}).get("items")
-        if not isinstance(items, list) or not items or not isinstance(items[0], dict):
-            raise ClassifierError(f"{url}: there is no such question; check the address")
-        title, body = unescape(str(items[0].get("title") or "")), str(items[0].get("body") or "")
-        return Post(f"{site}:{question.group(1)}", title, _markdown(body))
-    raise ClassifierError(
-        f"{url}: is no issue, pull request or question that can be fetched; give one of GitHub or "
-        "robotics.stackexchange.com, or the text itself"
-    )
 
+    def client(service: str, secret: str) -> Client:
+        return Client(service, patience=_PATIENCE, timeout=_TIMEOUT, tries=_TRIES, secrets=(secret,))
 
-def _asked(url: str, address: str, query: dict[str, str], headers: dict[str, str]) -> dict:
-    import requests
-
-    text = "or give the text itself"
     try:
-        answer = requests.get(address, params=query, headers=headers, timeout=_TIMEOUT)
-    except requests.RequestException as error:
+        if issue and "stackexchange" not in host:
+            owner, name, number = issue.groups()
+            api = os.environ.get(GITHUB_API) or github.API
+            token = github_token(api)
+            server = github.GitHub(client("GitHub", token), api, token)
+            (asked,) = server.ask([(f"{owner}/{name}#{number}", "")])
+        elif question and host.endswith(".stackexchange.com"):
+            api = os.environ.get(STACK_API) or stack_exchange.API
+            key = stack_exchange_key(api)
+            site = host.split(".")[0]
+            server = stack_exchange.StackExchange(client("Stack Exchange", key), api, key, site)
+            (asked,) = server.ask([(f"{site}:{question.group(1)}", "")])
+        else:
+            raise ClassifierError(
+                f"{url}: is no issue, pull request or question that can be fetched; give one of GitHub or "
+                "robotics.stackexchange.com, or the text itself"
+            )
+    except CorpusError as error:
         raise ClassifierError(
-            f"{url}: {urlsplit(address).hostname} cannot be reached ({type(error).__name__}); try again online, {text}"
+            f"{url}: {str(error).partition(';')[0]}; try again later, or give the text itself"
         ) from None
-    if answer.status_code in (404, 410):
-        raise ClassifierError(f"{url}: is not there, or not public; check the address, set GITHUB_TOKEN, {text}")
-    if answer.status_code in (403, 429):
-        raise ClassifierError(f"{url}: asked too often (status {answer.status_code}); wait, set GITHUB_TOKEN, {text}")
-    try:
-        found = answer.json() if answer.ok else None
-    except ValueError:
-        found = None
-    if not isinstance(found, dict):
-        raise ClassifierError(f"{url}: the server answered {answer.status_code} and no report; try again later, {text}")
-    return found
-
-
-def _markdown(html: str) -> str:
-    """Text of a question with its code fenced, as reports elsewhere have it."""
-    from bs4 import BeautifulSoup
-
-    page = BeautifulSoup(html, "html.parser")
-    for block in page.find_all("pre"):
-        block.replace_with(f"\n```\n{block.get_text()}\n```\n")
-    return page.get_text()
+    if asked.gathered is None:
+        raise ClassifierError(
+            f"{url}: is not there, or not public; check the address, set GITHUB_TOKEN, or give the text itself"
+        )
+    report = asked.gathered.report
+    return Post(report.id, report.title, report.body)
 
 
 def from_argument(argument: str) -> Post | Path | None:

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from rosimpact.classifier.model import load
 from rosimpact.classifier.triage import CHECKS, Post, checks, from_text, is_address, post_of, triage
+from rosimpact.corpus.polite import Clock
 from rosimpact.impact.cli import app
 from typer.testing import CliRunner
 
@@ -177,38 +178,54 @@ class TestStream:
 
 class TestAddresses:
     def test_an_issue(self, server):
-        page = {"title": "undefined symbol since the upgrade to noetic", "body": None}
+        page = {
+            "title": "undefined symbol since the upgrade to noetic",
+            "body": None,
+            "number": 12,
+            "url": f"{server.address}/repos/o/r/issues/12",
+            "repository_url": f"{server.address}/repos/o/r",
+            "html_url": "https://github.com/o/r/issues/12",
+            "created_at": "2024-01-31T10:00:00Z",
+            "updated_at": "2024-01-31T10:00:00Z",
+            "labels": [],
+            "user": {"login": "ann"},
+        }
         server.pages["/repos/o/r/issues/12"] = (200, json.dumps(page).encode())
         for url in ("https://github.com/o/r/issues/12", "https://github.com/o/r/pull/12/files"):
             found = json.loads(run(url, "-f", "json").stdout)
             assert (found["id"], found["label"]) == ("o/r#12", "library-update")
 
     def test_a_question(self, server):
-        page = {"items": [{"title": "R&amp;D: no rosdep key for x", "body": "<p>rosdep fails</p><pre>no key</pre>"}]}
+        question = {"question_id": 98, "creation_date": 1706700000, "title": "R&amp;D: no rosdep key for x"}
+        question |= {"body": "<p>rosdep fails</p><pre>no key</pre>", "link": "https://robotics.stackexchange.com/q/98"}
+        page = {"items": [question], "has_more": False, "quota_max": 300, "quota_remaining": 299}
         server.pages["/questions/98"] = (200, json.dumps(page).encode())
         found = json.loads(run("https://robotics.stackexchange.com/questions/98/no-key", "-f", "json").stdout)
-        assert (found["id"], found["label"]) == ("robotics:98", "dependency")
+        assert (found["id"], found["label"]) == ("robotics-se:98", "dependency")
 
     @pytest.mark.parametrize(
         ("status", "body", "says"),
         [
             (404, b"{}", "is not there, or not public"),
             (410, b"{}", "is not there, or not public"),
-            (403, b"{}", "asked too often"),
-            (429, b"{}", "asked too often"),
-            (502, b"<html>", "answered 502 and no report"),
-            (200, b"<html>", "answered 200 and no report"),
-            (200, b"[]", "answered 200 and no report"),
+            (403, b"{}", "answered with status 403"),
+            (429, b"{}", "the rate limit is reached, and says to come back at"),
+            (502, b"<html>", "answered with status 502, 3 times in a row"),
+            (200, b"<html>", "that is no JSON, 3 times in a row"),
+            (200, b"[]", "is not there, or not public"),
         ],
     )
-    def test_a_server_that_refuses(self, server, status, body, says):
+    def test_a_server_that_refuses(self, server, monkeypatch, status, body, says):
+        monkeypatch.setattr(Clock, "sleep", lambda self, seconds: None)
         server.pages["/repos/o/r/issues/1"] = (status, body)
         result = run("https://github.com/o/r/issues/1")
         assert result.exit_code == 2
         assert result.stderr.startswith("rosimpact: https://github.com/o/r/issues/1: ")
         assert says in result.stderr
+        assert "or give the text itself" in result.stderr
 
     def test_offline(self, monkeypatch):
+        monkeypatch.setattr(Clock, "sleep", lambda self, seconds: None)
         monkeypatch.setenv("ROSIMPACT_GITHUB_API", "http://127.0.0.1:9")
         result = run("https://github.com/o/r/issues/1")
         assert result.exit_code == 2
