@@ -216,8 +216,10 @@ def line(axes: Axes, curve: Curve, name: str, colour: str, step: bool = True, ba
 
 
 def names(axes: Axes, room: float = 0.18, size: float = 9) -> None:
-    """Writes each line's name at its end, in its colour, apart enough to be read. room: added width for them, as a
-    share of the axis."""
+    """Writes each line's name at its end, in its colour; those of lines that end near each other are kept apart.
+    room: added width for them, as a share of the axis."""
+    from matplotlib.patheffects import withStroke
+
     left, right = axes.get_xlim()
     bottom, top = axes.get_ylim()
     ends = []
@@ -227,14 +229,29 @@ def names(axes: Axes, room: float = 0.18, size: float = 9) -> None:
         if name.startswith("_") or not len(x):
             continue
         ends.append([float(y[-1]), float(x[-1]), name, drawn.get_color()])
-    ends.sort(key=lambda end: end[0])
     height = axes.get_window_extent().height or 300
     gap = (size + 3) * 100 / 72 / height * (top - bottom)
-    places = apart([end[0] for end in ends], gap, bottom, top)
-    axes.set_xlim(left, right + room * (right - left))
-    for (y, x, name, colour), place in zip(ends, places, strict=True):
-        axes.annotate(name, (x, y), (x + 0.02 * (right - left), place), color=colour, size=size, va="center",
-                      annotation_clip=False)  # fmt: skip
+    width = right - left
+    axes.set_xlim(left, right + room * width)
+    for near in _neighbours(ends, 0.05 * width):
+        near.sort(key=lambda end: end[0])
+        places = apart([end[0] for end in near], gap, bottom, top)
+        for (y, x, name, colour), place in zip(near, places, strict=True):
+            written = axes.annotate(
+                name, (x, y), (x + 0.01 * width, place), color=colour, size=size, va="center", annotation_clip=False
+            )
+            written.set_path_effects([withStroke(linewidth=2.5, foreground="white")])
+
+
+def _neighbours(ends: list[list[Any]], reach: float) -> list[list[list[Any]]]:
+    """Ends (y, x, …) in groups: each is within reach of the one before it in x."""
+    groups: list[list[list[Any]]] = []
+    for end in sorted(ends, key=lambda end: end[1]):
+        if groups and end[1] - groups[-1][-1][1] <= reach:
+            groups[-1].append(end)
+        else:
+            groups.append([end])
+    return groups
 
 
 def apart(wanted: Sequence[float], gap: float, bottom: float, top: float) -> list[float]:
@@ -269,7 +286,8 @@ def dots(
     axes.tick_params(axis="y", labelcolor=INK)
     axes.grid(axis="y", visible=False)
     if len(series) > 1:
-        axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, -0.16), ncols=len(series), labelcolor=INK)
+        below = -0.35 * axes.figure.dpi / axes.figure.bbox.height  # a third of an inch, however high the figure
+        axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, below), ncols=len(series), labelcolor=INK)
 
 
 def stacked(

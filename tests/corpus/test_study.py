@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from rosimpact.classifier.evaluate import Judged
 from rosimpact.classifier.reading import read as read_text
 from rosimpact.classifier.training import Example
 from rosimpact.corpus import study_triage
 from rosimpact.corpus.curves import pooled_share, survival
-from rosimpact.corpus.figures import apart
+from rosimpact.corpus.figures import apart, names
 from rosimpact.corpus.report import KINDS, LABELS, CorpusError, Report, read_labels
 from rosimpact.corpus.study import NOTEBOOKS, command, run
 from rosimpact.impact.cli import app
@@ -223,3 +224,13 @@ def test_a_share_of_groups_that_are_alike_has_no_width():
 def test_names_stay_apart():
     assert apart([0.0, 0.01, 0.5], 0.1, 0, 1) == pytest.approx([0, 0.1, 0.5])
     assert apart([0.95, 0.99], 0.1, 0, 1) == pytest.approx([0.9, 1])
+
+
+def test_names_of_lines_that_end_far_apart_are_left_where_they_are():
+    axes = Figure(figsize=(9, 4)).subplots()
+    for name, x in (("early", 1.0), ("late", 10.0), ("later", 10.0)):
+        axes.plot([0, x], [0, 1], label=name)
+    names(axes)
+    heights = {text.get_text(): text.xyann[1] for text in axes.texts}
+    assert heights["early"] == pytest.approx(1)
+    assert abs(heights["late"] - heights["later"]) > 0.03
