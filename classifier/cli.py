@@ -55,7 +55,10 @@ def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: 
                 if jsonl or (first.lstrip().startswith("{") and post_of(first) is not None):
                     triage_all(model, _chain(first, stream), name)
                     return
-                found = from_text(first + stream.read(), name)
+                text = first + stream.read()
+                if found is not None and "\0" in text:
+                    raise ClassifierError(f"{name}: is no text; give a report as text or as JSON Lines")
+                found = from_text(text, name)
         except OSError as error:
             raise ClassifierError(f"{name}: cannot be read: {error.strerror}; give another file") from None
     elif jsonl:
@@ -79,7 +82,7 @@ def _text_of(file: Path | None) -> IO[str]:
 
 @app.command()
 def train(
-    reports: Annotated[Path, typer.Option(help="JSON Lines of reports with their texts.")],
+    reports: Annotated[Path, typer.Option(help="The texts: a store of `rosimpact corpus`, or JSON Lines.")],
     labels: Annotated[
         Path | None, typer.Option(help="JSON Lines of labels; those of the corpus when left out.")
     ] = None,
@@ -111,7 +114,7 @@ def train(
 
 @app.command()
 def evaluate(
-    reports: Annotated[Path, typer.Option(help="JSON Lines of reports with their texts.")],
+    reports: Annotated[Path, typer.Option(help="The texts: a store of `rosimpact corpus`, or JSON Lines.")],
     labels: Annotated[
         Path | None, typer.Option(help="JSON Lines of labels; those of the corpus when left out.")
     ] = None,

@@ -261,8 +261,12 @@ def as_text(result: dict) -> str:
     ]
     lines += ["", f"calibration error (bins of equal mass): {result['calibration_error']:.3f}"]
     lines.append(
-        f"abstaining: answers {100 * result['abstaining']['answered']:.1f} %, of which "
-        f"{100 * (result['abstaining']['right'] or 0):.1f} % are right"
+        f"abstaining: answers {100 * result['abstaining']['answered']:.1f} %"
+        + (
+            f", of which {100 * result['abstaining']['right']:.1f} % are right"
+            if result["abstaining"]["right"] is not None
+            else ""
+        )
     )
     lines += ["", "surest part   right"]
     lines += [f"{100 * row['answered']:9.0f} %   {100 * row['right']:.1f} %" for row in result["risk_coverage"]]

@@ -21,7 +21,8 @@ from sklearn.decomposition import TruncatedSVD
 from sklearn.linear_model import LogisticRegression
 from sklearn.model_selection import StratifiedGroupKFold
 
-from ..corpus.report import LABELS, CorpusError, Report, read_labels, read_reports
+from ..corpus.report import LABELS, CorpusError, Report, read_labels
+from ..corpus.store import open_reports
 from .features import Signs, Words
 from .model import FORMAT, ClassifierError, Model, packed, packed_lines, softmax
 from .reading import VIEWS, Reading, read
@@ -79,9 +80,11 @@ def examples(labels: Path, reports: Path, progress: Progress | None = None) -> l
     """Labelled reports in the order of their ids. Raises ClassifierError when there are too few to learn from."""
     try:
         known = {label.id: label for label in read_labels(labels)}
-        texts = {report.id: report for report in read_reports(reports) if report.id in known}
+        texts = {report.id: report for report in open_reports(reports) if report.id in known}
     except CorpusError as error:
         raise ClassifierError(str(error)) from None
+    if not known:
+        raise ClassifierError(f"{labels}: holds no labels; give a file that does")
     found: list[Example] = []
     for number, id in enumerate(sorted(texts), 1):
         report, label = texts[id], known[id]
@@ -91,7 +94,7 @@ def examples(labels: Path, reports: Path, progress: Progress | None = None) -> l
         found.append(Example(report, label.label, label.decided != "single", reading))
     if not found:
         raise ClassifierError(
-            f"{reports}: holds none of the {len(known)} reports labelled in {labels}; "
+            f"{reports}: holds none of the {len(known):,} reports labelled in {labels}; "
             "gather them with `rosimpact corpus hydrate`, or give the file that belongs to these labels"
         )
     counts = Counter(example.label for example in found)
@@ -198,7 +201,8 @@ def calibrate(
     good = np.flatnonzero(precision >= RIGHT)
     quantile = float(np.quantile(sure, 1 - ANSWERED))
     threshold = min(quantile, float(sure[order[good[-1]]])) if len(good) else quantile
-    return Calibration(round(temperature, 6), round(threshold, 6))
+    # Rounded down: a model that is sure of everything would abstain from everything otherwise.
+    return Calibration(round(temperature, 6), float(np.floor(threshold * 1e6 - 1) / 1e6))
 
 
 def train(found: Sequence[Example], seed: int = SEED, progress: Progress | None = None) -> Model:

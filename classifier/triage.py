@@ -34,6 +34,7 @@ _QUESTION = re.compile(r"/(?:questions|q)/(\d+)(?:/.*)?\Z")
 _DISTRO = re.compile(rf"\b(?:{'|'.join((*DISTROS['ros1'], *DISTROS['ros2']))})\b", re.IGNORECASE)
 _TARGETED = ("kinetic", "lunar", "melodic", "noetic", *DISTROS["ros2"])
 _ADDRESS = re.compile(r"https?://\S+\Z")
+_BARE_ADDRESS = re.compile(r"(?:www\.)?(?:github\.com|[\w.]*stackexchange\.com|answers\.ros\.org)/\S+\Z")
 _TIMEOUT = 20.0
 _PATIENCE = 15.0
 _TRIES = 3
@@ -230,12 +231,17 @@ def from_argument(argument: str) -> Post | Path | None:
         return None
     if is_address(argument):
         return fetch(argument)
+    if _BARE_ADDRESS.match(argument):
+        return fetch(f"https://{argument}")
     try:
         path = Path(argument)
         if path.is_file():
             return path
+        folder = bool(argument.strip()) and path.is_dir()
     except (OSError, ValueError):
-        pass
+        folder = False
+    if folder:
+        raise ClassifierError(f"{argument}: is a folder; give a file, an address or a text")
     if re.fullmatch(r"\S+\.(?:jsonl?|md|txt)", argument):
         raise ClassifierError(f"{argument}: there is no such file; give an existing one, an address or a text")
     return from_text(argument)

@@ -6,6 +6,7 @@ Texts of reports belong to those who wrote them and are in no file of the projec
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TypeVar
@@ -162,6 +163,8 @@ def _read(path: Path, kind: type[_Row]) -> Iterator[_Row]:
     try:
         with path.open("rb") as file:
             for number, line in enumerate(file, 1):
+                if number == 1:
+                    line = line.removeprefix(codecs.BOM_UTF8)
                 if not line.strip():
                     continue
                 try:

@@ -69,7 +69,9 @@ def run(
     if reports is not None and not full:
         raise CorpusError(f"{reports}: the small form reads no texts; add --full, or leave --reports out")
     if reports is not None and not reports.is_file():
-        raise CorpusError(f"{reports}: no such file; `rosimpact corpus hydrate` writes one")
+        raise CorpusError(
+            f"{reports}: no such file; give the store that `rosimpact corpus hydrate` fills, or JSON Lines"
+        )
     output.mkdir(parents=True, exist_ok=True)
     settings = {
         "output": str(output.resolve()),

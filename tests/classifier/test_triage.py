@@ -95,7 +95,7 @@ class TestOneReport:
     def test_a_report_without_a_word_is_one_it_is_unsure_of(self):
         assert run("zzqx wvyk").stdout.startswith("unsure: ")
 
-    @pytest.mark.parametrize("text", ["\udcff\x00 bytes", "\u202e\u0000", "a" * 3000, "🤖" * 50, "{", "[1]", "null"])
+    @pytest.mark.parametrize("text", ["\udcff bytes", "\u202e", "a" * 3000, "🤖" * 50, "{", "[1]", "null"])
     def test_any_text_is_answered(self, text, tmp_path):
         file = tmp_path / "x"
         file.write_bytes(text.encode("utf-8", "surrogateescape"))
@@ -244,6 +244,19 @@ class TestAddresses:
         result = run(url)
         assert result.exit_code == 2
         assert says in result.stderr
+
+    def test_an_address_without_its_scheme_is_one_all_the_same(self):
+        assert "answers.ros.org is gone" in run("answers.ros.org/question/1/x/").stderr
+        assert "is no issue, pull request or question" in run("github.com/o/r").stderr
+
+    def test_what_is_no_text_is_refused(self, tmp_path):
+        (tmp_path / "picture.png").write_bytes(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")
+        (tmp_path / "late.dat").write_bytes(b"a title\nand then\0\0\0")
+        for name in ("picture.png", "late.dat"):
+            result = run(str(tmp_path / name))
+            assert (result.exit_code, result.stdout) == (2, "")
+            assert f"{name}: is no text" in result.stderr
+        assert "is a folder" in run(str(tmp_path)).stderr
 
     def test_a_text_that_holds_an_address_is_a_text(self):
         assert not is_address("see https://github.com/o/r/issues/1")

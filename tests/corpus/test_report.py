@@ -112,3 +112,10 @@ def test_the_corpus_keeps_its_own_rules():
     assert {label.label for label in labels} == set(LABELS)
     assert {label.kind for label in labels if label.kind} == {kind for kinds in KINDS.values() for kind in kinds}
     assert all(len(label.annotators) == (1 if label.decided == "single" else 2) for label in labels)
+
+
+def test_a_byte_order_mark_is_no_fault(tmp_path):
+    write_rows(tmp_path / "labels.jsonl", [LABEL])
+    data = (tmp_path / "labels.jsonl").read_bytes()
+    (tmp_path / "labels.jsonl").write_bytes(b"\xef\xbb\xbf" + data)
+    assert read_labels(tmp_path / "labels.jsonl") == [LABEL]
