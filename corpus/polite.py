@@ -209,7 +209,7 @@ class Client:
     def _get(self, url, params, headers, lane, accept, whole, target=None) -> Answer:
         sent = _with_query(url, params)
         at = _place(url)
-        limited = 0
+        limited = attempt = 0
         fault = ""
         for attempt in range(self._tries):
             self._pace(lane)
@@ -237,10 +237,13 @@ class Client:
                     fault = "is over its rate limit"
                     self.wait(seconds, "the rate limit is reached")
                     continue
-            if attempt + 1 < self._tries:
-                self.wait(_backoff(attempt), f"{at} {fault}")
+            pause = _backoff(attempt)
+            if attempt + 1 == self._tries or self.waited + pause > self.patience:
+                break
+            self.wait(pause, f"{at} {fault}")
+        often = f", {attempt + 1} times in a row" if attempt else ""
         raise CorpusError(
-            f"{self.service}: {at} {fault}, {self._tries} times in a row; "
+            f"{self.service}: {at} {fault}{often}; "
             "what was gathered is kept, so check the address and the network and run the same command again"
         )
 
