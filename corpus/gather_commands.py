@@ -91,7 +91,7 @@ def refresh(sources: Sequence[str], limit: int | None, *, archive: Path | None, 
         for source in sources:
             if source not in SOURCES:
                 raise CorpusError(f"--source {source}: unknown; choose one of {', '.join(SOURCES)}")
-        with Store(store_path(manner.store)) as store, Reporter(
+        with Store(_existing(manner.store)) as store, Reporter(
             "refresh", verbose=manner.verbose, quiet=manner.quiet
         ) as reporter:  # fmt: skip
             services = _services(store, archive, manner, reporter)

@@ -12,7 +12,9 @@ from rosimpact.corpus.gather import Progress
 from rosimpact.corpus.progress import Estimate, Reporter, described
 from rosimpact.corpus.report import Report, read_reports, write_rows
 from rosimpact.corpus.store import Taken, open_reports
+from rosimpact.impact.cli import app
 from server import Fault, Services, archived, askbot_item, issue, question, stamp
+from typer.testing import CliRunner
 
 REPO = "ros2/rclcpp"
 
@@ -301,3 +303,10 @@ def test_a_terminal_shows_a_line_that_renews_itself():
         assert reporter._bars is not None
         reporter._bars.refresh()
     assert "github:a/[b]" in stream.getvalue() and "waiting 45 s" in stream.getvalue()
+
+
+def test_refresh_makes_no_store(tmp_path):
+    result = CliRunner().invoke(app, ["corpus", "refresh", "--store", str(tmp_path / "none.sqlite")])
+    assert result.exit_code == 2
+    assert "none.sqlite: is not there" in result.output
+    assert list(tmp_path.iterdir()) == []
