@@ -18,7 +18,7 @@ from .figures import SETTINGS
 from .report import CorpusError
 from .told import say, told
 
-NOTEBOOKS = Path(__file__).resolve().parent.parent / "notebooks"
+_BESIDE = Path(__file__).resolve().parent.parent / "notebooks"
 """Where the notebooks are in a checkout."""
 
 _NEEDED = ("nbclient", "nbformat", "ipykernel", "matplotlib")
@@ -30,6 +30,12 @@ class Outcome(NamedTuple):
     name: str
     figures: tuple[str, ...]
     failure: str
+
+
+def notebooks_here() -> Path:
+    """The notebooks of the checkout one stands in, else those beside the package."""
+    here = Path("notebooks")
+    return here.resolve() if any(here.glob("*.ipynb")) else _BESIDE
 
 
 def command(
@@ -98,7 +104,7 @@ def _needs() -> None:
 
 
 def _folder(notebooks: Path | None) -> Path:
-    folder = notebooks or NOTEBOOKS
+    folder = notebooks or notebooks_here()
     if not any(folder.glob("*.ipynb")):
         where = (
             "give another folder" if notebooks else "run from a checkout of rosimpact, or give it with --notebooks DIR"

@@ -54,6 +54,6 @@ def study_predict(
     Writes triage_predictions.jsonl and triage_beside.json. It takes some minutes.
     """
     from . import study_triage
-    from .study import NOTEBOOKS
+    from .study import notebooks_here
 
-    raise typer.Exit(study_triage.command(reports, output or NOTEBOOKS / "data", quiet))
+    raise typer.Exit(study_triage.command(reports, output or notebooks_here() / "data", quiet))

@@ -45,8 +45,9 @@ def test_github_killed_while_issues_are_edited_and_posted(server, tmp_path):
 
     def meanwhile(kill: int) -> None:
         row = chance.choice(rows)
-        row |= {"body": f"edited after kill {kill}", "updated_at": stamp(1_650_000_000 + kill)}
-        rows.append(issue(REPO, 5_000 + kill, day=stamp(1_660_000_000 + kill)))
+        # Time does not go back: a gathering that came to its end has seen all that was changed until then.
+        row |= {"body": f"edited after kill {kill}", "updated_at": stamp(1_660_000_000 + 2 * kill)}
+        rows.append(issue(REPO, 5_000 + kill, day=stamp(1_660_000_001 + 2 * kill)))
 
     manner = Manner(tmp_path / "corpus.sqlite", server.url, 1.0, False, True)
     middle = killed(arguments(f"github:{REPO}", manner=manner), manner.store, meanwhile, chance)

@@ -15,11 +15,12 @@ from rosimpact.corpus import study_triage
 from rosimpact.corpus.curves import pooled_share, survival
 from rosimpact.corpus.figures import apart, names
 from rosimpact.corpus.report import KINDS, LABELS, CorpusError, Report, read_labels
-from rosimpact.corpus.study import NOTEBOOKS, command, run
+from rosimpact.corpus.study import command, run
 from rosimpact.impact.cli import app
 from rosimpact.impact.rules.rule import all_rules
 from typer.testing import CliRunner
 
+NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 DATA = NOTEBOOKS / "data"
 DOCS = NOTEBOOKS.parent / "docs"
 
@@ -96,7 +97,7 @@ def test_without_the_extra(tmp_path, monkeypatch):
 
 
 def test_a_small_form_of_each_notebook(tmp_path):
-    outcomes = run(output=tmp_path / "out")
+    outcomes = run(output=tmp_path / "out", notebooks=NOTEBOOKS)
     assert [(one.name, one.failure) for one in outcomes if one.failure] == []
     assert all(one.figures for one in outcomes)
 
