@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Annotated
 
@@ -29,15 +30,14 @@ def triage(
 
     A text's first line is the title. Input whose first line is JSON with `title` or `body` is taken as JSON Lines.
     """
-    from .model import ClassifierError
+    commands = frozenset(getattr(context.find_root().command, "commands", ()))
 
-    root = context.find_root().command
-    commands = frozenset(getattr(root, "commands", ()))
-    try:
+    def work() -> None:
         _format(format)
-        _triage(report, format, jsonl, model, commands)
-    except ClassifierError as error:
-        _fail(str(error))
+        with _foreseen():
+            _triage(report, format, jsonl, model, commands)
+
+    _end(work, "interrupted")
 
 
 def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: Collection[str]) -> None:
@@ -90,26 +90,23 @@ def train(
     seed: Annotated[int, typer.Option(help="Of the splits that calibrate it.")] = 20,
 ) -> None:
     """Train a model on labelled reports; the same reports give the same model."""
-    from .model import ClassifierError
 
-    try:
-        from .training import examples
-        from .training import train as fit
+    def work() -> None:
+        with _foreseen():
+            from ..corpus.told import steps
+            from .training import examples
+            from .training import train as fit
 
-        progress = _progress()
-        model = fit(examples(_labels(labels), reports, progress), seed, progress)
-        model.save(output)
-    except ClassifierError as error:
-        _fail(str(error))
-    except KeyboardInterrupt:
-        _interrupted()
-    else:
-        about = model.about
+            progress = steps()
+            made = fit(examples(_labels(labels), reports, progress), seed, progress)
+            made.save(output)
+        about = made.about
         _write(
-            f"{output}: {about['reports']:,} reports, {len(model.labels)} labels, "
-            f"abstains below {model.threshold:.2f}\n"
+            f"{output}: {about['reports']:,} reports, {len(made.labels)} labels, abstains below {made.threshold:.2f}\n"
             f"labels {about['labels_digest']}\ntexts  {about['texts_digest']}\n"
         )
+
+    _end(work)
 
 
 @app.command()
@@ -123,25 +120,26 @@ def evaluate(
     ablations: Annotated[bool, typer.Option(help="Also measure what each part of it is worth.")] = True,
 ) -> None:
     """Measure the classifier on labelled reports, judging each by a model that has not seen its repository."""
-    import json
 
-    from .model import ClassifierError
-
-    try:
+    def work() -> None:
         _format(format)
-        from .evaluate import as_text
-        from .evaluate import evaluate as measure
-        from .training import examples
+        with _foreseen():
+            from ..corpus.told import steps
+            from .evaluate import as_text
+            from .evaluate import evaluate as measure
+            from .training import examples
 
-        progress = _progress()
-        found = examples(_labels(labels), reports, progress)
-        result = measure(found, seed=seed, ablations=ablations, progress=progress)
-    except ClassifierError as error:
-        _fail(str(error))
-    except KeyboardInterrupt:
-        _interrupted()
-    else:
-        _write(json.dumps(result, indent=1) + "\n" if format == "json" else as_text(result))
+            progress = steps()
+            found = examples(_labels(labels), reports, progress)
+            result = measure(found, seed=seed, ablations=ablations, progress=progress)
+        if format == "json":
+            import json
+
+            _write(json.dumps(result, indent=1) + "\n")
+        else:
+            _write(as_text(result))
+
+    _end(work)
 
 
 def _labels(file: Path | None) -> Path:
@@ -151,39 +149,32 @@ def _labels(file: Path | None) -> Path:
 
 
 def _format(format: str) -> None:
-    from .model import ClassifierError
+    from ..corpus.report import CorpusError
 
     if format not in ("text", "json"):
-        raise ClassifierError(f"--format {format}: unknown; choose text or json")
+        raise CorpusError(f"--format {format}: unknown; choose text or json")
 
 
-def _fail(message: str) -> None:
-    print(f"rosimpact: {message.encode('utf-8', 'backslashreplace').decode()}", file=sys.stderr)
-    raise typer.Exit(2)
+@contextmanager
+def _foreseen() -> Iterator[None]:
+    """What the classifier cannot do ends a command as what the corpus cannot do does."""
+    from ..corpus.report import CorpusError
+    from .model import ClassifierError
+
+    try:
+        yield
+    except ClassifierError as error:
+        raise CorpusError(str(error)) from None
 
 
-def _interrupted() -> None:
-    print("rosimpact: interrupted; nothing was written", file=sys.stderr)
-    raise typer.Exit(130)
+def _end(work: Callable[[], None], interrupted: str = "interrupted; nothing was written") -> None:
+    """Runs a command's work and ends it: what fails is one line on standard error, and no traceback."""
+    from ..corpus.told import told
+
+    raise typer.Exit(told(lambda: work() or 0, interrupted, "the classifier"))
 
 
 def _write(text: str) -> None:
     sys.stdout.flush()
     sys.stdout.buffer.write(text.encode("utf-8", "backslashreplace"))
     sys.stdout.flush()
-
-
-def _progress() -> Callable[[str, int, int], None]:
-    """A line on standard error: rewritten on a terminal, one a step elsewhere."""
-    last = ""
-
-    def show(what: str, done: int, total: int) -> None:
-        nonlocal last
-        if sys.stderr.isatty():
-            sys.stderr.write(f"\r\x1b[K{what} {done}/{total}" + ("\n" if done >= total else ""))
-            sys.stderr.flush()
-        elif what != last:
-            print(what, file=sys.stderr)
-        last = what
-
-    return show

@@ -3,11 +3,11 @@ where an earlier run judged the same."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from ..corpus.told import unforeseen
 from . import memo, processes
 from .rules.rule import Hit, Rule
 from .targets.snapshot import SnapshotError
@@ -122,20 +122,10 @@ def _tried(rule: Rule, target: str, crashed: Crashes, run: Callable[[], Iterable
         raise  # no rule can do without the data
     except Exception as error:
         # What the other rules say stays true; the failure is named and decides the exit status.
-        _note(crashed, (rule.name, crash(error)), target)
+        _note(crashed, (rule.name, unforeseen(error)), target)
 
 
 def _note(crashed: Crashes, failure: tuple[str, str], target: str) -> None:
     targets = crashed.setdefault(failure, [])
     if target and target not in targets:
         targets.append(target)
-
-
-def crash(error: BaseException) -> str:
-    """An unforeseen error as a clause: its kind, its text, where it was raised, and what to do."""
-    trace = error.__traceback__
-    while trace is not None and trace.tb_next is not None:
-        trace = trace.tb_next
-    place = f" in {os.path.basename(trace.tb_frame.f_code.co_filename)}:{trace.tb_lineno}" if trace is not None else ""
-    text = " ".join(str(error).split())[:200]
-    return f"{type(error).__name__}{place}{': ' + text if text else ''}; this is a fault of rosimpact, please report it"

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from pathlib import Path
 
+from ..corpus.told import DEBUG, say, steps, unforeseen
 from .check import Checked, CheckError, Options, __version__, open_workspace
 from .check import run as run_check
 from .config import ConfigError
 from .findings import SettingsError, fails
-from .judge import crash
 from .report.report import Coverage, Report, counted
 from .targets.distro import TargetError
 from .targets.snapshot import SnapshotError
@@ -21,8 +21,6 @@ from .tree import TreeError, WorkingTree, shown
 FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
 FAIL_ON = ("error", "warning", "note", "never")
 _OUR_ERRORS = (CheckError, ConfigError, SettingsError, TargetError, SnapshotError, TreeError)
-# Set by people who work on rosimpact itself: an unforeseen error then comes with its traceback.
-_DEBUG = "ROSIMPACT_DEBUG"
 
 
 class Failed(Exception):
@@ -43,14 +41,14 @@ def told(path: object = ""):
         where = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else str(path)
         raise Failed(f"{shown(where)}: {error.strerror or error}; check that it can be read and written") from None
     except Exception as error:
-        if os.environ.get(_DEBUG):
+        if os.environ.get(DEBUG):
             raise
-        raise Failed(crash(error)) from None
+        raise Failed(unforeseen(error)) from None
 
 
 def failed(message: str, format: str = "text", output: Path | None = None) -> int:
     """Says why the tool failed, in the format asked for too, so that valid JSON is printed all the same. Returns 2."""
-    _say(f"rosimpact: {message}")
+    say(f"rosimpact: {message}")
     if format in FORMATS and format != "text":
         text = render(Report(__version__, "", (), (), Coverage(), failure=message), format, notes=False)
         try:
@@ -82,7 +80,7 @@ def check(
                 checked = run_check(path, options, None)
             report = checked.report
             if report.failure and (format != "text" or output or diff or write_baseline):
-                _say(f"rosimpact: {report.failure}")
+                say(f"rosimpact: {report.failure}")
             if prune_baseline and report.packages:
                 _prune(baseline, known, report)
             if write_baseline:
@@ -95,7 +93,7 @@ def check(
     except Failed as error:
         return failed(str(error), format, output)
     except KeyboardInterrupt:
-        _say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
+        say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
         return 130
     if report.failure or incomplete:
         return 2
@@ -126,7 +124,7 @@ def _new_baseline(file: Path, report: Report) -> int:
         raise Failed(f"{file}: not written, since nothing was analysed")
     found = in_order([*report.findings, *report.known])
     _save(file, baseline(found))
-    _say(f"{file}: {counted(len(found), 'finding')}")
+    say(f"{file}: {counted(len(found), 'finding')}")
     return 2 if report.failure else 0
 
 
@@ -137,7 +135,7 @@ def _prune(file: Path, known: str, report: Report) -> None:
     text, gone = pruned(known_from(known), [*report.findings, *report.known])
     if gone:
         _save(file, text)
-    _say(f"{file}: {gone} cured, taken out")
+    say(f"{file}: {gone} cured, taken out")
 
 
 def _fixed(path: Path, checked: Checked) -> bool:
@@ -153,10 +151,10 @@ def _fixed(path: Path, checked: Checked) -> bool:
             fix.write(path / name, data)
             done += 1
         except OSError as error:
-            _say(f"rosimpact: {shown(name)}: not fixed, it cannot be written: {error.strerror}")
+            say(f"rosimpact: {shown(name)}: not fixed, it cannot be written: {error.strerror}")
     for edit, reason in applied.refused:
-        _say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
-    _say(f"{counted(done, 'file')} changed")
+        say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
+    say(f"{counted(done, 'file')} changed")
     return done == len(applied.files)
 
 
@@ -175,7 +173,7 @@ def _patch(checked: Checked) -> str:
     read = reader(checked.tree)
     applied = _applied(checked)
     for edit, reason in applied.refused:
-        _say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
+        say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
     return "".join(fix.unified_diff(name, read(name) or b"", data) for name, data in applied.files.items())
 
 
@@ -247,11 +245,6 @@ def _write(text: str) -> None:
     sys.stdout.flush()
 
 
-def _say(text: str) -> None:
-    """A line for people, on standard error, whatever signs it can show."""
-    print(text.encode("utf-8", "backslashreplace").decode("utf-8"), file=sys.stderr)
-
-
 def _progress() -> Callable[[int, int], None] | None:
     """A line on standard error that is rewritten while files are parsed; None when nobody watches."""
     if not sys.stderr.isatty():
@@ -302,9 +295,9 @@ def env_capture(output: Path | None) -> int:
     except Failed as error:
         return failed(str(error))
     if not machine.distro:
-        _say("no ROS distro was found on this machine: set `distro` in the file before it is used as a target")
+        say("no ROS distro was found on this machine: set `distro` in the file before it is used as a target")
     if output is not None:
-        _say(f"{output}: written; use it with --target {output}")
+        say(f"{output}: written; use it with --target {output}")
     return 0
 
 
@@ -422,7 +415,7 @@ def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path 
     try:
         with told(rosdistro):
             try:
-                built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, _step())
+                built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, steps())
             except BuildError as error:
                 raise Failed(str(error)) from None
     except Failed as error:
@@ -432,7 +425,7 @@ def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path 
         f"{built.rules:,} rosdep rules, {built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)"
     )
     for name, count in built.unreadable.items():
-        _say(f"{name}: {count} versions of its distribution file could not be read")
+        say(f"{name}: {count} versions of its distribution file could not be read")
     return 0
 
 
@@ -443,32 +436,15 @@ def data_update() -> int:
     try:
         with told():
             try:
-                found = update(report=_step())
+                found = update(report=steps())
             except BuildError as error:
                 raise Failed(str(error)) from None
     except Failed as error:
         return failed(str(error))
     for failure in found.failures:
-        _say(f"not updated: {failure}")
+        say(f"not updated: {failure}")
     _write(
         f"data of {found.date} in {found.folder}: {len(found.syncs)} new syncs, {found.releases:,} releases, "
         f"{found.manifests:,} manifests, {found.rules:,} rosdep rules"
     )
     return 0
-
-
-def _step() -> Callable[[str, int, int], None]:
-    """Progress of long work: a line that is rewritten on a terminal, one line a step elsewhere."""
-    last = ""
-
-    def show(what: str, done: int, total: int) -> None:
-        nonlocal last
-        count = f" {done}/{total}" if total else ""
-        if sys.stderr.isatty():
-            sys.stderr.write(f"\r\x1b[K{what}{count}")
-            sys.stderr.flush()
-        elif what != last:
-            _say(what)
-        last = what
-
-    return show

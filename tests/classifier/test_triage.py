@@ -279,6 +279,39 @@ class TestErrors:
         assert says in result.stderr
         assert len(result.stderr.splitlines()) == 1
 
+    def test_an_error_that_nobody_foresaw_is_a_line_too(self, monkeypatch):
+        def broken(*unused):
+            raise KeyError("a\nkey")
+
+        monkeypatch.delenv("ROSIMPACT_DEBUG", raising=False)
+        monkeypatch.setattr("rosimpact.classifier.triage.triage", broken)
+        result = run("x")
+        assert (result.exit_code, result.stdout) == (2, "")
+        assert result.stderr.startswith("rosimpact: KeyError in test_triage.py:")
+        assert result.stderr.endswith("; this is a fault of rosimpact, please report it\n")
+        assert len(result.stderr.splitlines()) == 1
+
+    @pytest.mark.parametrize("command", ["train", "evaluate"])
+    def test_nor_does_one_in_training_show_a_traceback(self, command, tmp_path, monkeypatch):
+        def broken(*unused):
+            raise ZeroDivisionError
+
+        monkeypatch.delenv("ROSIMPACT_DEBUG", raising=False)
+        monkeypatch.setattr("rosimpact.classifier.training.examples", broken)
+        (tmp_path / "reports.jsonl").write_text("")
+        result = CliRunner().invoke(app, ["classifier", command, "--reports", str(tmp_path / "reports.jsonl")])
+        assert result.exit_code == 2
+        assert result.stderr.startswith("rosimpact: ZeroDivisionError in test_triage.py:")
+        assert "Traceback" not in result.output
+
+    def test_interrupted(self, monkeypatch):
+        def stopped(*unused):
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr("rosimpact.classifier.triage.triage", stopped)
+        result = run("x")
+        assert (result.exit_code, result.stderr) == (130, "rosimpact: interrupted\n")
+
 
 class TestAction:
     def act(self, server, tmp_path, issue: dict):
