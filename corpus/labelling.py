@@ -124,7 +124,7 @@ def offered(
         if label is None:
             return False
         if mode == "second":
-            return len(label.annotators) == 1 and label.decided in ("single", "imported") and id not in own
+            return not label.twice and label.decided in ("single", "imported") and id not in own
         return label.decided == DISPUTED
 
     return [report for report in reports if open_for(report.id)]
@@ -158,7 +158,7 @@ def opinions(label: Label, events: Sequence[Event]) -> list[Given]:
     first = next((event.given for event in reversed(answers) if event.mode == "first"), None)
     second = next((event.given for event in reversed(answers) if event.mode == "second"), None)
     found = [first or Given(label.label, label.kind, label.phase, label.why)]
-    if len(label.annotators) > 1:
+    if label.twice:
         found.append(second or Given(label.annotators[1], None, "", ""))
     return found
 

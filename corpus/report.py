@@ -58,8 +58,8 @@ class Report(msgspec.Struct, frozen=True, omit_defaults=True):
 
     @property
     def group(self) -> str:
-        """What must not stand on both sides of a split: the repository, or the report itself where there is none."""
-        return repository_of(self.id) or self.id
+        """Its group_of()."""
+        return group_of(self.id)
 
 
 class Label(msgspec.Struct, frozen=True):
@@ -79,6 +79,11 @@ class Label(msgspec.Struct, frozen=True):
     annotators: tuple[str, ...]
     decided: str
 
+    @property
+    def twice(self) -> bool:
+        """Whether two annotators read it."""
+        return len(self.annotators) > 1
+
 
 def repository_of(id: str) -> str:
     """`owner/name` of a report on GitHub, in lower case as GitHub compares them; empty for others."""
@@ -86,6 +91,11 @@ def repository_of(id: str) -> str:
 
     found = match(r"(?:https://api\.github\.com/repos/)?([\w.-]+/[\w.-]+)(?:#|/(?:issues|pull|pulls)/)\d+\Z", id)
     return found.group(1).lower() if found else ""
+
+
+def group_of(id: str) -> str:
+    """What must not stand on both sides of a split: the repository, or the report itself where there is none."""
+    return repository_of(id) or id
 
 
 def read_reports(path: Path) -> Iterator[Report]:

@@ -11,7 +11,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from .report import repository_of
+from .report import group_of
 
 FOLDS = 5
 SEED = 20260822
@@ -22,11 +22,6 @@ class Split(NamedTuple):
 
     train: list[int]
     test: list[int]
-
-
-def group_of(id: str) -> str:
-    """What must not stand on both sides of a split: the repository, or the report itself where there is none."""
-    return repository_of(id) or id
 
 
 def grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED) -> list[int]:

@@ -78,9 +78,7 @@ def stats_of(labels: Sequence[Label], reports: Iterable[Report] | None = None) -
         years=None if reports is None else _ordered(years, (*sorted(set(years) - {UNDATED}), UNDATED)),
         distros=None if reports is None else _ordered(distros, (*DISTROS, NONE_NAMED)),
         read=len(read),
-        agreement=agreement(
-            ((label.annotators[0], label.annotators[1]) for label in labels if len(label.annotators) > 1), LABELS
-        ),
+        agreement=agreement(((label.annotators[0], label.annotators[1]) for label in labels if label.twice), LABELS),
         notes=tuple(notes),
     )
 

@@ -111,7 +111,8 @@ def test_the_corpus_keeps_its_own_rules():
     assert len(labels) == 1630
     assert {label.label for label in labels} == set(LABELS)
     assert {label.kind for label in labels if label.kind} == {kind for kinds in KINDS.values() for kind in kinds}
-    assert all(len(label.annotators) == (1 if label.decided == "single" else 2) for label in labels)
+    assert all(len(label.annotators) == 1 + label.twice for label in labels)
+    assert all(label.twice == (label.decided != "single") for label in labels)
 
 
 def test_a_byte_order_mark_is_no_fault(tmp_path):

@@ -7,8 +7,8 @@ from collections import Counter
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.corpus.report import LABELS, read_labels
-from rosimpact.corpus.splits import day_of, group_of, grouped_folds, grouped_splits, time_split, unseen
+from rosimpact.corpus.report import LABELS, group_of, read_labels
+from rosimpact.corpus.splits import day_of, grouped_folds, grouped_splits, time_split, unseen
 
 IDS = st.builds(lambda repo, number: f"acme/r{repo}#{number}", st.integers(0, 12), st.integers(1, 9))
 
