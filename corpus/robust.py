@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from .report import KINDS, CorpusError
+from .report import KINDS, CorpusError, Label
 
 LIKELY, SURE, UNMAPPED = "likely", "sure", "unmapped"
 CONFIDENCES = (SURE, LIKELY, UNMAPPED)
@@ -55,16 +55,9 @@ class Mapped(msgspec.Struct, frozen=True, omit_defaults=False):
     why: str
 
 
-class Row(msgspec.Struct, frozen=True):
-    """A mapped record as a line of a labels file; the last two fields are passed over by whoever reads labels."""
+class Row(Label, frozen=True):
+    """A mapped record as a line of a labels file; whoever reads labels passes over what it has beyond a Label."""
 
-    id: str
-    label: str
-    kind: str | None
-    phase: str
-    why: str
-    annotators: tuple[str, ...]
-    decided: str
     confidence: str
     record: str
 
