@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import csv
 import hashlib
-import io
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -39,7 +38,7 @@ LABEL_COLOURS = {
     "other": GREY,
 }
 
-_STYLE: dict[Any, Any] = {
+STYLE: dict[Any, Any] = {
     "figure.dpi": 100,
     "savefig.dpi": 120,
     "figure.facecolor": "white",
@@ -85,7 +84,7 @@ class Page:
         import matplotlib
 
         matplotlib.use("Agg")
-        matplotlib.rcParams.update(_STYLE)
+        matplotlib.rcParams.update(STYLE)
         said = json.loads(os.environ.get(SETTINGS, "{}"))
         reports = said.get("reports")
         return cls(
@@ -101,20 +100,12 @@ class Page:
 
         Raises ValueError when nothing is drawn in it.
         """
-        import matplotlib.pyplot as plt
         from IPython.display import Image
 
         if not any(axes.has_data() for axes in figure.axes):
             raise ValueError(f"figure `{name}` is empty: nothing was drawn")
-        folder = self.output / "figures"
-        folder.mkdir(parents=True, exist_ok=True)
-        figure.savefig(folder / f"{name}.svg", bbox_inches="tight", metadata={"Date": None, "Creator": "rosimpact"})
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format="png", bbox_inches="tight", metadata={"Software": "rosimpact"})
-        (folder / f"{name}.png").write_bytes(buffer.getvalue())
-        width = int(figure.get_figwidth() * 100)
-        plt.close(figure)
-        return Image(data=buffer.getvalue(), width=width)
+        _, picture = save(figure, self.output / "figures", name)
+        return Image(data=picture.read_bytes(), width=int(figure.get_figwidth() * 100))
 
     def table(self, name: str, columns: Sequence[str], rows: Iterable[Sequence[object]], most: int = 60) -> Any:
         """Writes a table as `tables/NAME.csv` and gives it to the notebook as Markdown, its first `most` rows.
@@ -185,6 +176,21 @@ def canvas(wide: float = 9, high: float = 4.5, rows: int = 1, columns: int = 1, 
 
     figure, axes = plt.subplots(rows, columns, figsize=(wide, high), layout="constrained", **more)
     return figure, axes
+
+
+def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
+    """Writes a figure as NAME.svg and NAME.png into a folder, which is made; the same figure gives the same bytes.
+    Returns both files. Raises OSError."""
+    import matplotlib.pyplot as plt
+
+    folder.mkdir(parents=True, exist_ok=True)
+    drawn, picture = folder / f"{name}.svg", folder / f"{name}.png"
+    try:
+        figure.savefig(drawn, bbox_inches="tight", metadata={"Date": None, "Creator": "rosimpact"})
+        figure.savefig(picture, bbox_inches="tight", metadata={"Software": "rosimpact"})
+    finally:
+        plt.close(figure)
+    return drawn, picture
 
 
 def headline(axes: Axes, title: str, below: str = "") -> None:

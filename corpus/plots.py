@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from .report import LABELS, CorpusError
@@ -19,12 +19,22 @@ def draw(stats: Stats, folder: Path) -> list[Path]:
     except ImportError:
         raise CorpusError("--plots: matplotlib is missing; install it with `pip install 'rosimpact[study]'`") from None
     matplotlib.use("Agg")
-    from .figures import LABEL_COLOURS, heat, stacked
+    from .figures import STYLE
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise CorpusError(f"{folder}: cannot be made: {error.strerror}; give another folder") from None
+    try:
+        with matplotlib.rc_context(STYLE):
+            return list(_drawn(stats, folder))
+    except OSError as error:
+        raise CorpusError(f"{folder}: cannot be written: {error.strerror}; give another folder") from None
+
+
+def _drawn(stats: Stats, folder: Path) -> Iterator[Path]:
+    from .figures import LABEL_COLOURS, canvas, heat, save, stacked
+
     labels = {name: {name: count} for name, count in stats.labels.items()}
     kinds = {f"{label}: {kind}": {label: count} for label, row in stats.kinds.items() for kind, count in row.items()}
     tables: dict[str, tuple[str, Mapping[str, Mapping[str, int]]]] = {
@@ -35,48 +45,26 @@ def draw(stats: Stats, folder: Path) -> list[Path]:
         "years": ("Reports by year", _without(stats.years, UNDATED)),
         "distros": ("Reports by distro named in them", _without(stats.distros, NONE_NAMED)),
     }
-    written: list[Path] = []
-    with matplotlib.rc_context({"svg.hashsalt": "rosimpact", "axes.spines.top": False, "axes.spines.right": False}):
-        for name, (title, table) in tables.items():
-            if not any(sum(row.values()) for row in table.values()):
-                continue
-            figure, axes = _canvas(1.2 + 0.3 * len(table))
-            series = {label: [row.get(label, 0) for row in table.values()] for label in LABELS}
-            stacked(axes, list(table), series, LABEL_COLOURS)
-            legend = axes.get_legend()
-            if legend is not None and name in ("labels", "kinds"):  # the rows say it themselves
-                legend.remove()
-            axes.set_xlabel("reports")
-            figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
-            written += _save(figure, folder, name)
-        if stats.agreement.reports:
-            figure, axes = _canvas(4.5)
-            heat(
-                axes, [[row[b] for b in LABELS] for row in stats.agreement.confusion.values()], LABELS, LABELS, scale=1
-            )
-            axes.set_xlabel("second annotator")
-            axes.set_ylabel("first annotator")
-            figure.suptitle("Labels of two annotators", x=0.01, ha="left", fontweight="bold")
-            written += _save(figure, folder, "agreement")
-    return written
+    for name, (title, table) in tables.items():
+        if not any(sum(row.values()) for row in table.values()):
+            continue
+        figure, axes = canvas(8, max(2.2, 1.2 + 0.3 * len(table)))
+        series = {label: [row.get(label, 0) for row in table.values()] for label in LABELS}
+        stacked(axes, list(table), series, LABEL_COLOURS)
+        legend = axes.get_legend()
+        if legend is not None and name in ("labels", "kinds"):  # the rows say it themselves
+            legend.remove()
+        axes.set_xlabel("reports")
+        figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
+        yield from save(figure, folder, name)
+    if stats.agreement.reports:
+        figure, axes = canvas(8, 4.5)
+        heat(axes, [[row[b] for b in LABELS] for row in stats.agreement.confusion.values()], LABELS, LABELS, scale=1)
+        axes.set_xlabel("second annotator")
+        axes.set_ylabel("first annotator")
+        figure.suptitle("Labels of two annotators", x=0.01, ha="left", fontweight="bold")
+        yield from save(figure, folder, "agreement")
 
 
 def _without(table: Mapping[str, Mapping[str, int]] | None, row: str) -> dict[str, Mapping[str, int]]:
     return {name: counts for name, counts in (table or {}).items() if name != row}
-
-
-def _canvas(high: float):
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(8, max(2.2, high)), layout="constrained")
-    return figure, figure.subplots()
-
-
-def _save(figure, folder: Path, name: str) -> list[Path]:
-    files = [folder / f"{name}.svg", folder / f"{name}.png"]
-    try:
-        figure.savefig(files[0], metadata={"Date": None, "Creator": "rosimpact"})
-        figure.savefig(files[1], dpi=150, metadata={"Software": "rosimpact"})
-    except OSError as error:
-        raise CorpusError(f"{folder}: cannot be written: {error.strerror}; give another folder") from None
-    return files
