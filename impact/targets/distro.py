@@ -89,21 +89,23 @@ def _known_distros(data: Snapshot) -> tuple[Known, ...]:
                 ros,
                 python,
                 status,
-                fact.released if fact else _day_of(first) if first else "",
+                fact.released if fact else day_of(first) if first else "",
                 (fact.end_of_life or "") if fact else "",
                 fact.lts if fact else False,
-                _day_of(first) if first else "",
-                _day_of(last) if last else "",
+                day_of(first) if first else "",
+                day_of(last) if last else "",
             )
         )
     return tuple(sorted(found, key=lambda known: known.released))
 
 
-def _day_of(ts: int) -> str:
+def day_of(ts: int) -> str:
+    """The ISO day (UTC) of a moment, in seconds since 1970."""
     return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
 
 
-def _end_of_day(day: str) -> int:
+def end_of_day(day: str) -> int:
+    """The last second (UTC) of an ISO day, in seconds since 1970."""
     start = datetime.datetime.combine(datetime.date.fromisoformat(day), datetime.time(), datetime.timezone.utc)
     return int((start + _DAY).timestamp()) - 1
 
@@ -153,7 +155,7 @@ class DistroTarget(Target):
         notes: list[str] = []
         self.date = self._place_date(date, notes)
         self._cut, self.approximate = self._availability()
-        self._rule_ts = _end_of_day(self.date)
+        self._rule_ts = end_of_day(self.date)
         self.platform = self._choose_platform(platform, notes)
         self.notes = tuple(notes)
         self.name = name or (distro if date is None else f"{distro}@{date}")
@@ -213,8 +215,8 @@ class DistroTarget(Target):
         except ValueError:
             raise TargetError(f"`{date}` is no date: write it as in `{self.distro}@2024-03-01`") from None
         first = self._data.row("SELECT min(ts) FROM release WHERE distro = ?", (self._id,))
-        if first and first[0] is not None and day < _day_of(first[0]):
-            moved = _day_of(first[0])
+        if first and first[0] is not None and day < day_of(first[0]):
+            moved = day_of(first[0])
             notes.append(f"{self.distro} had no release on {day}: moved to its first, {moved}")
             return moved
         if day > self.data_date:
@@ -226,13 +228,13 @@ class DistroTarget(Target):
         sync = self._data.row(
             "SELECT cut FROM sync WHERE distro = ? AND day <= ? ORDER BY day DESC LIMIT 1", (self._id, self.date)
         )
-        return (sync[0], False) if sync else (_end_of_day(self.date), True)
+        return (sync[0], False) if sync else (end_of_day(self.date), True)
 
     def _choose_platform(self, platform: str | None, notes: list[str]) -> str:
         """The platform asked for, else the main one that the synced packages were built for."""
         if platform:
             return normal_platform(platform)
-        built_for, now = self._main_platform(self._cut), self._main_platform(_end_of_day(self.date))
+        built_for, now = self._main_platform(self._cut), self._main_platform(end_of_day(self.date))
         if built_for != now:
             notes.append(
                 f"{self.distro} had moved to {now}, not yet synced there: answered as of its last on {built_for}"
@@ -321,7 +323,7 @@ class DistroTarget(Target):
             if version is None and last and last[0] == ts and last[1] is not None:
                 continue
             if last is None or last[1] != version:
-                steps.append((_day_of(ts), version))
+                steps.append((day_of(ts), version))
             last = (ts, version)
         return tuple(steps)
 
@@ -496,7 +498,7 @@ class DistroTarget(Target):
             found = self._resolve(key, os_name, release, self._rule_ts)
             if found is None and self.end_of_life and self.end_of_life < self.date:
                 # rosdistro drops the rules of old releases; machines of an ended distro were set up when they stood.
-                found = self._resolve(key, os_name, release, _end_of_day(self.end_of_life))
+                found = self._resolve(key, os_name, release, end_of_day(self.end_of_life))
             self._keys[key] = found
         return self._keys[key]
 
@@ -544,7 +546,7 @@ class DistroTarget(Target):
             os_name, release = split_platform(self.platform)
             moments = [self._rule_ts]
             if self.end_of_life and self.end_of_life < self.date:
-                moments.append(_end_of_day(self.end_of_life))
+                moments.append(end_of_day(self.end_of_life))
             found: dict[str, Resolution] = {}
             for ts in moments:
                 seen: set[str] = set()

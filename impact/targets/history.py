@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import snapshot as snapshots
-from .distro import Known, TargetError, condition_holds, known_distros, version_key
+from .distro import Known, TargetError, condition_holds, day_of, end_of_day, known_distros, version_key
 from .snapshot import Snapshot
 from .version import parts
 
@@ -214,7 +214,7 @@ class History:
     def cut(self, day: str) -> int:
         """The moment (seconds since 1970) of the rosdistro commit that stands on a day."""
         place = bisect.bisect_right(self._sync_days, day)
-        return self.syncs[place - 1][1] if place else _end_of_day(day)
+        return self.syncs[place - 1][1] if place else end_of_day(day)
 
     def versions(self, day: str) -> dict[str, str]:
         """Package to version, of all that is released on a day."""
@@ -243,12 +243,12 @@ class History:
     def sync_of(self, ts: int) -> str:
         """The first day on which a commit of this moment was available; empty when it has not been yet."""
         if not self.syncs or ts <= self._first_commit_by_sync():
-            return _day_of(ts)
+            return day_of(ts)
         return next((day for day, cut in self.syncs if cut >= ts), "")
 
     def _first_commit_by_sync(self) -> int:
         """Commits up to the day before the first known sync were available on their own day, as far as is known."""
-        return _end_of_day(self.syncs[0][0]) - 86400
+        return end_of_day(self.syncs[0][0]) - 86400
 
     def first_available(self) -> dict[str, str]:
         """Package to the first day on which it was there."""
@@ -265,7 +265,7 @@ class History:
         By the commit's moment. Versions of before the announced release count from then; those that ended before are
         left out.
         """
-        begin, end = _end_of_day(self.begin), _end_of_day(self.end)
+        begin, end = end_of_day(self.begin), end_of_day(self.end)
         found = []
         for repository, since, until in self._lives:
             start, stop = max(since, begin), min(until or end, end)
@@ -495,15 +495,6 @@ def _names_that_come_along(entries: str, variables: dict[str, str]) -> tuple[str
 def _at(steps: list[tuple[int, str | None]], ts: int) -> str | None:
     place = bisect.bisect_right(steps, ts, key=lambda step: step[0])
     return steps[place - 1][1] if place else None
-
-
-def _day_of(ts: int) -> str:
-    return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
-
-
-def _end_of_day(day: str) -> int:
-    start = datetime.datetime.combine(datetime.date.fromisoformat(day), datetime.time(), datetime.timezone.utc)
-    return int(start.timestamp()) + 86399
 
 
 def _days_between(first: str, last: str) -> int:
