@@ -8,7 +8,6 @@ remembers it.
 from __future__ import annotations
 
 import hashlib
-import os
 import sqlite3
 import threading
 from collections.abc import Iterable
@@ -305,12 +304,12 @@ class Providers:
             found.setdefault(name.lower(), []).append(name)
         return found
 
+    def _open(self) -> sqlite3.Connection:
+        return _open(self._data, self._cache or cache_folder())
+
     def _rows(self, sql: str, *arguments: object) -> list[tuple]:
         with self._lock:
-            here = os.getpid()
-            if self._connection is None or (here != self._reader and unpacked.shared_after_fork(self._connection)):
-                self._connection = _open(self._data, self._cache or cache_folder())
-            self._reader = here
+            self._connection, self._reader = unpacked.of_this_process(self._connection, self._reader, self._open)
             return self._connection.execute(sql, arguments).fetchall()
 
 

@@ -8,7 +8,6 @@ old file. A file that turns out broken is unpacked again; where no folder can be
 
 import contextlib
 import hashlib
-import os
 import sqlite3
 import threading
 from collections.abc import Iterable
@@ -176,10 +175,7 @@ class Snapshot:
         """All rows of a query. Raises SnapshotError when the data cannot be read."""
         arguments = tuple(parameters)
         with self._lock:
-            here = os.getpid()
-            if self._connection is None or (here != self._reader and unpacked.shared_after_fork(self._connection)):
-                self._connection = self._open()
-            self._reader = here
+            self._connection, self._reader = unpacked.of_this_process(self._connection, self._reader, self._open)
             try:
                 return self._connection.execute(sql, arguments).fetchall()
             except sqlite3.DatabaseError:

@@ -46,10 +46,18 @@ def connect(path: Path, table: str) -> sqlite3.Connection | None:
         return None
 
 
-def shared_after_fork(connection: sqlite3.Connection) -> bool:
-    """True in a forked process for a database that its parent reads too: they would move each other's place in the
-    file. One in memory is a copy."""
-    return bool(connection.execute("PRAGMA database_list").fetchone()[2])
+def of_this_process(
+    connection: sqlite3.Connection | None, opener: int, open: Callable[[], sqlite3.Connection]
+) -> tuple[sqlite3.Connection, int]:
+    """A connection to read with, and the process that opened it: those given, or one just opened.
+
+    In a forked process a file is opened anew: with its parent's connection both would move each other's place in it.
+    A database in memory is a copy.
+    """
+    here = os.getpid()
+    if connection is None or (here != opener and connection.execute("PRAGMA database_list").fetchone()[2]):
+        connection = open()
+    return connection, here
 
 
 def unpack(raw: bytes, add_facts: Callable[[sqlite3.Connection], None], path: Path, table: str) -> sqlite3.Connection:
