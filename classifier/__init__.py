@@ -1,3 +1,3 @@
 """Triage: sends a new bug report to the check that fits it."""
 
-__version__ = "0.1.0"
+from ..corpus import __version__ as __version__

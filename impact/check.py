@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from ..corpus import __version__
 from . import findings as after
 from . import memo
 from .config import Config, PathSetting, load, parse
@@ -24,8 +25,6 @@ from .targets.providers import default_providers
 from .targets.resolve import Chosen, choose_targets
 from .targets.version import compare
 from .tree import GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
-
-__version__ = "0.1.0"
 
 
 class CheckError(Exception):

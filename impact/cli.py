@@ -203,7 +203,7 @@ def data_update() -> None:
 
 def _version(value: bool) -> None:
     if value:
-        from .check import __version__
+        from ..corpus import __version__
 
         typer.echo(f"rosimpact {__version__}")
         raise typer.Exit()

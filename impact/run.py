@@ -8,8 +8,9 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from pathlib import Path
 
+from ..corpus import __version__
 from ..corpus.told import DEBUG, say, steps, unforeseen
-from .check import Checked, CheckError, Options, __version__, open_workspace
+from .check import Checked, CheckError, Options, open_workspace
 from .check import run as run_check
 from .config import ConfigError
 from .findings import SettingsError, fails

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from rosimpact.impact.check import __version__
+from rosimpact.corpus import __version__
 from rosimpact.impact.rules.rule import all_rules
 
 ROOT = Path(__file__).parents[1]

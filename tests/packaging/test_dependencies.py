@@ -1,10 +1,12 @@
-"""What the code imports is what pyproject.toml asks for, no more and no less."""
+"""What the code imports is what pyproject.toml asks for, no more and no less; both name the same version."""
 
 import ast
 import re
 import sys
 from importlib.metadata import packages_distributions
 from pathlib import Path
+
+from rosimpact.corpus import __version__
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -19,9 +21,13 @@ UNNAMED = {"ipykernel"}
 
 def declared(*extras: str) -> set[str]:
     """Distributions that pyproject.toml asks for, those of the extras included, in their normal form."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    project = _project()
     asked = [*project["dependencies"], *(r for extra in extras for r in project["optional-dependencies"][extra])]
     return {normal(re.split(r"[\s<>=!~;\[]", requirement)[0]) for requirement in asked}
+
+
+def _project() -> dict:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
 def normal(name: str) -> str:
@@ -62,3 +68,7 @@ def test_nothing_is_asked_for_in_vain():
     known = packages_distributions()
     used = {normal(d) for name in imported() for d in known.get(name, [name])}
     assert declared("study") - used - UNNAMED == set()
+
+
+def test_the_version_is_that_of_the_package():
+    assert _project()["version"] == __version__
