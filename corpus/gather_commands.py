@@ -14,7 +14,7 @@ from datetime import date, datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from .polite import Client, Later
+from .polite import Client, Later, service_address
 from .progress import Reporter, counted, span
 from .report import LABELS_FILE, SOURCES, CorpusError, read_labels, read_reports, write_rows
 from .store import Store, open_reports, store_path
@@ -282,7 +282,7 @@ def _github(manner: Manner) -> GitHub:
     from .sources import github
     from .tokens import github_token
 
-    api = manner.api or github.API
+    api = service_address(manner.api or github.API, github.API)
     token = github_token(api)
     return github.GitHub(_client("GitHub", manner, secrets=[token]), api, token)
 
@@ -291,7 +291,7 @@ def _stack_exchange(manner: Manner) -> StackExchange:
     from .sources import stack_exchange
     from .tokens import stack_exchange_key
 
-    api = manner.api or stack_exchange.API
+    api = service_address(manner.api or stack_exchange.API, stack_exchange.API)
     key = stack_exchange_key(api)
     return stack_exchange.StackExchange(_client("Stack Exchange", manner, spacing=0.1, secrets=[key]), api, key)
 

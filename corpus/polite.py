@@ -347,6 +347,18 @@ class Client:
         return None
 
 
+def service_address(api: str, like: str) -> str:
+    """The address of a service without a slash at its end. like: one, for the message. Raises CorpusError when it is
+    none."""
+    try:
+        parts = urlsplit(api)
+    except ValueError:  # half of an IPv6 address
+        parts = urlsplit("")
+    if parts.scheme not in ("http", "https") or not parts.hostname:
+        raise CorpusError(f"--api {api}: is no address; give one like {like}")
+    return api.rstrip("/")
+
+
 def _chunks(response: requests.Response) -> Iterator[bytes]:
     """A body as it arrives. requests itself waits for whole chunks, so a body that drips would never be given up."""
     read = getattr(response.raw, "read1", None)

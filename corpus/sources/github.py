@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlencode, urlsplit
 
-from ..polite import Client, Refused
+from ..polite import Client, Refused, service_address
 from ..report import CorpusError, Report
 from ..store import Asked, Gathered, Page, digest_of
 
@@ -49,9 +49,7 @@ class GitHub:
 
     def __init__(self, client: Client, api: str = API, token: str = ""):
         self.client = client
-        self.api = api.rstrip("/")
-        if urlsplit(self.api).scheme not in ("http", "https") or not urlsplit(self.api).hostname:
-            raise CorpusError(f"--api {api}: is no address; give one like {API}")
+        self.api = service_address(api, API)
         self._token = token
         self._parser: Github | None = None
 

@@ -19,7 +19,7 @@ from urllib.parse import urlsplit
 
 import msgspec
 
-from ..polite import Client, Refused
+from ..polite import Client, Refused, service_address
 from ..report import CorpusError, Report
 from ..store import Asked, Gathered, Page, digest_of
 from .markup import markdown, soup
@@ -55,7 +55,10 @@ GONE = (
 
 def is_live_site(address: str) -> bool:
     """Whether an address is of the site that is no more."""
-    host = urlsplit(address if "//" in address else f"//{address}").hostname or ""
+    try:
+        host = urlsplit(address if "//" in address else f"//{address}").hostname or ""
+    except ValueError:  # half of an IPv6 address
+        return False
     return host.rstrip(".").lower() == "answers.ros.org"
 
 
@@ -234,9 +237,7 @@ class Askbot:
         if is_live_site(api):
             raise CorpusError(GONE)
         self._client = client
-        self._api = re.sub(r"/api/v1/?\Z", "", api.rstrip("/"))
-        if urlsplit(self._api).scheme not in ("http", "https") or not urlsplit(self._api).hostname:
-            raise CorpusError(f"--api {api}: is no address; give one like https://answers.example.org")
+        self._api = re.sub(r"/api/v1\Z", "", service_address(api, "https://answers.example.org"))
         self._since = since
         self.name = f"ros-answers api {self._api}{f' since {since}' if since else ''}"
 

@@ -16,7 +16,7 @@ from datetime import datetime, timedelta, timezone
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
-from ..polite import Client, Refused
+from ..polite import Client, Refused, service_address
 from ..report import CorpusError, Report
 from ..store import Asked, Gathered, Page, digest_of
 from .markup import markdown, soup
@@ -61,11 +61,9 @@ class StackExchange:
 
     def __init__(self, client: Client, api: str = API, key: str = "", site: str = SITE):
         self.client = client
-        self.api = api.rstrip("/")
+        self.api = service_address(api, API)
         self.site = site
         self._key = key
-        if urlsplit(self.api).scheme not in ("http", "https") or not urlsplit(self.api).hostname:
-            raise CorpusError(f"--api {api}: is no address; give one like {API}")
 
     def get(self, method: str, lane: str, **asked: object) -> dict[str, Any]:
         """One answer's wrapper. Obeys `backoff`, which also comes with good answers, and the quota."""

@@ -108,6 +108,10 @@ def test_a_wait_is_told(say, server, store, monkeypatch):
         (["ros-answers", "--archive", "nowhere"], "nowhere: holds no `content/question`; give a clone of"),
         (["ros-answers", "--pages", "nowhere"], "nowhere: is no folder"),
         (["github:a/b", "--api", "nonsense"], "--api nonsense: is no address"),
+        (["github:a/b", "--api", "http://[::"], "--api http://[::: is no address; give one like https://api.github.com"),
+        (["stack-exchange", "--api", "https://"], "--api https://: is no address"),
+        (["ros-answers", "--api", "answers.example.org"], "--api answers.example.org: is no address"),
+        (["https://[::"], "https://[::: is no source"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_said_in_a_line(say, store, arguments, message):
