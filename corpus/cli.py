@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from .gather_commands import Manner
 
 app = typer.Typer(
     help="The corpus of bug reports: gather, label, count, publish.", no_args_is_help=True, rich_markup_mode=None
@@ -16,8 +22,9 @@ app = typer.Typer(
 _Store = Annotated[
     Path | None, typer.Option(help="The store; $ROSIMPACT_CORPUS, else corpus.sqlite in your data folder.")
 ]
-_Api = Annotated[str, typer.Option(help="Another address of the service: GitHub Enterprise, a mirror of ROS Answers.")]
-_GitHubApi = Annotated[str, typer.Option("--api", help="Another address of GitHub: that of GitHub Enterprise.")]
+_Api = Annotated[
+    str, typer.Option(help="Another address: of GitHub Enterprise; where one service is gathered, another one of it.")
+]
 _Wait = Annotated[
     float, typer.Option(min=0, help="Minutes to wait in all when a service says so; then stop, to go on another time.")
 ]
@@ -26,7 +33,35 @@ _Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="A line for each
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")]
 
 
+def _manner(
+    store: _Store = None, api: _Api = "", wait: _Wait = 60.0, verbose: _Verbose = False, quiet: _Quiet = False
+) -> Manner:
+    from .gather_commands import Manner
+
+    return Manner(store, api, wait, verbose, quiet)
+
+
+def _with_manner(command: Callable[..., None]) -> Callable[..., None]:
+    """The command with the options of _manner() after its own, of which it gets `manner`."""
+    own, shared = (
+        # a type that is imported late is not known here, and no option's
+        inspect.signature(function, eval_str=True, locals={"Manner": object}).parameters
+        for function in (command, _manner)
+    )
+
+    @functools.wraps(command)
+    def run(**given: Any) -> None:
+        manner = _manner(**{name: given.pop(name) for name in shared})
+        command(**given, manner=manner)
+
+    options = [*(option for name, option in own.items() if name != "manner"), *shared.values()]
+    run.__annotations__ = {option.name: option.annotation for option in options}
+    run.__signature__ = inspect.Signature(options)  # type: ignore[attr-defined]
+    return run
+
+
 @app.command("gather")
+@_with_manner
 def gather(
     what: Annotated[str, typer.Argument(help="github:OWNER/NAME, ros-answers or stack-exchange.")],
     since: Annotated[str, typer.Option(help="Only what was posted from this day on (2024-01-31).")] = "",
@@ -37,11 +72,8 @@ def gather(
     ] = None,
     archive: _Archive = None,
     pages: Annotated[Path | None, typer.Option(help="ROS Answers: a folder of saved question pages.")] = None,
-    store: _Store = None,
-    api: _Api = "",
-    wait: _Wait = 60.0,
-    verbose: _Verbose = False,
-    quiet: _Quiet = False,
+    *,
+    manner: Manner,
 ) -> None:
     """Gather reports into the store; what is there already is only brought up to date.
 
@@ -50,7 +82,6 @@ def gather(
     """
     from . import gather_commands as commands
 
-    manner = commands.Manner(store, api, wait, verbose, quiet)
     raise typer.Exit(
         commands.gather(
             what, since=since, pulls=pulls, search=search, tags=tuple(tag or ()), archive=archive, pages=pages,
@@ -60,42 +91,36 @@ def gather(
 
 
 @app.command("hydrate")
+@_with_manner
 def hydrate(
     labels: Annotated[Path | None, typer.Option(help="The labels; those of the corpus when left out.")] = None,
     texts: Annotated[
         Path | None, typer.Option("--from", help="Take the texts from this JSON Lines file, and ask nobody.")
     ] = None,
     archive: _Archive = None,
-    store: _Store = None,
-    api: _GitHubApi = "",
-    wait: _Wait = 60.0,
-    verbose: _Verbose = False,
-    quiet: _Quiet = False,
+    *,
+    manner: Manner,
 ) -> None:
     """Gather the texts of all labelled reports by their ids, and say which are gone."""
     from . import gather_commands as commands
 
-    manner = commands.Manner(store, api, wait, verbose, quiet)
     raise typer.Exit(commands.hydrate(labels, texts, archive=archive, manner=manner))
 
 
 @app.command("refresh")
+@_with_manner
 def refresh(
     source: Annotated[
         list[str] | None, typer.Option(help="Only github, ros-answers or robotics-se. May be repeated.")
     ] = None,
     limit: Annotated[int | None, typer.Option(min=1, help="So many at most, those asked for longest ago.")] = None,
     archive: _Archive = None,
-    store: _Store = None,
-    api: _GitHubApi = "",
-    wait: _Wait = 60.0,
-    verbose: _Verbose = False,
-    quiet: _Quiet = False,
+    *,
+    manner: Manner,
 ) -> None:
     """Ask for every report in the store again: edits are taken over, deleted reports lose their text."""
     from . import gather_commands as commands
 
-    manner = commands.Manner(store, api, wait, verbose, quiet)
     raise typer.Exit(commands.refresh(tuple(source or ()), limit, archive=archive, manner=manner))
 
 
