@@ -7,7 +7,6 @@ failed.
 from __future__ import annotations
 
 import re
-import sys
 import time
 from collections.abc import Callable, Sequence
 from datetime import date, datetime, timezone
@@ -188,7 +187,7 @@ def _sources(
         if manner.api:
             client = _client("Askbot", manner, spacing=0.5)
             return [(ros_answers.Askbot(client, manner.api, since=since), client)]
-        place = archive or _tarball(store, manner)
+        place = archive or _tarball(store, manner, say)
         return [(ros_answers.Archive(place, since=since, known=store.digest), None)]
     raise CorpusError(f"{what}: is no source; write github:owner/name, ros-answers or stack-exchange")
 
@@ -256,7 +255,7 @@ def _services(store: Store, archive: Path | None, manner: Manner, reporter: Repo
         if archive is None and count <= _SINGLE_FILES:
             client = _client("the archive of ROS Answers", manner, tell=reporter.line)
             return ros_answers.ArchivedFiles(client, ros_answers.FILES)
-        return ros_answers.Archive(archive or _tarball(store, manner))
+        return ros_answers.Archive(archive or _tarball(store, manner, reporter.line))
 
     return service
 
@@ -296,15 +295,16 @@ def _stack_exchange(manner: Manner) -> StackExchange:
     return stack_exchange.StackExchange(_client("Stack Exchange", manner, spacing=0.1, secrets=[key]), api, key)
 
 
-def _tarball(store: Store, manner: Manner) -> Path:
-    """The archive as a file beside the store, fetched anew once a day."""
+def _tarball(store: Store, manner: Manner, tell: Callable[[str], None]) -> Path:
+    """The archive as a file beside the store, fetched anew once a day. tell: called with a line for each wait, too."""
     from .sources import ros_answers
 
     file = store.path.resolve().parent / _TARBALL
     if not file.exists() or time.time() - file.stat().st_mtime > _TARBALL_SECONDS:
         if not manner.quiet:
-            print("fetching the archive of ROS Answers", file=sys.stderr)
-        ros_answers.fetch_archive(_client("the archive of ROS Answers", manner), file, ros_answers.TARBALL)
+            tell("fetching the archive of ROS Answers")
+        client = _client("the archive of ROS Answers", manner, tell=tell)
+        ros_answers.fetch_archive(client, file, ros_answers.TARBALL)
     return file
 
 

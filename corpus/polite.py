@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import os
 import random
 import re
 import time
@@ -17,7 +18,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from datetime import datetime, timedelta, timezone
 from email.utils import parsedate_to_datetime
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 from urllib.parse import urlencode, urljoin, urlsplit, urlunsplit
 
 import requests
@@ -174,14 +175,17 @@ class Client:
         return answer, answer.json() if answer.status == 200 else None
 
     def download(self, url: str, file: Path, headers: Mapping[str, str] | None = None) -> None:
-        """Fetches a large file, whole or not at all."""
-        import os
+        """Fetches a large file, whole or not at all. What a killed download of it left behind is removed."""
         import tempfile
 
         file.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{file.name}-", dir=file.parent)
+        prefix = f".{file.name}-"
+        for left in file.parent.glob(f"{prefix}*"):
+            _remove_if_left(left)
+        handle, name = tempfile.mkstemp(prefix=prefix, dir=file.parent)
         try:
             with os.fdopen(handle, "wb") as target:
+                _hold(target)
                 self._get(url, None, headers, "", frozenset(), None, target)
             os.replace(name, file)
         except BaseException:
@@ -345,6 +349,25 @@ class Client:
         if answer.status == 429 or _SECONDARY_WORDS.search(answer.body[:4000].decode("utf-8", "replace")):
             return _SECONDARY * 2**before * random.uniform(1.0, 1.25)
         return None
+
+
+def _hold(file: IO[bytes]) -> bool:
+    """Whether an open file is now held by this process, until it ends or closes the file, and was by no other."""
+    try:
+        import fcntl
+    except ImportError:
+        return False  # Windows: nobody can tell whether another one writes
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+def _remove_if_left(part: Path) -> None:
+    with contextlib.suppress(OSError), part.open("r+b") as file:
+        if _hold(file):
+            part.unlink()
 
 
 def service_address(api: str, like: str) -> str:

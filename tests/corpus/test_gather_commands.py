@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import io
 import json
+import subprocess
 import sys
 import tarfile
+import time
 
 import pytest
 from rosimpact.corpus.gather import Progress
@@ -149,7 +151,9 @@ def test_the_archive_from_a_clone(say, store, archive):
     )
 
 
-def test_the_archive_from_the_network(say, server, store, monkeypatch):
+@pytest.fixture
+def packed(server, monkeypatch):
+    """The archive as the network has it."""
     packed = io.BytesIO()
     with tarfile.open(fileobj=packed, mode="w:gz") as tar:
         for number in (9075, 10010):
@@ -158,13 +162,60 @@ def test_the_archive_from_the_network(say, server, store, monkeypatch):
             member.size = len(data)
             tar.addfile(member, io.BytesIO(data))
     server.files["tar.gz"] = packed.getvalue()
-    server.fail(Fault(part=0.5))
     monkeypatch.setattr("rosimpact.corpus.polite.Clock.sleep", lambda self, seconds: None)
     monkeypatch.setattr("rosimpact.corpus.sources.ros_answers.TARBALL", f"{server.url}/tar.gz")
+
+
+def test_the_archive_from_the_network(say, server, store, packed):
+    server.fail(Fault(part=0.5))
     assert say("corpus", "gather", "ros-answers", "--quiet").status == 0
     assert len(list(open_reports(store))) == 2
     assert say("corpus", "gather", "ros-answers", "--quiet").status == 0
     assert len(server.asked) == 2, "half a file was fetched anew, and a whole one is not fetched again the same day"
+
+
+def test_a_fetch_that_must_try_again_says_so(say, server, store, packed):
+    server.fail(Fault(503, {"Retry-After": "30"}))
+    said = say("corpus", "gather", "ros-answers")
+    assert said.status == 0
+    first, second = said.err.splitlines()
+    assert first == "fetching the archive of ROS Answers"
+    assert second.startswith("the archive of ROS Answers: 127.0.0.1/tar.gz answered with status 503; waiting 30 s")
+
+
+def test_what_a_killed_fetch_left_is_removed_and_what_another_writes_is_not(say, server, store, packed, tmp_path):
+    code = (
+        "from rosimpact.corpus.polite import Client; from pathlib import Path; import sys; "
+        "Client('archive').download(sys.argv[1], Path(sys.argv[2]))"
+    )
+
+    def parts() -> set[str]:
+        return {path.name for path in tmp_path.iterdir() if path.name.startswith(".answers-archive")}
+
+    def half_fetched() -> subprocess.Popen:
+        before, asked = parts(), len(server.asked)
+        server.fail(Fault(pause=0.5))
+        process = subprocess.Popen(
+            [sys.executable, "-c", code, f"{server.url}/tar.gz", str(tmp_path / "answers-archive.tar.gz")]
+        )
+        until = time.monotonic() + 20
+        while (len(server.asked) == asked or parts() == before) and time.monotonic() < until:
+            time.sleep(0.01)
+        return process
+
+    killed = half_fetched()
+    (left,) = parts()
+    other = half_fetched()
+    try:
+        assert left in parts() and len(parts()) == 2
+        killed.kill()
+        killed.wait()
+        assert say("corpus", "gather", "ros-answers").status == 0
+        assert len(parts()) == 1 and left not in parts()
+    finally:
+        other.kill()
+        other.wait()
+    assert len(list(open_reports(store))) == 2
 
 
 def write_labels(path, *ids: str) -> None:
