@@ -15,15 +15,15 @@ import numpy as np
 from ..corpus.report import LABELS
 from .model import softmax
 from .reading import VIEWS
-from .training import EVERYTHING, SEED, Example, Progress, Settings, calibrate, digests, fit, splits
+from .training import EVERYTHING, SEED, Examples, Progress, Settings, calibrate, digests, fit, splits
 
 FOLDS = 10
 BINS = 15
 RESAMPLES = 1_000
 COVERAGES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 
+WHOLE = "words and signs, nothing left out"
 ABLATIONS: dict[str, Settings] = {
-    "words and signs, nothing left out": Settings(),
     "without letters": Settings(views=tuple(view for view in VIEWS if view != "letters")),
     "without signs": Settings(signs=False),
     "without generalised words": Settings(views=("title", "prose", "errors", "letters")),
@@ -62,18 +62,18 @@ class Score(NamedTuple):
 
 
 def out_of_fold(
-    found: Sequence[Example], settings: Settings = EVERYTHING, *, calibrated: bool, seed: int = SEED,
+    found: Examples, settings: Settings = EVERYTHING, *, calibrated: bool, seed: int = SEED,
     progress: Progress | None = None, name: str = "",
 ) -> Judged:  # fmt: skip
     """Judges every report by a model trained on other repositories. calibrated: in each fold, which takes longer."""
-    chances = np.zeros((len(found), len(LABELS)))
-    abstained = np.zeros(len(found), bool)
+    chances = np.zeros((len(found.rows), len(LABELS)))
+    abstained = np.zeros(len(found.rows), bool)
     parts = splits(found, FOLDS, seed)
     for number, (learn, judge) in enumerate(parts, 1):
-        seen = [found[row] for row in learn]
+        seen = found.part(learn)
         calibration = calibrate(seen, settings, seed) if calibrated else None
         model = fit(seen, settings)
-        scores = model.scores([found[row].reading for row in judge])
+        scores = model.scores(found.counts.part(judge))
         part = softmax(scores / (calibration.temperature if calibration else 1.0))
         chances[np.ix_(judge, np.array([LABELS.index(label) for label in model.labels]))] = part
         if calibration:
@@ -83,15 +83,15 @@ def out_of_fold(
     return Judged(chances, abstained)
 
 
-def rivals(found: Sequence[Example], seed: int = SEED, progress: Progress | None = None) -> dict[str, np.ndarray]:
+def rivals(found: Examples, seed: int = SEED, progress: Progress | None = None) -> dict[str, np.ndarray]:
     """What simpler means say of each report, on the same splits: name to places in LABELS."""
     from sklearn.feature_extraction.text import TfidfVectorizer
     from sklearn.linear_model import LogisticRegression
 
-    texts = [f"{example.report.title}\n{example.report.body}" for example in found]
+    texts = [f"{example.report.title}\n{example.report.body}" for example in found.rows]
     truth = truths(found)
-    said = {name: np.zeros(len(found), int) for name in ("majority", "keyword rule", "nearest neighbours (10)")}
-    said["plain TF-IDF with logistic regression"] = np.zeros(len(found), int)
+    said = {name: np.zeros(len(texts), int) for name in ("majority", "keyword rule", "nearest neighbours (10)")}
+    said["plain TF-IDF with logistic regression"] = np.zeros(len(texts), int)
     rules = [(LABELS.index(label), re.compile(pattern, re.IGNORECASE)) for label, pattern in _KEYWORDS]
     for row, text in enumerate(texts):
         hits = (place for place, pattern in rules if pattern.search(text))
@@ -113,9 +113,9 @@ def rivals(found: Sequence[Example], seed: int = SEED, progress: Progress | None
     return said
 
 
-def truths(found: Sequence[Example]) -> np.ndarray:
+def truths(found: Examples) -> np.ndarray:
     """The places of the true labels in LABELS."""
-    return np.array([LABELS.index(example.label) for example in found])
+    return np.array([LABELS.index(label) for label in found.labels])
 
 
 def f1_scores(truth: np.ndarray, said: np.ndarray) -> np.ndarray:
@@ -156,13 +156,13 @@ def calibration_error(sure: np.ndarray, right: np.ndarray, bins: int = BINS) -> 
 
 
 def evaluate(
-    found: Sequence[Example], *, seed: int = SEED, resamples: int = RESAMPLES, ablations: bool = True,
+    found: Examples, *, seed: int = SEED, resamples: int = RESAMPLES, ablations: bool = True,
     progress: Progress | None = None,
 ) -> dict:  # fmt: skip
     """All the numbers, as JSON takes them. progress: called with what is done, how many of how many."""
     judged = out_of_fold(found, calibrated=True, seed=seed, progress=progress)
     truth, said = truths(found), judged.chances.argmax(axis=1)
-    groups = np.array([example.report.group for example in found])
+    groups, reports = found.groups, [example.report for example in found.rows]
     sure, right = judged.chances.max(axis=1), said == truth
 
     def scored(rows: np.ndarray) -> dict:
@@ -185,19 +185,18 @@ def evaluate(
             },
         }  # fmt: skip
 
-    original = np.array([example.report.wording == "original" for example in found])
-    twice = np.array([example.twice for example in found])
-    subsets = {"all": np.ones(len(found), bool), "wording original": original, "wording abridged": ~original}
-    subsets["read twice, wording original"] = twice & original
-    for source in sorted({example.report.source for example in found}):
-        subsets[f"source {source}"] = np.array([example.report.source == source for example in found])
+    original = np.array([report.wording == "original" for report in reports])
+    subsets = {"all": np.ones(len(reports), bool), "wording original": original, "wording abridged": ~original}
+    subsets["read twice, wording original"] = _twice_original(found)
+    for source in sorted({report.source for report in reports}):
+        subsets[f"source {source}"] = np.array([report.source == source for report in reports])
     order = np.argsort(-sure, kind="stable")
     answered = ~judged.abstained
     result = {
-        "reports": len(found),
+        "reports": len(reports),
         "repositories": len(set(groups)),
         "folds": len(splits(found, FOLDS, seed)),
-        **digests(found),
+        **digests(found.rows),
         "scores": {name: scored(rows) for name, rows in subsets.items() if rows.any()},
         "confusion": np.bincount(truth * len(LABELS) + said, minlength=len(LABELS) ** 2)
         .reshape(len(LABELS), len(LABELS))
@@ -209,22 +208,37 @@ def evaluate(
         ],
         "abstaining": {"answered": float(answered.mean()), "right": _share(right, answered)},
     }
-    others = rivals(found, seed, progress)
+    result["beside"] = beside(found, judged, seed=seed, resamples=resamples, ablations=ablations, progress=progress)
+    return result
+
+
+def beside(
+    found: Examples, judged: Judged, *, seed: int = SEED, resamples: int = RESAMPLES, ablations: bool = True,
+    progress: Progress | None = None,
+) -> dict[str, dict]:  # fmt: skip
+    """Scores of simpler means and of the classifier with parts left out, by name, as JSON takes them.
+
+    judged: what the whole classifier says of the same reports; its own scores stand among the ablations.
+    """
+    said = rivals(found, seed, progress)
     if ablations:
+        said[WHOLE] = judged.chances.argmax(axis=1)
         for name, settings in ABLATIONS.items():
             part = out_of_fold(found, settings, calibrated=False, seed=seed, progress=progress, name=name)
-            others[name] = part.chances.argmax(axis=1)
-    result["beside"] = {
+            said[name] = part.chances.argmax(axis=1)
+    truth, groups, twice = truths(found), found.groups, _twice_original(found)
+    return {
         name: {
             "macro_f1": interval(macro_f1, truth, answer, groups, seed, resamples)._asdict(),
-            "read_twice_original": macro_f1(truth[twice & original], answer[twice & original])
-            if (twice & original).any()
-            else None,
+            "read_twice_original": macro_f1(truth[twice], answer[twice]) if twice.any() else None,
             "right": float((answer == truth).mean()),
         }
-        for name, answer in others.items()
+        for name, answer in said.items()
     }
-    return result
+
+
+def _twice_original(found: Examples) -> np.ndarray:
+    return np.array([example.twice and example.report.wording == "original" for example in found.rows])
 
 
 def _share(what: np.ndarray, among: np.ndarray) -> float | None:

@@ -1,13 +1,20 @@
-"""Transformers from reports to numbers, for training with scikit-learn.
+"""From many reports to numbers, for training with scikit-learn.
 
-Each takes what `Reading` holds of a report and gives one row. What they learn is a vocabulary, weights and scales:
-plain arrays, which the model file holds, so that triage needs no scikit-learn.
+The n-grams of the reports are counted once, into one matrix a view; whatever is fitted to some of the reports, a fold
+of cross-validation or all, takes its rows. What is learnt are vocabularies, weights and scales: plain arrays, which
+the model file holds, so that triage needs no scikit-learn.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+import marshal
+import tempfile
+import zlib
+from array import array
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack
+from itertools import compress
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -15,70 +22,162 @@ from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.feature_extraction.text import TfidfTransformer
 from sklearn.preprocessing import StandardScaler
 
-from .reading import Reading
+from .reading import VIEWS, Reading
 from .signs import LIMIT, SIGNS
+
+MANY = 400
+"""Reports from which on an n-gram must stand in FEW of them, and not only in half as many."""
+FEW = 4
+HOMES = 3
+"""Repositories in which an n-gram must stand."""
+_BUCKETS = 1 << 26
+
+
+class Counts(NamedTuple):
+    """What many reports hold.
+
+    grams: of each view, how often (16 bits) each n-gram stands in each report, reports by n-grams. names: the n-grams
+    of each view, sorted. signs: reports by SIGNS. groups: the number of each report's repository.
+    """
+
+    grams: dict[str, csr_matrix]
+    names: dict[str, list[str]]
+    signs: np.ndarray
+    groups: np.ndarray
+
+    def part(self, rows: np.ndarray) -> Counts:
+        """The same of some of the reports."""
+        grams = {view: csr_matrix(matrix[rows]) for view, matrix in self.grams.items()}
+        return Counts(grams, self.names, self.signs[rows], self.groups[rows])
+
+
+def count(readings: Iterable[Reading], groups: Sequence[str]) -> Counts:
+    """Counts the n-grams that can be learnt from these reports: those that stand in enough of them.
+
+    readings: in the order of groups, the repository of each; read once, one at a time. Most n-grams stand in one
+    report: a table of hashes tells those that surely do, so that their names need not be held. The readings wait in a
+    temporary file until it is full.
+    """
+    seen = np.zeros(_BUCKETS, np.uint8)
+    signs = array("d")
+    names, grams = {}, {}
+    with ExitStack() as files:
+        spools = {view: files.enter_context(tempfile.TemporaryFile()) for view in VIEWS}
+        for reading in readings:
+            for view, spool in spools.items():
+                counted = reading.grams[view]
+                places = _places(view, counted)
+                seen[places] += seen[places] < 255
+                packed = zlib.compress(marshal.dumps(dict(counted)), 1)
+                spool.write(len(packed).to_bytes(4, "big") + packed)
+            signs.extend(reading.signs)
+        codes = np.unique(np.array(groups), return_inverse=True)[1].astype(np.int32)
+        for view, spool in spools.items():
+            names[view], grams[view] = _counted(view, spool, seen, codes)
+    return Counts(grams, names, np.frombuffer(signs).reshape(-1, len(SIGNS)), codes)
+
+
+def _fewest(view: str, reports: int) -> int:
+    return (FEW if reports >= MANY else FEW // 2) * VIEWS[view].rare
+
+
+def _places(view: str, grams: Iterable[str]) -> np.ndarray:
+    hashes = np.fromiter(map(hash, grams), np.int64)
+    return (hashes ^ hash(view)) & (_BUCKETS - 1)
+
+
+def _spooled(spool: IO[bytes]) -> Iterator[dict[str, int]]:
+    spool.seek(0)
+    while head := spool.read(4):
+        yield marshal.loads(zlib.decompress(spool.read(int.from_bytes(head, "big"))))
+
+
+def _counted(view: str, spool: IO[bytes], seen: np.ndarray, codes: np.ndarray) -> tuple[list[str], csr_matrix]:
+    names = _learnable(view, spool, seen, codes)
+    known = {name: column for column, name in enumerate(names)}
+    columns, times, starts = array("i"), array("H"), array("q", [0])
+    for grams in _spooled(spool):
+        row = sorted((known[gram], min(number, 65_535)) for gram, number in grams.items() if gram in known)
+        columns.extend(column for column, _ in row)
+        times.extend(number for _, number in row)
+        starts.append(len(times))
+    shape = (len(codes), len(names))
+    if not times:
+        return names, csr_matrix(shape, dtype=np.uint16)
+    arrays = (np.frombuffer(times, np.uint16), np.frombuffer(columns, np.int32), np.frombuffer(starts, np.int64))
+    return names, csr_matrix(arrays, shape)
+
+
+def _learnable(view: str, spool: IO[bytes], seen: np.ndarray, codes: np.ndarray) -> list[str]:
+    """The n-grams of a view that stand in enough reports of enough repositories, sorted."""
+    fewest = _fewest(view, len(codes))
+    places: dict[str, int] = {}
+    often, homes = np.zeros(1_024, np.int32), np.full((HOMES, 1_024), -1, np.int32)
+    for code, grams in zip(codes, _spooled(spool), strict=True):
+        common = seen[_places(view, grams)] >= fewest
+        row = np.array([places.setdefault(gram, len(places)) for gram in compress(grams, common)], np.int64)
+        if len(places) > len(often):
+            often = np.append(often, np.zeros(len(places), np.int32))
+            homes = np.append(homes, np.full((HOMES, len(places)), -1, np.int32), axis=1)
+        often[row] += 1
+        new = row[(homes[:, row] != code).all(axis=0)]
+        free = homes[:, new] < 0
+        homes[free.argmax(axis=0)[free.any(axis=0)], new[free.any(axis=0)]] = code
+    spread = (homes >= 0).sum(axis=0) >= min(HOMES, len(np.unique(codes)))
+    kept = (often >= fewest) & spread
+    return sorted(gram for gram, place in places.items() if kept[place])
+
+
+def _common(counts: Any, codes: np.ndarray, fewest: int) -> np.ndarray:
+    """The columns of what stands in enough reports of enough repositories."""
+    homes = np.unique(codes)
+    often = np.bincount(counts.indices, minlength=counts.shape[1]) >= fewest
+    of_homes: Any = csr_matrix((np.ones(len(codes), bool), (np.searchsorted(homes, codes), np.arange(len(codes)))))
+    there: Any = csr_matrix((np.ones(counts.nnz, bool), counts.indices, counts.indptr), counts.shape)
+    spread = np.bincount((of_homes @ there).indices, minlength=counts.shape[1]) >= min(HOMES, len(homes))
+    return np.flatnonzero(often & spread)
 
 
 class Words(BaseEstimator, TransformerMixin):
-    """TF-IDF of the n-grams of one view of a report.
+    """TF-IDF of the n-grams of one view of reports.
 
-    An n-gram is kept when it stands in `reports` reports of `groups` repositories or more: what one author wrote, or
-    one project alone uses, is not learnt.
+    An n-gram is kept when it stands in enough reports of enough repositories: what one author wrote, or one project
+    alone uses, is not learnt.
     """
 
-    def __init__(self, view: str, reports: int = 4, groups: int = 3):
+    def __init__(self, view: str):
         self.view = view
-        self.reports = reports
-        self.groups = groups
 
-    def fit(self, readings: Sequence[Reading], groups: Sequence[str]) -> Words:
-        """Learns vocabulary and weights. groups: the repository of each report."""
-        times: Counter[str] = Counter()
-        homes: dict[str, set[str]] = {}
-        for reading, group in zip(readings, groups, strict=True):
-            for gram in reading.grams[self.view]:
-                times[gram] += 1
-                seen = homes.setdefault(gram, set())
-                if len(seen) < self.groups:
-                    seen.add(group)
-        kept = sorted(g for g, count in times.items() if count >= self.reports and len(homes[g]) >= self.groups)
-        self.vocabulary_ = {gram: column for column, gram in enumerate(kept)}
+    def fit(self, counts: Counts, groups: object = None) -> Words:
+        """Learns the vocabulary and the weights."""
+        matrix: Any = counts.grams[self.view]
+        self.columns_ = _common(matrix, counts.groups, _fewest(self.view, matrix.shape[0]))
+        names = counts.names[self.view]
+        self.vocabulary_ = [names[column] for column in self.columns_]
         self.weights_ = TfidfTransformer(sublinear_tf=True)
-        if kept:
-            self.weights_.fit(self._counts(reading.grams[self.view] for reading in readings))
+        if len(self.columns_):
+            self.weights_.fit(matrix[:, self.columns_])
         return self
 
-    def transform(self, readings: Sequence[Reading]) -> csr_matrix:
+    def transform(self, counts: Counts) -> csr_matrix:
         """One row of unit length a report."""
-        counts = self._counts(reading.grams[self.view] for reading in readings)
-        return csr_matrix(self.weights_.transform(counts)) if self.vocabulary_ else counts
-
-    def _counts(self, grams: Iterable[Mapping[str, int]]) -> csr_matrix:
-        data: list[int] = []
-        columns: list[int] = []
-        starts = [0]
-        for counted in grams:
-            for gram, count in counted.items():
-                column = self.vocabulary_.get(gram)
-                if column is not None:
-                    columns.append(column)
-                    data.append(count)
-            starts.append(len(data))
-        shape = (len(starts) - 1, len(self.vocabulary_))
-        matrix = csr_matrix((np.array(data, float), np.array(columns, np.int32), np.array(starts, np.int32)), shape)
-        matrix.sort_indices()
-        return matrix
+        matrix = csr_matrix(counts.grams[self.view][:, self.columns_])
+        if not len(self.columns_):
+            return csr_matrix(matrix, dtype=float)
+        rows = csr_matrix(self.weights_.transform(matrix))
+        rows.sort_indices()
+        return rows
 
 
 class Signs(BaseEstimator, TransformerMixin):
     """The signs of a report, each to mean 0 and variance 1, the whole row scaled by the root of their number."""
 
-    def fit(self, readings: Sequence[Reading], groups: object = None) -> Signs:
+    def fit(self, counts: Counts, groups: object = None) -> Signs:
         """Learns means and scales."""
-        self.scaler_ = StandardScaler().fit(np.array([reading.signs for reading in readings]))
+        self.scaler_ = StandardScaler().fit(counts.signs)
         return self
 
-    def transform(self, readings: Sequence[Reading]) -> np.ndarray:
+    def transform(self, counts: Counts) -> np.ndarray:
         """One row a report."""
-        scaled = self.scaler_.transform(np.array([reading.signs for reading in readings]))
+        scaled = self.scaler_.transform(counts.signs)
         return np.clip(scaled, -LIMIT, LIMIT) / np.sqrt(len(SIGNS))

@@ -10,7 +10,7 @@ import hashlib
 import re
 import warnings
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,7 +23,7 @@ from sklearn.model_selection import StratifiedGroupKFold
 
 from ..corpus.report import LABELS, CorpusError, Report, read_labels
 from ..corpus.store import open_reports
-from .features import Signs, Words
+from .features import Counts, Signs, Words, count
 from .model import FORMAT, ClassifierError, Model, packed, packed_lines, softmax
 from .reading import VIEWS, Reading, read
 from .signs import DIGEST
@@ -43,12 +43,32 @@ _DAY = re.compile(r"\d{4}-\d\d-\d\d\Z")
 
 
 class Example(NamedTuple):
-    """A labelled report as it is learnt from. twice: whether two annotators read it."""
+    """A report and its label. twice: whether two annotators read it."""
 
     report: Report
     label: str
     twice: bool
-    reading: Reading
+
+
+class Examples(NamedTuple):
+    """Labelled reports in the order of their ids, and what is counted of them, a row a report."""
+
+    rows: list[Example]
+    counts: Counts
+
+    def part(self, rows: np.ndarray) -> Examples:
+        """Some of them."""
+        return Examples([self.rows[row] for row in rows], self.counts.part(rows))
+
+    @property
+    def labels(self) -> np.ndarray:
+        """The true labels."""
+        return np.array([example.label for example in self.rows])
+
+    @property
+    def groups(self) -> np.ndarray:
+        """The repositories."""
+        return np.array([example.report.group for example in self.rows])
 
 
 class Settings(NamedTuple):
@@ -63,7 +83,7 @@ EVERYTHING = Settings()
 
 
 class Linear(NamedTuple):
-    """A fitted linear model. words and signs turn readings into the columns of coefficients (labels by columns)."""
+    """A fitted linear model. words and signs turn counts into the columns of coefficients (labels by columns)."""
 
     labels: tuple[str, ...]
     words: dict[str, Words]
@@ -71,13 +91,13 @@ class Linear(NamedTuple):
     coefficients: np.ndarray
     intercept: np.ndarray
 
-    def scores(self, readings: Sequence[Reading]) -> np.ndarray:
+    def scores(self, counts: Counts) -> np.ndarray:
         """One row a report, one column a label."""
-        return np.asarray(_matrix(self.words, self.signs, readings) @ self.coefficients.T) + self.intercept
+        return np.asarray(_matrix(self.words, self.signs, counts) @ self.coefficients.T) + self.intercept
 
 
-def examples(labels: Path, reports: Path, progress: Progress | None = None) -> list[Example]:
-    """Labelled reports in the order of their ids. Raises ClassifierError when there are too few to learn from."""
+def examples(labels: Path, reports: Path, progress: Progress | None = None) -> Examples:
+    """Reads labelled reports and counts what stands in them. Raises ClassifierError when there are too few."""
     try:
         known = {label.id: label for label in read_labels(labels)}
         texts = {report.id: report for report in open_reports(reports) if report.id in known}
@@ -85,13 +105,7 @@ def examples(labels: Path, reports: Path, progress: Progress | None = None) -> l
         raise ClassifierError(str(error)) from None
     if not known:
         raise ClassifierError(f"{labels}: holds no labels; give a file that does")
-    found: list[Example] = []
-    for number, id in enumerate(sorted(texts), 1):
-        report, label = texts[id], known[id]
-        if progress:
-            progress("reading reports", number, len(texts))
-        reading = read(report.title, report.body)
-        found.append(Example(report, label.label, label.decided != "single", reading))
+    found = [Example(texts[id], known[id].label, known[id].decided != "single") for id in sorted(texts)]
     if not found:
         raise ClassifierError(
             f"{reports}: holds none of the {len(known):,} reports labelled in {labels}; "
@@ -109,7 +123,14 @@ def examples(labels: Path, reports: Path, progress: Progress | None = None) -> l
         raise ClassifierError(
             f"{reports}: all reports are of one repository; without a second one nothing can be calibrated: add one"
         )
-    return found
+
+    def readings() -> Iterator[Reading]:
+        for number, example in enumerate(found, 1):
+            yield read(example.report.title, example.report.body)
+            if progress:
+                progress("reading reports", number, len(found))
+
+    return Examples(found, count(readings(), [example.report.group for example in found]))
 
 
 def digests(found: Sequence[Example]) -> dict[str, str]:
@@ -122,29 +143,21 @@ def digests(found: Sequence[Example]) -> dict[str, str]:
     return {"labels_digest": labels.hexdigest(), "texts_digest": texts.hexdigest()}
 
 
-def splits(found: Sequence[Example], folds: int, seed: int) -> list[tuple[np.ndarray, np.ndarray]]:
+def splits(found: Examples, folds: int, seed: int) -> list[tuple[np.ndarray, np.ndarray]]:
     """Grouped by repository and stratified by label: pairs of rows to learn from and rows to judge."""
-    groups = [example.report.group for example in found]
-    labels = [example.label for example in found]
-    folds = max(2, min(folds, len(set(groups))))
+    folds = max(2, min(folds, len(set(found.groups))))
     splitter = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # a label with fewer reports than folds is split as well as can be
-        return list(splitter.split(np.zeros(len(found)), labels, groups))
+        return list(splitter.split(np.zeros(len(found.rows)), found.labels, found.groups))
 
 
-def fit(found: Sequence[Example], settings: Settings = EVERYTHING) -> Linear:
+def fit(found: Examples, settings: Settings = EVERYTHING) -> Linear:
     """Fits the linear model. Raises ClassifierError when only one label is left."""
-    readings = [example.reading for example in found]
-    groups = [example.report.group for example in found]
-    homes = len(set(groups))
-    reports = 4 if len(found) >= 400 else 2
-    words = {
-        view: Words(view, reports * VIEWS[view].rare, min(3, homes)).fit(readings, groups) for view in settings.views
-    }
-    signs = Signs().fit(readings) if settings.signs else None
-    rows = _matrix(words, signs, readings)
-    labels = np.array([example.label for example in found])
+    words = {view: Words(view).fit(found.counts) for view in settings.views}
+    signs = Signs().fit(found.counts) if settings.signs else None
+    rows = _matrix(words, signs, found.counts)
+    labels = found.labels
     present = tuple(label for label in LABELS if label in set(labels))
     if len(present) < 2:
         raise ClassifierError("only one label is left to learn from in one part of the reports; label more")
@@ -168,7 +181,7 @@ class Calibration(NamedTuple):
 
 
 def calibrate(
-    found: Sequence[Example],
+    found: Examples,
     settings: Settings = EVERYTHING,
     seed: int = SEED,
     step: Callable[[], None] = lambda: None,
@@ -178,14 +191,14 @@ def calibrate(
     The temperature is the likeliest one. The threshold is the lowest at which 90 in 100 answers are right, or the one
     that answers 65 in 100 if that is lower.
     """
-    present = tuple(label for label in LABELS if label in {example.label for example in found})
-    scores = np.full((len(found), len(present)), -30.0)
+    present = tuple(label for label in LABELS if label in set(found.labels))
+    scores = np.full((len(found.rows), len(present)), -30.0)
     for learn, judge in splits(found, INNER_FOLDS, seed):
-        model = fit([found[row] for row in learn], settings)
-        part = model.scores([found[row].reading for row in judge])
+        model = fit(found.part(learn), settings)
+        part = model.scores(found.counts.part(judge))
         scores[np.ix_(judge, np.array([present.index(label) for label in model.labels]))] = part
         step()
-    truth = np.array([present.index(example.label) for example in found])
+    truth = np.array([present.index(label) for label in found.labels])
 
     def loss(logarithm: float) -> float:
         chances = softmax(scores / np.exp(logarithm))[np.arange(len(truth)), truth]
@@ -205,7 +218,7 @@ def calibrate(
     return Calibration(round(temperature, 6), float(np.floor(threshold * 1e6 - 1) / 1e6))
 
 
-def train(found: Sequence[Example], seed: int = SEED, progress: Progress | None = None) -> Model:
+def train(found: Examples, seed: int = SEED, progress: Progress | None = None) -> Model:
     """A model of all the reports given. Raises ClassifierError."""
     done = [0]
 
@@ -219,9 +232,9 @@ def train(found: Sequence[Example], seed: int = SEED, progress: Progress | None 
     step()
     words = np.concatenate([_idf(linear.words[view]) for view in VIEWS])
     assert linear.signs is not None
-    rows = _matrix(linear.words, None, [example.reading for example in found])
+    rows = _matrix(linear.words, None, found.counts)
     columns = len(words)
-    size = max(2, min(DIMENSIONS, columns - 1, len(found) - 1))
+    size = max(2, min(DIMENSIONS, columns - 1, len(found.rows) - 1))
     if columns > size:
         space: Any = TruncatedSVD(size, random_state=seed)
         basis = np.asarray(space.fit(rows).components_).T
@@ -242,9 +255,9 @@ def train(found: Sequence[Example], seed: int = SEED, progress: Progress | None 
         "temperature": calibration.temperature,
         "threshold": calibration.threshold,
         "seed": seed,
-        "reports": len(found),
-        "newest": max((date for example in found if _DAY.match(date := example.report.date or "")), default=""),
-        **digests(found),
+        "reports": len(found.rows),
+        "newest": max((date for example in found.rows if _DAY.match(date := example.report.date or "")), default=""),
+        **digests(found.rows),
     }
     arrays = {
         "about": packed(about),
@@ -255,10 +268,10 @@ def train(found: Sequence[Example], seed: int = SEED, progress: Progress | None 
         "sign scales": np.asarray(linear.signs.scaler_.scale_),
         "projection": basis.astype(np.float16),
         "vectors": vectors.astype(np.float16),
-        "known": packed([[example.report.id, example.report.url, example.label] for example in found]),
+        "known": packed([[example.report.id, example.report.url, example.label] for example in found.rows]),
     }
     for view in VIEWS:
-        arrays[f"vocabulary {view}"] = packed_lines(list(linear.words[view].vocabulary_))
+        arrays[f"vocabulary {view}"] = packed_lines(linear.words[view].vocabulary_)
     return Model(arrays)
 
 
@@ -266,8 +279,8 @@ def _idf(words: Words) -> np.ndarray:
     return np.asarray(words.weights_.idf_) if words.vocabulary_ else np.zeros(0)
 
 
-def _matrix(words: dict[str, Words], signs: Signs | None, readings: Sequence[Reading]) -> csr_matrix:
-    parts = [VIEWS[view].weight * words[view].transform(readings) for view in words]
+def _matrix(words: dict[str, Words], signs: Signs | None, counts: Counts) -> csr_matrix:
+    parts = [VIEWS[view].weight * words[view].transform(counts) for view in words]
     if signs is not None:
-        parts.append(csr_matrix(signs.transform(readings)))
+        parts.append(csr_matrix(signs.transform(counts)))
     return csr_matrix(hstack(parts))

@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -85,13 +85,10 @@ def measured(reports: Path, progress: Callable[[str, int, int], None] | None = N
     try:
         found = examples(LABELS_FILE, reports, progress)
         judged = e.out_of_fold(found, calibrated=True, progress=progress)
-        said = e.rivals(found, progress=progress)
-        for name, settings in e.ABLATIONS.items():
-            part = e.out_of_fold(found, settings, calibrated=False, progress=progress, name=name)
-            said[name] = part.chances.argmax(axis=1)
+        others = e.beside(found, judged, progress=progress)
     except ClassifierError as error:
         raise CorpusError(str(error)) from None
-    return Measured(predictions_of(found, judged), beside_of(found, said), digests(found))
+    return Measured(predictions_of(found.rows, judged), others, digests(found.rows))
 
 
 def predictions_of(found: Sequence[Example], judged: Judged) -> list[Prediction]:
@@ -105,25 +102,6 @@ def predictions_of(found: Sequence[Example], judged: Judged) -> list[Prediction]
         )
         for example, chances, silent in zip(found, judged.chances, judged.abstained, strict=True)
     ]  # fmt: skip
-
-
-def beside_of(found: Sequence[Example], said: Mapping[str, Any]) -> dict[str, Any]:
-    """Scores of what other means said: name to `macro_f1` with its interval, `read_twice_original` and `right`."""
-    import numpy as np
-
-    from ..classifier import evaluate as e
-
-    truth = e.truths(found)
-    groups = [example.report.group for example in found]
-    second = np.array([example.twice and example.report.wording == "original" for example in found])
-    return {
-        name: {
-            "macro_f1": e.interval(e.macro_f1, truth, answer, groups)._asdict(),
-            "read_twice_original": e.macro_f1(truth[second], answer[second]) if second.any() else None,
-            "right": float((answer == truth).mean()),
-        }
-        for name, answer in said.items()
-    }
 
 
 def write(found: Measured, folder: Path) -> None:

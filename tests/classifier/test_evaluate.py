@@ -15,12 +15,12 @@ def found(labelled):
 
 
 def test_no_repository_is_on_both_sides(found):
-    groups = [example.report.group for example in found]
+    groups = found.groups
     judged = []
     for learn, judge in training.splits(found, 10, 1):
         assert not {groups[row] for row in learn} & {groups[row] for row in judge}
         judged.extend(judge)
-    assert sorted(judged) == list(range(len(found)))
+    assert sorted(judged) == list(range(len(found.rows)))
 
 
 @pytest.mark.parametrize(

@@ -44,19 +44,20 @@ def test_the_file_gives_what_scikit_learn_gave(found, model, tmp_path):
     model.save(tmp_path / "m.npz")
     kept = load(tmp_path / "m.npz")
     linear = training.fit(found)
-    expected = linear.scores([example.reading for example in found])
-    scores = np.array([kept.scores(example.reading) for example in found])
+    expected = linear.scores(found.counts)
+    reports = [example.report for example in found.rows]
+    scores = np.array([kept.scores(read(report.title, report.body)) for report in reports])
     assert np.allclose(scores, expected, atol=1e-4)
 
 
 def test_a_changed_text_changes_the_digest(found):
-    first, *rest = found
+    first, *rest = found.rows
     other = first._replace(
         report=type(first.report)(
             **{f: getattr(first.report, f) for f in first.report.__struct_fields__} | {"body": "new"}
         )
     )
-    before, after = training.digests(found), training.digests([other, *rest])
+    before, after = training.digests(found.rows), training.digests([other, *rest])
     assert before["labels_digest"] == after["labels_digest"]
     assert before["texts_digest"] != after["texts_digest"]
 
@@ -122,8 +123,8 @@ class TestShipped:
 
 class TestNearest:
     def test_the_report_itself_is_nearest(self, found, model):
-        example = found[0]
-        best = model.nearest(example.reading)
+        example = found.rows[0]
+        best = model.nearest(read(example.report.title, example.report.body))
         assert len(best) == 5
         assert best[0].likeness == pytest.approx(1, abs=1e-2)
         assert best[0].label == example.label

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from rosimpact.classifier.evaluate import Judged
-from rosimpact.classifier.reading import read as read_text
 from rosimpact.classifier.training import Example
 from rosimpact.corpus import study_triage
 from rosimpact.corpus.curves import pooled_share, survival
@@ -155,13 +154,11 @@ def test_the_shipped_predictions_are_of_the_committed_labels():
 
 def test_predictions_hold_no_text_and_can_be_read_again(tmp_path):
     report = Report("acme/arm#1", "https://x", "github", None, "Fails on jazzy", "secret words")
-    example = Example(report=report, label="dependency", twice=False, reading=read_text(report.title, report.body))
+    example = Example(report=report, label="dependency", twice=False)
     judged = Judged(np.array([[0.1, 0.6, 0.1, 0.1, 0.1]]), np.array([True]))
-    beside = study_triage.beside_of([example, example], {"majority": np.array([1, 1])})
-    assert beside["majority"]["right"] == 1
-    found = study_triage.Measured(
-        study_triage.predictions_of([example], judged), beside, {"labels_digest": "1", "texts_digest": "2"}
-    )
+    beside = {"majority": {"macro_f1": {"value": 0.5, "low": 0.4, "high": 0.6}, "right": 1.0}}
+    digests = {"labels_digest": "1", "texts_digest": "2"}
+    found = study_triage.Measured(study_triage.predictions_of([example], judged), beside, digests)
     study_triage.write(found, tmp_path)
     assert study_triage.read(tmp_path) == found
     assert "secret" not in "".join(path.read_text() for path in tmp_path.iterdir())
