@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from .outputs import unwritable
 from .report import CorpusError, Report, read_reports, repository_of
 
 STORE_VARIABLE = "ROSIMPACT_CORPUS"
@@ -161,20 +162,24 @@ def open_reports(path: Path) -> Iterator[Report]:
 class Store:
     """An open store; a context manager. Raises CorpusError when the file is none, or cannot be read or written.
 
-    Any number of processes may have the same file open; one Store belongs to one thread.
+    Any number of processes may have the same file open; one Store belongs to one thread. A file that is not there is
+    made when there is a report to keep: a gathering that fails before, or finds nothing, leaves none behind.
     """
 
     def __init__(self, path: Path, clock: Callable[[], float] = time.time):
         self.path = path
         self.now = clock
         self._forgot = False
+        self._made = os.path.exists(path)
+        fault = "" if self._made else unwritable(path)
+        if fault:
+            raise CorpusError(f"{path}: cannot be opened ({fault}); give another file with --store")
+        self._db = sqlite3.connect(":memory:", isolation_level=None)
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._db = sqlite3.connect(path, timeout=_BUSY_SECONDS, isolation_level=None)
-        except (OSError, sqlite3.Error) as error:
-            raise CorpusError(f"{path}: cannot be opened ({_clause(error)}); give another file with --store") from None
-        try:
-            self._prepare()
+            if self._made:
+                self._open()
+            else:
+                self._prepare()
         except BaseException:
             self._db.close()
             raise
@@ -195,6 +200,8 @@ class Store:
     def take(self, name: str, page: Page) -> Taken:
         """Writes a page of the gathering `name` and its state, all or nothing."""
         now = self.now()
+        if page.reports or page.gone or page.copies:
+            self._make()
         with self._transaction():
             taken = Taken()
             if page.moved is not None:
@@ -214,8 +221,11 @@ class Store:
         """Writes reports outside any gathering, all or nothing."""
         now = self.now()
         taken = Taken()
+        given = list(reports)
+        if given:
+            self._make()
         with self._transaction():
-            for gathered in reports:
+            for gathered in given:
                 taken = taken.plus(self._put(gathered, now))
         return taken
 
@@ -223,8 +233,11 @@ class Store:
         """Takes away the texts of reports, given as (id, source), that their source has no more; ids that were not
         here are noted as gone. Returns how many had a text."""
         now = self.now()
+        given = list(ids)
+        if given:
+            self._make()
         with self._transaction():
-            return sum([self._forget(id, source, now) for id, source in ids])
+            return sum([self._forget(id, source, now) for id, source in given])
 
     def seen(self, ids: Iterable[str]) -> None:
         """Notes that reports were asked for and have not changed."""
@@ -398,6 +411,37 @@ class Store:
     def _key(self, id: str) -> str:
         rows = self._all("SELECT key FROM alias WHERE old = ?", (id.lower(),))
         return rows[0][0] if rows else id.lower()
+
+    def _make(self) -> None:
+        """Makes the file, unless it is there, of the wishes and states that were noted until now."""
+        if self._made:
+            return
+        wanted = [id for (id,) in self._all("SELECT id FROM wanted")]
+        states = self._all("SELECT * FROM gathering")
+        self._open()
+        self._made = True
+        self.want(wanted)
+        with self._transaction():
+            # another process may have made it, and be further
+            self._db.executemany("INSERT OR IGNORE INTO gathering VALUES (?, ?, ?, ?)", states)
+
+    def _open(self) -> None:
+        """Goes on with the file; with what it had before when that cannot be opened."""
+        before = self._db
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self._db = sqlite3.connect(self.path, timeout=_BUSY_SECONDS, isolation_level=None)
+        except (OSError, sqlite3.Error) as error:
+            raise CorpusError(
+                f"{self.path}: cannot be opened ({_clause(error)}); give another file with --store"
+            ) from None
+        try:
+            self._prepare()
+        except BaseException:
+            self._db.close()
+            self._db = before
+            raise
+        before.close()
 
     def _prepare(self) -> None:
         try:

@@ -360,6 +360,28 @@ def test_a_terminal_shows_a_line_that_renews_itself():
     assert "github:a/[b]" in stream.getvalue() and "waiting 45 s" in stream.getvalue()
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["gather", "launchpad"],
+        ["gather", "ros-answers", "--archive", "nowhere"],
+        ["gather", f"github:{REPO}", "--api", "{server}/nothing/here", "--wait", "0"],
+        ["gather", "github:ros2/empty", "--api", "{server}"],
+        ["gather", "stack-exchange", "--api", "{server}/2.3"],
+        ["hydrate", "--labels", "nowhere.jsonl"],
+        ["hydrate", "--labels", "{tmp}/labels.jsonl", "--from", "nowhere.jsonl"],
+        ["hydrate", "--labels", "{tmp}/labels.jsonl", "--api", "{server}/nothing/here", "--wait", "0"],
+    ],
+)
+def test_what_fails_or_finds_nothing_leaves_no_store(say, server, store, tmp_path, arguments):
+    server.issues["ros2/empty"] = []
+    write_labels(tmp_path / "labels.jsonl", f"{REPO}#1", "launchpad:1")
+    server.fail(*[Fault(500, path="nothing")] * 20)
+    said = say("corpus", *(part.format(server=server.url, tmp=tmp_path) for part in arguments))
+    assert said.status in (0, 2) and "fault of rosimpact" not in said.err
+    assert [path.name for path in tmp_path.iterdir()] == ["labels.jsonl"]
+
+
 def test_refresh_makes_no_store(tmp_path):
     result = CliRunner().invoke(app, ["corpus", "refresh", "--store", str(tmp_path / "none.sqlite")])
     assert result.exit_code == 2

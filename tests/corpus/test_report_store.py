@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.corpus.report import CorpusError, Report, write_rows
-from rosimpact.corpus.store import Gathered, Page, Store, open_reports, store_path
+from rosimpact.corpus.store import Gathered, Page, Store, Taken, open_reports, store_path
 
 NAMES = ("a/b#1", "A/b#2", "a/c#1", "a/b#3")
 
@@ -56,6 +56,39 @@ def test_a_page_is_written_with_its_state_or_not_at_all(path):
         assert store.state("job") == {"after": 1}
 
 
+def test_a_file_is_made_for_reports_and_for_nothing_less(path):
+    with Store(path) as store:
+        store.want(["A/b#1"])
+        store.take("job", Page([], {"since": "2024"}))
+        store.seen(["a/b#1"])
+        assert store.put([]) == Taken() and store.forget([]) == 0
+        assert (store.state("job"), store.kept("a/b#1"), list(store.reports())) == ({"since": "2024"}, None, [])
+    assert not path.parent.exists()
+    with Store(path) as store:
+        store.want(["A/b#1"])
+        store.take("job", Page([], {"since": "2024"}))
+        store.put([Gathered(report("a/b#1"))])
+    with Store(path) as store:
+        assert store.state("job") == {"since": "2024"}
+        assert [one.id for one in store.reports()] == ["A/b#1"]
+
+
+def test_a_file_that_another_has_made_meanwhile_is_gone_on_with(path):
+    with Store(path) as late, Store(path) as early:
+        late.take("job", Page([], {"after": 1}))
+        late.take("own", Page([], {"after": 5}))
+        early.take("job", Page([Gathered(report("a/b#1"))], {"after": 2}))
+        late.put([Gathered(report("a/b#2"))])
+        assert (late.state("job"), late.state("own")) == ({"after": 2}, {"after": 5})
+        assert [one.id for one in late.reports()] == ["a/b#1", "a/b#2"]
+
+
+def test_a_place_for_no_file_is_refused_at_once(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(CorpusError, match=r"file/x/corpus.sqlite: cannot be opened \(Not a directory\)"):
+        Store(tmp_path / "file" / "x" / "corpus.sqlite")
+
+
 def test_ids_of_github_are_the_same_in_any_case(path):
     with Store(path) as store:
         assert store.put([Gathered(report("ANYbotics/x#1"))]).new == 1
@@ -81,7 +114,6 @@ def test_one_reads_while_another_writes(path):
 
 
 def test_many_write_at_once(path):
-    Store(path).close()
 
     def write(name: str) -> None:
         with Store(path) as store:
@@ -103,7 +135,8 @@ def test_many_make_the_file_at_once(path):
 
     def make() -> None:
         try:
-            Store(path).close()
+            with Store(path) as store:
+                store.put([Gathered(report("a/b#1"))])
         except Exception as error:
             faults.append(error)
 
@@ -113,6 +146,7 @@ def test_many_make_the_file_at_once(path):
     for thread in threads:
         thread.join()
     assert faults == []
+    assert [one.id for one in open_reports(path)] == ["a/b#1"]
 
 
 @pytest.mark.parametrize(
@@ -143,7 +177,8 @@ def test_a_database_of_something_else_is_left_alone(path):
 
 
 def test_a_store_of_a_newer_version_is_not_touched(path):
-    Store(path).close()
+    with Store(path) as store:
+        store.put([Gathered(report("a/b#1"))])
     with sqlite3.connect(path) as db:
         db.execute("PRAGMA user_version = 99")
     db.close()
@@ -203,4 +238,4 @@ def test_whatever_happens_to_ids_no_report_is_there_twice(tmp_path_factory, step
         before = list(store.reports())
         ids = [one.id.lower() for one in before]
         assert len(ids) == len(set(ids))
-    assert list(open_reports(path)) == before
+    assert (list(open_reports(path)) if path.exists() else []) == before

@@ -1,0 +1,33 @@
+"""Whether what a command is to write can be written: asked before the work, rather than found out after it."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+
+from .report import CorpusError
+
+
+def need_file(file: Path) -> None:
+    """Raises CorpusError when a file cannot be written, as far as that can be told without trying."""
+    fault = unwritable(file) if not os.path.isdir(file) else os.strerror(errno.EISDIR)
+    if fault:
+        raise CorpusError(f"{file}: cannot be written: {fault}; give another file")
+
+
+def need_folder(folder: Path) -> None:
+    """Raises CorpusError when a folder cannot be made, or no file in it, as far as that can be told without trying."""
+    fault = unwritable(folder) if not os.path.isfile(folder) else os.strerror(errno.ENOTDIR)
+    if fault:
+        raise CorpusError(f"{folder}: cannot be written: {fault}; give another folder")
+
+
+def unwritable(path: Path) -> str:
+    """Why a file or folder cannot be written, or made where it is not there, in the system's words; else empty."""
+    if os.path.isfile(path):
+        return "" if os.access(path, os.W_OK) else os.strerror(errno.EACCES)
+    nearest = next((place for place in (path, *path.parents) if os.path.exists(place)), None)
+    if nearest is None or not os.path.isdir(nearest):
+        return os.strerror(errno.ENOTDIR) if nearest is not None else os.strerror(errno.ENOENT)
+    return "" if os.access(nearest, os.W_OK | os.X_OK) else os.strerror(errno.EACCES)
