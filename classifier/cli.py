@@ -45,8 +45,9 @@ def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: 
     from .triage import as_json, as_text, from_argument, from_text, post_of, triage_all
     from .triage import triage as judge
 
+    own = load(file) if file else None  # before an address is asked in vain
     found = from_argument(report)
-    model = load(file)
+    model = own or load()
     if found is None or isinstance(found, Path):
         name = "standard input" if found is None else str(found)
         try:
@@ -92,13 +93,17 @@ def train(
     """Train a model on labelled reports; the same reports give the same model."""
 
     def work() -> None:
+        from ..corpus.outputs import need_file
+        from ..corpus.told import steps
+
+        need_file(output)
+        file = _labels(labels, reports)
         with _foreseen():
-            from ..corpus.told import steps
             from .training import examples
             from .training import train as fit
 
             progress = steps()
-            made = fit(examples(_labels(labels), reports, progress), seed, progress)
+            made = fit(examples(file, reports, progress), seed, progress)
             made.save(output)
         about = made.about
         _write(
@@ -122,15 +127,17 @@ def evaluate(
     """Measure the classifier on labelled reports, judging each by a model that has not seen its repository."""
 
     def work() -> None:
+        from ..corpus.told import steps
+
         _format(format)
+        file = _labels(labels, reports)
         with _foreseen():
-            from ..corpus.told import steps
             from .evaluate import as_text
             from .evaluate import evaluate as measure
             from .training import examples
 
             progress = steps()
-            found = examples(_labels(labels), reports, progress)
+            found = examples(file, reports, progress)
             result = measure(found, seed=seed, ablations=ablations, progress=progress)
         if format == "json":
             import json
@@ -142,10 +149,16 @@ def evaluate(
     _end(work)
 
 
-def _labels(file: Path | None) -> Path:
-    from ..corpus.report import LABELS_FILE
+def _labels(file: Path | None, reports: Path) -> Path:
+    """The file of the labels. It and the reports are looked into before scikit-learn is imported, which takes seconds.
+    Raises CorpusError when one cannot be read."""
+    from ..corpus.report import LABELS_FILE, read_labels
+    from ..corpus.store import open_reports
 
-    return file or LABELS_FILE
+    labels = file or LABELS_FILE
+    read_labels(labels)
+    next(open_reports(reports), None)
+    return labels
 
 
 def _format(format: str) -> None:

@@ -115,6 +115,10 @@ def stats(labels: Path | None, reports: Path | None, format: str, plots: Path | 
 def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
     if format not in FORMATS:
         raise CorpusError(f"--format {format}: unknown; choose text or json")
+    if plots is not None:
+        from .plots import need_plots
+
+        need_plots(plots)
     from .labelling import current_labels
     from .stats import as_json, print_text, stats_of
     from .store import open_reports, store_path

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from .outputs import need_folder
 from .report import LABELS, CorpusError
 from .stats import NONE_NAMED, UNDATED, Stats
 
@@ -12,19 +13,23 @@ PROJECTS = 20
 """How many projects are drawn."""
 
 
+def need_plots(folder: Path) -> None:
+    """Raises CorpusError when nothing can be drawn into a folder, so that it is known before the numbers are."""
+    from importlib.util import find_spec
+
+    if find_spec("matplotlib") is None:
+        raise CorpusError("--plots: matplotlib is missing; install it with `pip install 'rosimpact[study]'`")
+    need_folder(folder)
+
+
 def draw(stats: Stats, folder: Path) -> list[Path]:
     """Draws all tables that have numbers into a folder, which is made. Returns the files. Raises CorpusError."""
-    try:
-        import matplotlib
-    except ImportError:
-        raise CorpusError("--plots: matplotlib is missing; install it with `pip install 'rosimpact[study]'`") from None
+    need_plots(folder)
+    import matplotlib
+
     matplotlib.use("Agg")
     from .figures import STYLE
 
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise CorpusError(f"{folder}: cannot be made: {error.strerror}; give another folder") from None
     try:
         with matplotlib.rc_context(STYLE):
             return list(_drawn(stats, folder))

@@ -279,6 +279,37 @@ class TestErrors:
         assert says in result.stderr
         assert len(result.stderr.splitlines()) == 1
 
+    def test_a_bad_model_is_named_before_an_address_is_asked(self, server):
+        result = run("https://github.com/o/r/issues/1", "--model", "none.npz")
+        assert "none.npz: cannot be read" in result.stderr
+
+    @pytest.mark.parametrize(
+        ("arguments", "says"),
+        [
+            (["train", "--reports", "none.jsonl"], "none.jsonl: cannot be read: No such file"),
+            (["train", "--reports", "{tmp}/r.jsonl", "--labels", "none.jsonl"], "none.jsonl: cannot be read"),
+            (
+                ["train", "--reports", "{tmp}/r.jsonl", "-o", "{tmp}"],
+                ": cannot be written: Is a directory; give another",
+            ),
+            (
+                ["train", "--reports", "{tmp}/r.jsonl", "-o", "{tmp}/r.jsonl/m.npz"],
+                "m.npz: cannot be written: Not a dir",
+            ),
+            (["evaluate", "--reports", "none.jsonl"], "none.jsonl: cannot be read: No such file"),
+            (["evaluate", "--reports", "{tmp}/bad.jsonl"], "bad.jsonl:1: is no report"),
+            (["evaluate", "--reports", "{tmp}/r.jsonl", "--format", "xml"], "--format xml: unknown"),
+        ],
+    )
+    def test_training_is_refused_before_anything_slow_is_imported(self, arguments, says, tmp_path, monkeypatch):
+        monkeypatch.setitem(sys.modules, "rosimpact.classifier.training", None)
+        monkeypatch.setitem(sys.modules, "rosimpact.classifier.evaluate", None)
+        (tmp_path / "r.jsonl").write_text("")
+        (tmp_path / "bad.jsonl").write_text("[]\n")
+        result = CliRunner().invoke(app, ["classifier", *(part.format(tmp=tmp_path) for part in arguments)])
+        assert (result.exit_code, result.stdout) == (2, "")
+        assert says in result.stderr and len(result.stderr.splitlines()) == 1
+
     def test_an_error_that_nobody_foresaw_is_a_line_too(self, monkeypatch):
         def broken(*unused):
             raise KeyError("a\nkey")

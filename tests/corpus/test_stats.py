@@ -172,19 +172,20 @@ def test_plots_without_numbers_are_left_out(say, files):
         (["--format", "xml"], "choose text or json"),
         (["--labels", "nowhere.jsonl"], "nowhere.jsonl: is not there; give a labels file"),
         (["--reports", "nowhere.jsonl"], "nowhere.jsonl: cannot be read"),
-        (["--plots", "{tmp}/labels.jsonl/x"], "cannot be made"),
+        (["--plots", "{tmp}/labels.jsonl/x"], "x: cannot be written: Not a directory; give another folder"),
+        (["--plots", "{tmp}/labels.jsonl"], "labels.jsonl: cannot be written: Not a directory; give another folder"),
     ],
 )
 def test_errors(say, files, arguments, told):
     said = say("corpus", "stats", *[a.replace("{tmp}", str(files)) for a in arguments])
-    assert said.status == 2
+    assert (said.status, said.out) == (2, "")
     assert told in said.err and "Traceback" not in said.err
 
 
 def test_without_matplotlib_the_extra_is_named(say, files, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     said = say("corpus", "stats", "--labels", files / "labels.jsonl", "--plots", files / "plots")
-    assert said.status == 2
+    assert (said.status, said.out) == (2, "")
     assert "rosimpact[study]" in said.err
 
 
