@@ -94,7 +94,7 @@ def train(
 
     def work() -> None:
         from ..corpus.outputs import need_file
-        from ..corpus.told import steps
+        from ..corpus.told import counted, steps
 
         need_file(output)
         file = _labels(labels, reports)
@@ -107,7 +107,8 @@ def train(
             made.save(output)
         about = made.about
         _write(
-            f"{output}: {about['reports']:,} reports, {len(made.labels)} labels, abstains below {made.threshold:.2f}\n"
+            f"{output}: {counted(about['reports'], 'report')}, {counted(len(made.labels), 'label')}, "
+            f"abstains below {made.threshold:.2f}\n"
             f"labels {about['labels_digest']}\ntexts  {about['texts_digest']}\n"
         )
 

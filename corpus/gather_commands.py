@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from .polite import Client, Later, service_address
-from .progress import Reporter, counted, span
+from .progress import Reporter, outcome, span
 from .report import LABELS_FILE, SOURCES, CorpusError, read_labels, read_reports, write_rows
 from .store import Store, open_reports, store_path
-from .told import say, told
+from .told import counted, say, told
 
 if TYPE_CHECKING:
     from .gather import Service, Source
@@ -70,7 +70,7 @@ def hydrate(labels: Path | None, texts: Path | None, *, archive: Path | None, ma
             store.want(ids)
             if texts:
                 taken, others = jobs.import_reports(read_reports(texts), store, frozenset(ids))
-                print(f"{texts}: {counted(taken)}{f'; {others:,} without a label left out' if others else ''}")
+                print(f"{texts}: {outcome(taken)}{f'; {others:,} without a label left out' if others else ''}")
             try:
                 if not texts:
                     _ask_for_missing(jobs.missing(store, ids), store, archive, manner)
@@ -96,7 +96,7 @@ def refresh(sources: Sequence[str], limit: int | None, *, archive: Path | None, 
             services = _services(store, archive, manner, reporter)
             chosen = [source for source in ("ros-answers", "robotics-se", "github") if not sources or source in sources]
             taken = jobs.refresh(services, store, chosen, limit, reporter.page)
-        print(f"refresh: {counted(taken)}")
+        print(f"refresh: {outcome(taken)}")
         return 0
 
     return told(lambda: _until_later(work), _INTERRUPTED)
@@ -116,7 +116,7 @@ def export(file: Path, *, store: Path | None) -> int:
             count = write_parquet(file, open_reports(path))
         else:
             raise CorpusError(f"{file}: of no known format; name it *.jsonl or *.parquet")
-        print(f"{file}: {count:,} reports")
+        print(f"{file}: {counted(count, 'report')}")
         return 0
 
     return told(work)
@@ -129,10 +129,10 @@ def status(*, store: Path | None) -> int:
         with Store(_existing(store)) as opened:
             print(f"{opened.path}: {opened.path.stat().st_size / 1e6:.1f} MB")
             for source, here, labelled, gone in opened.counts():
-                print(f"  {source}: {here:,} reports, {labelled:,} of them labelled; {gone:,} gone")
+                print(f"  {source}: {counted(here, 'report')}, {labelled:,} of them labelled; {gone:,} gone")
             copied = opened.copied()
             if copied:
-                print(f"  {copied:,} are copies of others, and left out of the export")
+                print(f"  {copied:,} left out of the export, as copies of others")
             gatherings = opened.gatherings()
             if gatherings:
                 print("gatherings:")
@@ -210,7 +210,7 @@ def _gathered(source: Source, client: Client | None, store: Store, manner: Manne
         taken = jobs.gather(source, store, reporter.page)
     for line in getattr(source, "unread", ()):
         say(f"rosimpact: left out: {line}")
-    print(f"{source.name}: {counted(taken)}")
+    print(f"{source.name}: {outcome(taken)}")
 
 
 def _ask_for_missing(todo: dict[str, list[str]], store: Store, archive: Path | None, manner: Manner) -> None:
@@ -268,8 +268,8 @@ def _tell_quota(server: GitHub, count: int, reporter: Reporter) -> None:
     hours = (count - quota.remaining) / max(1, quota.limit)
     cure = "" if server.has_token else "; GITHUB_TOKEN raises it to 5,000"
     reporter.line(
-        f"GitHub: {count:,} reports to ask for, {quota.remaining:,} requests left of {quota.limit:,} an hour: that is "
-        f"{span(hours * 3600)} or more{cure}"
+        f"GitHub: {counted(count, 'report')} to ask for, {counted(quota.remaining, 'request')} left of "
+        f"{quota.limit:,} an hour: that is {span(hours * 3600)} or more{cure}"
     )
 
 

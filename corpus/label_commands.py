@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .report import LABELS_FILE, SOURCES, CorpusError, Report
-from .told import any_sign, say, told
+from .told import any_sign, counted, say, told
 
 FORMATS = ("text", "json")
 
@@ -46,7 +46,7 @@ def _label(
             known = found.get(report.id)
             given = "\t" + " / ".join(known.annotators) if known and mode == "disagreements" else ""
             print(f"{report.id}{given}\t{_line(report.title)}")
-        say(f"{len(shown):,} of {len(texts):,} reports")
+        say(f"{len(shown):,} of {counted(len(texts), 'report')}")
         return 0
     from .label_screen import run
 
@@ -75,7 +75,7 @@ def _nothing(mode: str, texts: list[Report]) -> str:
     if not texts:
         return "no report is left by --source and --repository; leave one of them out"
     kind = {"first": "unlabelled", "second": "read by one annotator other than you", "disagreements": "disputed"}[mode]
-    return f"none of the {len(texts):,} reports is {kind}"
+    return f"none of {counted(len(texts), 'report')} is {kind}"
 
 
 def _own_labels() -> Path:
@@ -129,17 +129,17 @@ def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path |
     found = list(current_labels(file).values())
     path = store_path(reports)
     texts = open_reports(path) if reports is not None or path.exists() else None
-    counted = stats_of(found, texts)
+    numbers = stats_of(found, texts)
     if format == "json":
-        print(as_json(counted))
+        print(as_json(numbers))
     else:
         any_sign()
-        print_text(counted)
+        print_text(numbers)
     if plots is not None:
         from .plots import draw
 
-        written = draw(counted, plots)
-        say(f"{len(written)} plots in {plots}")
+        written = draw(numbers, plots)
+        say(f"{counted(len(written), 'plot')} in {plots}")
     return 0
 
 
@@ -166,8 +166,8 @@ def _import_robust(folder: Path, output: Path | None, format: str) -> int:
         print(f"{'':16}{''.join(f'{name:>10}' for name in CONFIDENCES)}")
         for name, counts in summary(records.mapped).items():
             print(f"{name:16}{''.join(f'{counts[level]:>10,}' for level in CONFIDENCES)}")
-        print(f"{len(records.mapped):,} records")
+        print(counted(len(records.mapped), "record"))
     if output is not None:
         written = write_rows(output, rows_of(records.mapped))
-        say(f"{output}: {written:,} labels; texts come with `rosimpact corpus hydrate --labels {output}`")
+        say(f"{output}: {counted(written, 'label')}; texts come with `rosimpact corpus hydrate --labels {output}`")
     return 0

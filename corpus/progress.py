@@ -99,10 +99,10 @@ def described(progress: Progress, left: float | None) -> str:
     """How far a job is, in words. left: seconds, None where nobody knows."""
     of = f" of about {progress.of:,}" if progress.of is not None and progress.of > progress.done else ""
     time_left = f", {span(left)} left" if left is not None else ""
-    return f"{progress.done:,}{of} read; {counted(progress.taken)}{time_left}"
+    return f"{progress.done:,}{of} read; {outcome(progress.taken)}{time_left}"
 
 
-def counted(taken: Taken) -> str:
+def outcome(taken: Taken) -> str:
     """What became of reports, in words."""
     named = [(taken.new, "new"), (taken.changed, "changed"), (taken.same, "unchanged"), (taken.gone, "gone")]
     return ", ".join(f"{count:,} {word}" for count, word in named if count) or "nothing new"

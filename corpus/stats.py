@@ -11,6 +11,7 @@ import msgspec
 from .agreement import Agreement, Interval, agreement
 from .distros import DISTROS, distros_in
 from .report import KINDS, LABELS, PHASES, Label, Report, repository_of
+from .told import counted
 
 NONE_NAMED = "none named"
 UNDATED = "undated"
@@ -62,7 +63,7 @@ def stats_of(labels: Sequence[Label], reports: Iterable[Report] | None = None) -
     if reports is None:
         notes.append("years and distros are not counted: they are in the texts; give those with --reports")
     elif len(read) < len(by_id):
-        notes.append(f"years and distros: {len(by_id) - len(read):,} of {len(by_id):,} texts are not at hand")
+        notes.append(f"years and distros: {counted(len(by_id) - len(read), 'text')} of {len(by_id):,} not at hand")
     projects = _table(labels, lambda label: project_of(label.id))
     return Stats(
         schema=1,
@@ -111,7 +112,7 @@ def print_text(stats: Stats, most: int = 15) -> None:
     console = Console(highlight=False)
     if not console.is_terminal:  # whoever reads a pipe cuts lines by itself
         console = Console(highlight=False, no_color=True, width=200, color_system=None)
-    console.print(f"{stats.reports:,} labels")
+    console.print(counted(stats.reports, "label"))
     console.print(_labels_table(stats))
     tables: list[tuple[str, Table | None]] = [
         ("phase", stats.phases), ("decided", stats.decided), ("year", stats.years), ("distro", stats.distros),
@@ -153,7 +154,7 @@ def _agreement_lines(found: Agreement) -> list[str]:
     if not found.reports:
         return ["agreement: no report was read by two annotators"]
     return [
-        f"agreement over {found.reports:,} reports with two annotators: {found.same:,} the same, "
+        f"agreement over {counted(found.reports, 'report')} with two annotators: {found.same:,} the same, "
         f"{_percent(found.share)}; Cohen's kappa {_told(found.kappa)}",
         "intervals of 95 %: Wilson for the share, analytic (Fleiss, Cohen and Everitt 1969) for kappa",
     ]

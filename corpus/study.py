@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from .figures import SETTINGS
 from .report import CorpusError
-from .told import say, told
+from .told import counted, say, told
 
 _BESIDE = Path(__file__).resolve().parent.parent / "notebooks"
 """Where the notebooks are in a checkout."""
@@ -48,7 +48,8 @@ def command(
         outcomes = run(names, full, reports, output, notebooks, (lambda _: None) if quiet else say)
         failed = [one for one in outcomes if one.failure]
         made = sum(len(one.figures) for one in outcomes)
-        say(f"{len(outcomes) - len(failed)} of {len(outcomes)} notebooks, {made} figures: {output}")
+        done = f"{len(outcomes) - len(failed)} of {counted(len(outcomes), 'notebook')}"
+        say(f"{done}, {counted(made, 'figure')}: {output}")
         return 1 if failed else 0
 
     return told(work, "interrupted; notebooks that were finished are kept")

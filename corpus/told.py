@@ -60,6 +60,14 @@ def steps() -> Callable[[str, int, int], None]:
     return show
 
 
+def counted(number: int, noun: str) -> str:
+    """`1 error`, `2 errors`, `2 dependencies`."""
+    if number == 1:
+        return f"1 {noun}"
+    plural = noun[:-1] + "ies" if noun.endswith("y") and noun[-2:-1] not in "aeiou" else noun + "s"
+    return f"{number:,} {plural}"
+
+
 def any_sign() -> None:
     """Lets standard output show what its encoding cannot say as `?`, so that no text of a report ends a command."""
     if isinstance(sys.stdout, io.TextIOWrapper):

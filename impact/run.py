@@ -9,12 +9,12 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..corpus import __version__
-from ..corpus.told import DEBUG, say, steps, unforeseen
+from ..corpus.told import DEBUG, counted, say, steps, unforeseen
 from .check import Checked, CheckError, Options, open_workspace
 from .check import run as run_check
 from .config import ConfigError
 from .findings import SettingsError, fails
-from .report.report import Coverage, Report, counted
+from .report.report import Coverage, Report
 from .targets.distro import TargetError
 from .targets.snapshot import SnapshotError
 from .tree import TreeError, WorkingTree, shown
@@ -334,8 +334,8 @@ def env_diff(first: str, second: str, path: Path | None, format: str) -> int:
         lines.append(f"{mark} {d.name:{width}s}  {d.first or '-':>14s}  {d.second or '-':>14s}{users}")
     end = counted(len(rows), "difference")
     if path is not None:
-        end += f", {sum(bool(d.used_by) for d in rows)} used by {path}; {len(rows) - len(shown_rows):,} packages that "
-        end += "nothing uses are not listed"
+        end += f", {sum(bool(d.used_by) for d in rows)} used by {path}; not listed: "
+        end += f"{counted(len(rows) - len(shown_rows), 'package')} that nothing uses"
     _write("\n".join([*lines, end]))
     return 0
 
@@ -422,11 +422,12 @@ def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path 
     except Failed as error:
         return failed(str(error))
     _write(
-        f"data of {built.date} in {output}: {built.releases:,} releases, {built.manifests:,} manifests, "
-        f"{built.rules:,} rosdep rules, {built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)"
+        f"data of {built.date} in {output}: {counted(built.releases, 'release')}, "
+        f"{counted(built.manifests, 'manifest')}, {counted(built.rules, 'rosdep rule')}, "
+        f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)"
     )
     for name, count in built.unreadable.items():
-        say(f"{name}: {count} versions of its distribution file could not be read")
+        say(f"{name}: {counted(count, 'version')} of its distribution file could not be read")
     return 0
 
 
@@ -445,7 +446,8 @@ def data_update() -> int:
     for failure in found.failures:
         say(f"not updated: {failure}")
     _write(
-        f"data of {found.date} in {found.folder}: {len(found.syncs)} new syncs, {found.releases:,} releases, "
-        f"{found.manifests:,} manifests, {found.rules:,} rosdep rules"
+        f"data of {found.date} in {found.folder}: {counted(len(found.syncs), 'new sync')}, "
+        f"{counted(found.releases, 'release')}, {counted(found.manifests, 'manifest')}, "
+        f"{counted(found.rules, 'rosdep rule')}"
     )
     return 0

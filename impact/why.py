@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
+from ..corpus.told import counted
 from .check import Options, open_workspace
 from .model.view import View
-from .report.report import counted
 from .targets.distro import DistroTarget
 
 

@@ -7,6 +7,7 @@ import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
+from ...corpus.told import counted
 from ..rules.rule import Finding, Rule
 
 CONTEXT = 1
@@ -194,14 +195,6 @@ def matrix(report: Report) -> dict[str, dict[str, dict[str, int]]]:
             cell = row.setdefault(name, {})
             cell[finding.severity] = cell.get(finding.severity, 0) + 1
     return table
-
-
-def counted(number: int, noun: str) -> str:
-    """`1 error`, `2 errors`, `2 dependencies`."""
-    if number == 1:
-        return f"1 {noun}"
-    plural = noun[:-1] + "ies" if noun.endswith("y") and noun[-2:-1] not in "aeiou" else noun + "s"
-    return f"{number:,} {plural}"
 
 
 def coverage_text(coverage: Coverage) -> str:

@@ -301,6 +301,13 @@ def test_export_and_status(say, server, store, archive, tmp_path):
     assert [Report(**row | {"tags": tuple(row["tags"])}) for row in rows] == list(open_reports(store))
 
 
+def test_one_is_one(say, server, store, tmp_path):
+    server.issues[REPO] = server.issues[REPO][:1]
+    say("corpus", "gather", f"github:{REPO}", "--api", server.url)
+    assert say("corpus", "export", tmp_path / "out.jsonl").out.endswith(": 1 report\n")
+    assert "  github: 1 report, 0 of them labelled; 0 gone\n" in say("corpus", "status").out
+
+
 def test_parquet_without_pyarrow_says_what_to_install(say, server, store, monkeypatch, tmp_path):
     say("corpus", "gather", f"github:{REPO}", "--api", server.url)
     monkeypatch.setitem(sys.modules, "pyarrow", None)

@@ -54,7 +54,7 @@ def test_tables():
     }
     assert list(found.projects) == ["acme/arm", "ROS Answers", "acme/leg"]  # the largest first
     assert found.decided["agreed"] == row(library_update=1, inconsistency=1)
-    assert found.notes == ("years and distros: 1 of 4 texts are not at hand",)
+    assert found.notes == ("years and distros: 1 text of 4 not at hand",)
 
 
 def test_agreement_is_over_reports_with_two_annotators():
@@ -156,6 +156,13 @@ def test_plots_are_the_same_each_time(say, files):
             assert ElementTree.fromstring(data).tag.endswith("svg")
         else:
             assert data.startswith(b"\x89PNG")
+
+
+def test_one_is_one(say, files):
+    write_rows(files / "labels.jsonl", LABELS[:1])
+    said = say("corpus", "stats", "--labels", files / "labels.jsonl")
+    assert said.out.startswith("1 label\n")
+    assert "agreement over 1 report with two annotators" in said.out
 
 
 def test_plots_without_numbers_are_left_out(say, files):
