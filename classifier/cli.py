@@ -13,13 +13,17 @@ import typer
 
 app = typer.Typer(help="The triage model: train it anew, measure it.", no_args_is_help=True, rich_markup_mode=None)
 
+_Reports = Annotated[Path, typer.Option(help="The texts: a store of `rosimpact corpus`, or JSON Lines.")]
+_Labels = Annotated[Path | None, typer.Option(help="JSON Lines of labels; those of the corpus when left out.")]
+_Format = Annotated[str, typer.Option("--format", "-f", help="text or json.")]
+
 
 def triage(
     context: typer.Context,
     report: Annotated[
         str, typer.Argument(help="The report: its text, a file, the address of an issue or question, or - for input.")
     ],
-    format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
+    format: _Format = "text",
     jsonl: Annotated[
         bool,
         typer.Option("--jsonl", help="The file or input is JSON Lines with id, title, body; so is the output."),
@@ -83,10 +87,8 @@ def _text_of(file: Path | None) -> IO[str]:
 
 @app.command()
 def train(
-    reports: Annotated[Path, typer.Option(help="The texts: a store of `rosimpact corpus`, or JSON Lines.")],
-    labels: Annotated[
-        Path | None, typer.Option(help="JSON Lines of labels; those of the corpus when left out.")
-    ] = None,
+    reports: _Reports,
+    labels: _Labels = None,
     output: Annotated[Path, typer.Option("--output", "-o", help="The model to write.")] = Path("model.npz"),
     seed: Annotated[int, typer.Option(help="Of the splits that calibrate it.")] = 20,
 ) -> None:
@@ -117,11 +119,9 @@ def train(
 
 @app.command()
 def evaluate(
-    reports: Annotated[Path, typer.Option(help="The texts: a store of `rosimpact corpus`, or JSON Lines.")],
-    labels: Annotated[
-        Path | None, typer.Option(help="JSON Lines of labels; those of the corpus when left out.")
-    ] = None,
-    format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
+    reports: _Reports,
+    labels: _Labels = None,
+    format: _Format = "text",
     seed: Annotated[int, typer.Option(help="Of the splits and the intervals.")] = 20,
     ablations: Annotated[bool, typer.Option(help="Also measure what each part of it is worth.")] = True,
 ) -> None:
