@@ -64,6 +64,8 @@ def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: 
                 if found is not None and "\0" in text:
                     raise ClassifierError(f"{name}: is no text; give a report as text or as JSON Lines")
                 found = from_text(text, name)
+        except BrokenPipeError:
+            raise  # of whoever reads the answers
         except OSError as error:
             raise ClassifierError(f"{name}: cannot be read: {error.strerror}; give another file") from None
     elif jsonl:
