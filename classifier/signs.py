@@ -13,7 +13,8 @@ import re
 from collections.abc import Sequence
 from itertools import islice
 
-from .text import DISTROS, PLATFORMS, Parts, general_words
+from ..corpus.distros import DISTROS, ROS1, ROS2
+from .text import PLATFORMS, Parts, general_words
 
 _PROSE = 2_500
 _LOG = 2_000
@@ -22,7 +23,7 @@ LIMIT = 4.0
 _MOST = 8
 """Occurrences that are counted: more say nothing more."""
 
-_DISTRO = rf"(?:{'|'.join(name for names in DISTROS.values() for name in names)})"
+_DISTRO = rf"(?:{'|'.join(DISTROS)})"
 _PLATFORM = rf"(?:{'|'.join(PLATFORMS)}|os ?x|mac os|arch linux|visual studio)"
 _LIBRARY = (
     r"(?:opencv|boost|pcl|eigen|qt|cmake|gcc|g\+\+|clang|python|ogre|vtk|gazebo|ubuntu|numpy"
@@ -34,8 +35,8 @@ _LIBRARY = (
 
 _UPDATE = (
     ("distro", rf"\b{_DISTRO}\b", "tpc"),
-    ("ROS 1 distro", rf"\b(?:{'|'.join(DISTROS['ros1'])})\b", "a"),
-    ("ROS 2", rf"\b(?:{'|'.join(DISTROS['ros2'])})\b|\bros ?2\b", "a"),
+    ("ROS 1 distro", rf"\b(?:{'|'.join(ROS1)})\b", "a"),
+    ("ROS 2", rf"\b(?:{'|'.join(ROS2)})\b|\bros ?2\b", "a"),
     ("platform", rf"\b{_PLATFORM}\b", "tp"),
     ("on a distro", rf"\b(?:on|in|for|under|with|to|from|since|until) (?:ros[ -]?2? ?)?(?:the )?{_DISTRO}\b", "tp"),
     (

@@ -11,17 +11,16 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from ..corpus.distros import DISTROS
+
 LONGEST = 30_000
 """Characters of a body that are read; the cause is told before that, and what follows is log."""
 
-_ROS_1 = "boxturtle cturtle diamondback electric fuerte groovy hydro indigo jade kinetic lunar melodic noetic"
-_ROS_2 = "ardent bouncy crystal dashing eloquent foxy galactic humble iron jazzy kilted lyrical rolling"
 _PLATFORMS = (
     "lucid maverick natty oneiric precise quantal raring saucy trusty utopic vivid wily xenial yakkety zesty artful "
     "bionic focal jammy noble resolute wheezy jessie stretch buster bullseye bookworm trixie ubuntu debian raspbian "
     "fedora rhel centos gentoo archlinux opensuse macos osx homebrew windows yocto openembedded nixos conda"
 )
-DISTROS = {"ros1": tuple(_ROS_1.split()), "ros2": tuple(_ROS_2.split())}
 PLATFORMS = tuple(_PLATFORMS.split())
 
 _FENCED = re.compile(
@@ -48,9 +47,7 @@ _LONGEST_WORD = 40
 _TOKEN = re.compile(r"[A-Za-z_][\w+]*(?:::\w+)*|[?]|\d+(?:\.\d+)+|\d+")
 _CLASS = re.compile(r"[A-Z][a-z0-9]+[A-Z]\w*\Z")
 _ENDING = re.compile(r"(?:ations?|ings?|edly|ed|es|s|ly|ment|able|ies|y)$")
-_REPLACED = dict.fromkeys((name for names in DISTROS.values() for name in names), "<distro>") | dict.fromkeys(
-    PLATFORMS, "<platform>"
-)
+_REPLACED = dict.fromkeys(DISTROS, "<distro>") | dict.fromkeys(PLATFORMS, "<platform>")
 
 
 class Parts(NamedTuple):

@@ -105,7 +105,7 @@ def examples(labels: Path, reports: Path, progress: Progress | None = None) -> E
         raise ClassifierError(str(error)) from None
     if not known:
         raise ClassifierError(f"{labels}: holds no labels; give a file that does")
-    found = [Example(texts[id], known[id].label, known[id].decided != "single") for id in sorted(texts)]
+    found = [Example(texts[id], known[id].label, known[id].twice) for id in sorted(texts)]
     if not found:
         raise ClassifierError(
             f"{reports}: holds none of the {len(known):,} reports labelled in {labels}; "

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import urlsplit
 
+from ..corpus.distros import DISTROS, ROS2
 from .model import ClassifierError, Known, Model, Reason, Verdict, load
 from .reading import read
-from .text import DISTROS
 
 GITHUB_API = "ROSIMPACT_GITHUB_API"
 STACK_API = "ROSIMPACT_STACK_EXCHANGE_API"
@@ -31,8 +31,8 @@ CHECKS: dict[str, tuple[tuple[str, str], ...]] = {
 
 _ISSUE = re.compile(r"/([\w.-]+)/([\w.-]+)/(?:issues|pull)/(\d+)(?:/.*)?\Z")
 _QUESTION = re.compile(r"/(?:questions|q)/(\d+)(?:/.*)?\Z")
-_DISTRO = re.compile(rf"\b(?:{'|'.join((*DISTROS['ros1'], *DISTROS['ros2']))})\b", re.IGNORECASE)
-_TARGETED = ("kinetic", "lunar", "melodic", "noetic", *DISTROS["ros2"])
+_DISTRO = re.compile(rf"\b(?:{'|'.join(DISTROS)})\b", re.IGNORECASE)
+_TARGETED = ("kinetic", "lunar", "melodic", "noetic", *ROS2)
 _ADDRESS = re.compile(r"https?://\S+\Z")
 _BARE_ADDRESS = re.compile(r"(?:www\.)?(?:github\.com|[\w.]*stackexchange\.com|answers\.ros\.org)/\S+\Z")
 _TIMEOUT = 20.0

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
-from .report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, read_labels, repository_of
+from .report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, group_of, read_labels
 from .told import say, told
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Prediction(msgspec.Struct, frozen=True):
     @property
     def group(self) -> str:
         """What must not stand on both sides of a split, as Report has it."""
-        return repository_of(self.id) or self.id
+        return group_of(self.id)
 
     @property
     def twice(self) -> bool:
