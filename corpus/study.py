@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from .figures import SETTINGS
 from .report import CorpusError
+from .store import open_reports
 from .told import counted, say, told
 
 _BESIDE = Path(__file__).resolve().parent.parent / "notebooks"
@@ -79,6 +80,8 @@ def run(
         raise CorpusError(
             f"{reports}: no such file; give the store that `rosimpact corpus hydrate` fills, or JSON Lines"
         )
+    if reports is not None and next(open_reports(reports), None) is None:
+        raise CorpusError(f"{reports}: holds no reports; `rosimpact corpus hydrate` gathers them")
     output.mkdir(parents=True, exist_ok=True)
     settings = {
         "output": str(output.resolve()),

@@ -89,6 +89,13 @@ def test_what_cannot_be_started(tmp_path, more, said):
         run(output=tmp_path / "out", notebooks=folder_with(tmp_path, DRAWS, texts=True), **more)
 
 
+@pytest.mark.parametrize(("text", "said"), [("", "holds no reports"), ("a robot\n", "wrong.jsonl:1")])
+def test_a_file_without_reports_is_refused_at_once(tmp_path, text, said):
+    (tmp_path / "wrong.jsonl").write_text(text)
+    with pytest.raises(CorpusError, match=said):
+        run(notebooks=folder_with(tmp_path, DRAWS, texts=True), full=True, reports=tmp_path / "wrong.jsonl")
+
+
 def test_without_the_extra(tmp_path, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(CorpusError, match=r"pip install 'rosimpact\[study\]'"):
