@@ -36,8 +36,8 @@ _BUCKETS = 1 << 26
 class Counts(NamedTuple):
     """What many reports hold.
 
-    grams: of each view, how often (16 bits) each n-gram stands in each report, reports by n-grams. names: the n-grams
-    of each view, sorted. signs: reports by SIGNS. groups: the number of each report's repository.
+    grams: of each view, how often (255 at most) each n-gram stands in each report, reports by n-grams. names: the
+    n-grams of each view, sorted. signs: reports by SIGNS. groups: the number of each report's repository.
     """
 
     grams: dict[str, csr_matrix]
@@ -95,16 +95,16 @@ def _spooled(spool: IO[bytes]) -> Iterator[dict[str, int]]:
 def _counted(view: str, spool: IO[bytes], seen: np.ndarray, codes: np.ndarray) -> tuple[list[str], csr_matrix]:
     names = _learnable(view, spool, seen, codes)
     known = {name: column for column, name in enumerate(names)}
-    columns, times, starts = array("i"), array("H"), array("q", [0])
+    columns, times, starts = array("i"), array("B"), array("q", [0])
     for grams in _spooled(spool):
-        row = sorted((known[gram], min(number, 65_535)) for gram, number in grams.items() if gram in known)
+        row = sorted((known[gram], min(number, 255)) for gram, number in grams.items() if gram in known)
         columns.extend(column for column, _ in row)
         times.extend(number for _, number in row)
         starts.append(len(times))
     shape = (len(codes), len(names))
     if not times:
-        return names, csr_matrix(shape, dtype=np.uint16)
-    arrays = (np.frombuffer(times, np.uint16), np.frombuffer(columns, np.int32), np.frombuffer(starts, np.int64))
+        return names, csr_matrix(shape, dtype=np.uint8)
+    arrays = (np.frombuffer(times, np.uint8), np.frombuffer(columns, np.int32), np.frombuffer(starts, np.int64))
     return names, csr_matrix(arrays, shape)
 
 
