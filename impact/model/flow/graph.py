@@ -99,8 +99,8 @@ class GuardAt(msgspec.Struct, frozen=True):
 
 
 class Trigger(msgspec.Struct, frozen=True):
-    """What makes a publish statement run. kind: `timer`, `subscriber`, `service`, `action`, `parameter`, `loop` (in main
-    or a thread), `start`, or `unknown`. detail: the period, topic, service or function."""
+    """What makes a publish statement run. kind: `timer`, `subscriber`, `service`, `action`, `parameter`, `loop` (in
+    main or a thread), `start`, or `unknown`. detail: the period, topic, service or function."""
 
     kind: str
     detail: str
@@ -108,9 +108,16 @@ class Trigger(msgspec.Struct, frozen=True):
     line: int
 
 
+class Way(msgspec.Struct, frozen=True):
+    """One way to a publish statement: what starts it, and the guards met on it up to the statement, outermost first."""
+
+    trigger: Trigger
+    guards: tuple[GuardAt, ...] = ()
+
+
 class Publish(msgspec.Struct, frozen=True):
     """A publish statement. expression: what is published, as written. guards: outermost first, those of the functions
-    that lead to it included where there is but one way; `ways`: how many ways lead to it from a trigger."""
+    that lead to it included where there is but one way; `ways`: how many ways lead to it from a trigger, each in `by`."""
 
     node: str
     topic: str
@@ -123,6 +130,7 @@ class Publish(msgspec.Struct, frozen=True):
     guards: tuple[GuardAt, ...] = ()
     triggers: tuple[Trigger, ...] = ()
     ways: int = 1
+    by: tuple[Way, ...] = ()
     reason: str = ""
 
 
@@ -159,9 +167,9 @@ class Unresolved(msgspec.Struct, frozen=True):
 
 
 class Coverage(msgspec.Struct, frozen=True):
-    """calls: of the frameworks; resolved: those of which all is known that they name (topic, type, callback, publisher).
-    by_default: of the resolved, those whose name is a parameter's default. unread: files with spans that did not parse.
-    """
+    """calls: of the frameworks; resolved: those of which all is known that they name (topic, type, callback,
+    publisher). by_default: of the resolved, those whose name is a parameter's default. unread: files with spans that
+    did not parse."""
 
     calls: int
     resolved: int

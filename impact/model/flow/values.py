@@ -1,0 +1,304 @@
+"""What an expression may be worth: strings from literals, constants, members, arguments and defaults of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from itertools import product
+from typing import NamedTuple
+
+from ...facts.flow import Expr
+from .calls import Calls, Use
+from .code import Fn, Variable, parameter_of, parts_of, tail
+from .graph import How
+
+NODE, NAMESPACE = "{node}", "{ns}"
+"""Stand in a value for the name and the namespace of the node that evaluates it (ROS 2 writes them so in names)."""
+_MOST = 12
+_DEEPEST = 12
+# Calls that give what they are called on, or their first argument, as a string.
+_SAME = frozenset(
+    ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
+     "get_value", "to_string", "as_int", "as_bool", "as_double")
+)  # fmt: skip
+_OF_FIRST = frozenset(("resolveName", "resolve_name", "resolve", "string", "str", "String", "move", "forward",
+                       "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name"))  # fmt: skip
+_NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
+_NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
+
+
+class Value(NamedTuple):
+    """text: what it is worth, None when it is not known; reason says why then. parameter: whose default it is."""
+
+    text: str | None
+    how: How = "literal"
+    reason: str = ""
+    parameter: str = ""
+
+
+class Values:
+    """Evaluates expressions in the functions of a body of code."""
+
+    def __init__(self, calls: Calls):
+        self.calls, self.code = calls, calls.code
+        self._known: dict[tuple[Variable, int], list[Value]] = {}
+
+    def of(self, value: Expr | None, fn: Fn, line: int = 0) -> list[Value]:
+        """What an expression may be worth, each once; unknown ones last. line: of the statement it stands in."""
+        found = list(dict.fromkeys(self._of(value, fn, line, ())))
+        known = [one for one in found if one.text is not None]
+        return known or found[:1] or [Value(None, "unresolved", "no value is given")]
+
+    def _of(self, value: Expr | None, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        if value is None:
+            yield Value(None, "unresolved", "no value is given")
+            return
+        if len(seen) > _DEEPEST:
+            yield Value(None, "unresolved", "too many steps")
+            return
+        kind = value.kind
+        if kind in ("text", "number"):
+            yield Value(value.text)
+        elif kind == "name":
+            yield from self._name(value.text, fn, line, seen)
+        elif kind == "join":
+            yield from self._joined(value, fn, line, seen)
+        elif kind == "choice" and len(value.parts) == 3:
+            yield from self._of(value.parts[1], fn, line, seen)
+            yield from self._of(value.parts[2], fn, line, seen)
+        elif kind == "call":
+            yield from self._call(value, fn, line, seen)
+        elif kind in ("make", "keyword", "list") and len(value.parts) == 1:
+            yield from self._of(value.parts[0], fn, line, seen)
+        elif kind == "make" and not value.parts and tail(value.text) in ("string", "str"):
+            yield Value("")
+        elif kind == "index" and value.parts:
+            yield from self._elements(value.parts[0], fn, line, seen)
+        else:
+            what = value.text or kind
+            yield Value(None, "unresolved", f"`{what[:60]}` is not followed")
+
+    def _joined(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        pieces = [list(dict.fromkeys(self._of(part, fn, line, seen)))[:_MOST] for part in value.parts]
+        for number, row in enumerate(product(*pieces)):
+            if number >= _MOST:
+                return
+            unknown = next((one for one in row if one.text is None), None)
+            if unknown is not None:
+                yield unknown
+                continue
+            how: How = "default" if any(one.how == "default" for one in row) else "literal"
+            named = next((one.parameter for one in row if one.parameter), "")
+            yield Value("".join(one.text or "" for one in row), how, "", named)
+
+    def _elements(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        if value.kind == "list":
+            for part in value.parts:
+                yield from self._of(part, fn, line, seen)
+            return
+        if value.kind == "name":
+            variable = self.code.identity(value.text, fn)
+            for writer, each in self.code.writes.get(variable, ()):
+                if each.value.kind == "list":
+                    yield from self._elements(each.value, writer, each.line, (*seen, variable))
+                    return
+        yield Value(None, "unresolved", f"an element of `{value.text or value.kind}`")
+
+    def _name(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        parts = parts_of(path)
+        if "." in path and parts[-1] in _SAME:
+            yield from self._name(path.rpartition(".")[0], fn, line, seen)
+            return
+        variable = self.code.identity(path, fn)
+        if variable in seen:
+            return
+        found = list(self.of_variable(variable, fn, (*seen, variable)))
+        if found:
+            yield from found
+        else:
+            yield Value(None, "unresolved", f"nothing tells what `{path}` is")
+
+    def of_variable(self, variable: Variable, fn: Fn, seen: tuple = ()) -> Iterator[Value]:
+        """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed."""
+        if variable.kind == "member":
+            for cls in self.code.classes.get(tail(variable.owner), ()):
+                for member in cls.facts.members:
+                    if cls.name == variable.owner and member.name == variable.name and member.value is not None:
+                        holder = next(iter(self.code.functions_of_class(cls.name)), fn)
+                        if holder.source is cls.source or member.value.kind == "text":
+                            yield from self._of(member.value, holder, member.line, seen)
+        elif variable.kind == "global":
+            yield from self._constant(variable, fn, seen)
+        for writer, each in self.code.writes.get(variable, ()):
+            if each.operator == "=":
+                if variable.kind == "member" and each.value.kind == "list" and len(each.value.parts) > 1:
+                    continue
+                yield from self._of(each.value, writer, each.line, seen)
+            elif each.operator == "for":
+                yield from self._elements(each.value, writer, each.line, seen)
+            elif each.operator == "+=":
+                yield Value(None, "unresolved", f"`{variable.name}` is put together in steps")
+        for use in self.filled.get(variable, ()):
+            yield from self._parameter(use, seen)
+        if variable.kind == "local":
+            for one in self.code.chain(fn):
+                place = parameter_of(one, variable.name)
+                if place is not None:
+                    yield from self._passed(one, place[0], place[1].name, seen)
+                    if place[1].default is not None:
+                        yield from self._of(place[1].default, one, one.facts.line, seen)
+                    break
+
+    def _constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[Value]:
+        name = variable.name
+        sources = [fn.source, *(s for s in self.code.sources if s.package == fn.source.package and s is not fn.source)]
+        for source in sources:
+            found = [constant for constant in source.facts.constants if tail(constant.name) == tail(name)]
+            for constant in found:
+                if constant.value is not None:
+                    holder = next((f for f in self.code.functions if f.source is source), fn)
+                    yield from self._of(constant.value, holder, constant.line, seen)
+            if found:
+                return
+        if "::" in name or "." in name:
+            cls, _, member = name.replace(".", "::").rpartition("::")
+            found_class = self.code.class_of(cls, fn.source, fn.scope)
+            if found_class is not None:
+                yield from self.of_variable(Variable("member", found_class.name, member), fn, seen)
+
+    def _passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[Value]:
+        """What callers pass for a parameter."""
+        number = 0
+        for caller, call in self.code.callers.get(id(fn), ()):
+            argument = _argument(call.arguments, place, name)
+            if argument is not None:
+                number += 1
+                yield from self._of(argument, caller, call.line, seen)
+        owner = self.code.owner_of(fn)
+        is_constructor = owner is not None and tail(fn.name) in (tail(owner.name), "__init__")
+        if is_constructor and owner is not None:
+            for maker in (owner, *self.code.derived.get(owner.name, ())):
+                for caller, arguments, line in self.code.constructions.get(maker.name, ()):
+                    argument = _argument(arguments, place, name)
+                    if argument is not None and (maker is owner or tail(fn.name) == "__init__"):
+                        number += 1
+                        yield from self._of(argument, caller, line, seen)
+            for caller, arguments, line in self.bases_made.get(owner.name, ()):
+                argument = _argument(arguments, place, name)
+                if argument is not None:
+                    number += 1
+                    yield from self._of(argument, caller, line, seen)
+        if not number:
+            yield Value(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
+
+    @cached_property
+    def bases_made(self) -> dict[str, list[tuple[Fn, tuple[Expr, ...], int]]]:
+        """Constructors that initialise a base class of the code: name of the base to function, arguments and line."""
+        found: dict[str, list[tuple[Fn, tuple[Expr, ...], int]]] = {}
+        for fn in self.code.functions:
+            owner = self.code.owner_of(fn) if fn.facts.owner else None
+            if owner is None:
+                continue
+            for call in fn.facts.calls:
+                if call.callee == "super().__init__":
+                    for base in self.code.bases(owner)[1:2]:
+                        found.setdefault(base.name, []).append((fn, call.arguments, call.line))
+        return found
+
+    def _call(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        last = tail(value.text)
+        head = value.text.rpartition(".")[0] if "." in value.text else ""
+        if last in _NODE_NAME and not value.parts:
+            yield Value(NODE)
+            return
+        if last in _NODE_NAMESPACE and not value.parts:
+            yield Value(NAMESPACE)
+            return
+        if last in _SAME and head:
+            if head.endswith("()"):
+                yield from self._inner(head.removesuffix("()"), fn, line, seen)
+            else:
+                yield from self._name(head, fn, line, seen)
+            return
+        if last in _OF_FIRST and value.parts:
+            yield from self._of(value.parts[0], fn, line, seen)
+            return
+        if last == "append" and len(value.parts) == 2 and "names" in value.text:
+            first, second = value.parts
+            yield from self._joined(Expr("join", "", (first, Expr("text", "/"), second)), fn, line, seen)
+            return
+        yield from self._inner(value.text, fn, line, seen, value.parts)
+
+    def _inner(self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[Expr, ...] | None = None) -> Iterator[Value]:
+        """What a call inside an expression gives: a parameter's default, or what a function of the code returns."""
+        near = [call for call in fn.facts.calls if call.callee == callee]
+        near.sort(key=lambda call: (abs(call.line - line), call.arguments != arguments))
+        if arguments is not None:
+            near = [call for call in near if call.arguments == arguments] or near
+        for call in near[:1]:
+            use = self.calls.use_of(fn, call)
+            if use is not None and use.row.does == "parameter":
+                yield from self._parameter(use, seen)
+                return
+        returned = False
+        for target in self.code.targets(callee, fn):
+            if ("returns", id(target)) in seen:
+                continue
+            for each in target.facts.assignments:
+                if each.operator == "return":
+                    returned = True
+                    yield from self._of(each.value, target, each.line, (*seen, ("returns", id(target))))
+        if not returned:
+            yield Value(None, "unresolved", f"what `{callee}` gives is not known")
+
+    def _parameter(self, use: Use, seen: tuple) -> Iterator[Value]:
+        """The default of the parameter that a use declares or reads."""
+        names = [one.text for one in self._of(self.calls.argument(use, use.row.topic), use.fn, use.call.line, seen)]
+        name = names[0] if names and names[0] is not None else ""
+        default = self.calls.argument(use, use.row.default) if use.row.default else None
+        if default is not None and not (default.kind == "name" and use.row.variable and default == self.calls.argument(use, use.row.variable)):
+            for one in self._of(default, use.fn, use.call.line, seen):
+                if one.text is None:
+                    yield one
+                else:
+                    yield Value(one.text, "default", "", name or one.parameter)
+            return
+        yielded = False
+        for other in self.declared.get(name, ()) if name else ():
+            if other.call is not use.call and other.fn.source.package == use.fn.source.package:
+                for one in self._parameter(other, (*seen, ("parameter", name))) if ("parameter", name) not in seen else ():
+                    if one.text is not None:
+                        yielded = True
+                        yield one
+        if not yielded:
+            yield Value(None, "unresolved", f"the parameter `{name or '?'}` has no default here", name)
+
+    @cached_property
+    def declared(self) -> dict[str, list[Use]]:
+        """Declarations of parameters and reads with a default, by their literal names."""
+        found: dict[str, list[Use]] = {}
+        for use in self.calls.uses:
+            if use.row.does == "parameter" and use.row.default and self.calls.argument(use, use.row.default) is not None:
+                name = self.calls.argument(use, use.row.topic)
+                if name is not None and name.kind == "text":
+                    found.setdefault(name.text, []).append(use)
+        return found
+
+    @cached_property
+    def filled(self) -> dict[Variable, list[Use]]:
+        """Variables that a call fills with the value of a parameter."""
+        found: dict[Variable, list[Use]] = {}
+        for use in self.calls.uses:
+            if use.row.does == "parameter" and use.row.variable:
+                target = self.calls.argument(use, use.row.variable)
+                if target is not None and target.kind == "name" and not use.call.target:
+                    found.setdefault(self.code.identity(target.text, use.fn), []).append(use)
+        return found
+
+
+def _argument(arguments: tuple[Expr, ...], place: int, name: str) -> Expr | None:
+    for argument in arguments:
+        if argument.kind == "keyword" and argument.text == name and argument.parts:
+            return argument.parts[0]
+    positional = [argument for argument in arguments if argument.kind != "keyword"]
+    return positional[place] if 0 <= place < len(positional) else None
