@@ -77,7 +77,7 @@ class Calls:
             if row.first and not self._first_fits(row.first, fn, call):
                 continue
             if row.free or row.on:
-                if free is not None and free in row.free:
+                if free is not None and (free in row.free and (free or not receiver)):
                     return Use(fn, row, call)
                 if kinds & set(row.on):
                     return Use(fn, row, call)
@@ -179,15 +179,14 @@ class Calls:
                 yield kind.name, _with_types(call, kind)
             elif last == "make_shared" and "::" in call.callee:
                 yield code.meant(around(call.callee), source, scope), call
-            elif source.facts.language == "python":
-                if call.callee == "super().__init__":
-                    owner = code.owner_of(fn)
-                    for base in code.base_names(owner) if owner else ():
-                        yield base, call
-                elif last[:1].isupper():
-                    yield code.meant(call.callee, source), call
-                elif last == "__init__":
-                    yield code.meant(around(call.callee), source), call
+            for argument in call.arguments if source.facts.language == "cpp" else ():
+                for make in _nested(argument):
+                    kind = code.meant_type(make.text, source, scope)
+                    target = around(call.callee) if last == "reset" else ""
+                    arguments = ", ".join(kind.arguments)
+                    yield kind.name, Call(make.text, make.parts, call.line, call.column, call.guard, arguments, target)
+            if source.facts.language == "python" and last:
+                yield from self._made_in_python(fn, call, last)
         for each in fn.facts.assignments:
             value = each.value
             for make in _nested(value):
@@ -200,6 +199,16 @@ class Calls:
                 if kind.name and value.kind in ("list", "name", "text", "call"):
                     arguments = value.parts if value.kind == "list" else (value,)
                     yield kind.name, Call(kind.name, arguments, each.line, 0, each.guard, ", ".join(kind.arguments), each.target)
+
+    def _made_in_python(self, fn: Fn, call: Call, last: str) -> Iterator[tuple[str, Call]]:
+        if call.callee == "super().__init__":
+            owner = self.code.owner_of(fn)
+            for base in self.code.base_names(owner) if owner else ():
+                yield base, call
+        elif last[:1].isupper():
+            yield self.code.meant(call.callee, fn.source), call
+        elif last == "__init__":
+            yield self.code.meant(around(call.callee), fn.source), call
 
     def _initialised(self, fn: Fn, target: str) -> Type:
         variable = self.code.identity(target, fn)

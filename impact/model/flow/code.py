@@ -281,11 +281,13 @@ class Code:
         declaring = [cls for cls in self.bases(owner) if any(member.name == name for member in cls.facts.members)]
         return Variable("member", (declaring[-1] if declaring else owner).name, name)
 
-    def identity(self, path: str, fn: Fn) -> Variable:
-        """The variable that a whole path means: that of its last part, in the class of what stands before it."""
+    def identity(self, path: str, fn: Fn, depth: int = 0) -> Variable:
+        """The variable that a whole path means: that of its last part, in the class of what stands before it.
+
+        depth: how far types are followed already; from 5 on only declared ones count."""
         found, rest = self.variable(path, fn)
         for part in rest:
-            kind = self.type_of_variable(found, fn)
+            kind = self.type_of_variable(found, fn, depth)
             cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
             found = Variable("member", cls.name if cls else f"{found.owner}.{found.name}", part)
         return found
@@ -309,7 +311,7 @@ class Code:
         for fn in self.functions:
             for each in fn.facts.assignments:
                 if each.target:
-                    found.setdefault(self.identity(each.target, fn), []).append((fn, each))
+                    found.setdefault(self.identity(each.target, fn, 9), []).append((fn, each))
         return found
 
     @cached_property
@@ -319,7 +321,7 @@ class Code:
         for fn in self.functions:
             for call in fn.facts.calls:
                 if call.target:
-                    found.setdefault(self.identity(call.target, fn), []).append((fn, call))
+                    found.setdefault(self.identity(call.target, fn, 9), []).append((fn, call))
         return found
 
     def declared_type(self, variable: Variable, fn: Fn) -> tuple[str, Source, str]:
@@ -366,11 +368,12 @@ class Code:
         if value.kind == "name":
             variable, rest = self.variable(value.text, fn)
             if rest:
-                variable = self.identity(value.text, fn)
+                variable = self.identity(value.text, fn, depth + 1)
             return self.type_of_variable(variable, fn, depth)
         if value.kind == "call":
             return self.type_of_call(value.text, fn, depth)
-        if value.kind == "list" and len(value.parts) == 1:
+        if (value.kind == "list" and len(value.parts) == 1) or (value.kind == "index" and value.parts):
+            # The type of a container is that of its elements.
             return self.type_of(value.parts[0], fn, depth)
         return UNKNOWN
 
@@ -383,7 +386,7 @@ class Code:
         if last in ("make_shared", "make_unique") or (last == "create" and "::" in name):
             scope = around(name)
             return self.meant_type(scope, fn.source, fn.scope) if scope not in ("std", "boost", "") else UNKNOWN
-        for target in self.targets(name, fn):
+        for target in self.targets(name, fn, depth + 1):
             if target.facts.returns:
                 return self.meant_type(target.facts.returns, target.source, target.scope)
         meant = self.meant(name, fn.source, fn.scope)
@@ -393,7 +396,7 @@ class Code:
 
     # Calls
 
-    def targets(self, callee: str, fn: Fn) -> list[Fn]:
+    def targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
         """The functions of the code that a call may reach; none when it leaves the code or cannot be told."""
         last = tail(callee)
         candidates = self.by_tail.get(last)
@@ -401,7 +404,7 @@ class Code:
             return []
         head = callee.rpartition(".")[0] if "." in callee else ""
         if "." in callee:
-            return self._methods(head, last, fn)
+            return self._methods(head, last, fn, depth)
         if "::" in callee:
             meant = self.meant(callee, fn.source, fn.scope)
             cls = self.class_of(around(meant), fn.source, fn.scope)
@@ -425,7 +428,7 @@ class Code:
             return [f for f in candidates or () if not f.facts.owner and _module_of(f.source.path, wanted[:-1])]
         return self._nearest([f for f in candidates or () if not f.facts.owner and f.name], fn)
 
-    def _methods(self, receiver: str, name: str, fn: Fn) -> list[Fn]:
+    def _methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
         if receiver in ("this", "super()", "super"):
             owner = self.owner_of(fn)
             if owner is None:
@@ -441,7 +444,10 @@ class Code:
                 found = [f for f in self.by_tail.get(name, ()) if not f.facts.owner and _module_of(f.source.path, module)]
                 if found:
                     return found
-        kind = self.type_of(Expr("name", receiver), fn)
+        if receiver.endswith("()"):
+            kind = self.type_of_call(receiver, fn, depth + 1)
+        else:
+            kind = self.type_of(Expr("name", receiver), fn, depth)
         cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
         if cls is None:
             return []
@@ -468,6 +474,29 @@ class Code:
         return found
 
     @cached_property
+    def bound(self) -> dict[int, list[tuple[Fn, tuple[Expr, ...]]]]:
+        """Functions of the code that are bound with arguments (std::bind, partial), by their id()."""
+        found: dict[int, list[tuple[Fn, tuple[Expr, ...]]]] = {}
+
+        def walk(value: Expr, fn: Fn, depth: int) -> None:
+            if value.kind == "bind" and value.parts and value.parts[0].kind in ("function", "name"):
+                name, arguments = value.parts[0].text, value.parts[1:]
+                method = "::" in name and bool(arguments) and arguments[0].text == "this"
+                for target in self.targets(name, fn):
+                    found.setdefault(id(target), []).append((fn, arguments[1:] if method else arguments))
+            if depth < 3:
+                for part in value.parts:
+                    walk(part, fn, depth + 1)
+
+        for fn in self.functions:
+            for call in fn.facts.calls:
+                for argument in call.arguments:
+                    walk(argument, fn, 0)
+            for each in fn.facts.assignments:
+                walk(each.value, fn, 0)
+        return found
+
+    @cached_property
     def constructions(self) -> dict[str, list[tuple[Fn, tuple[Expr, ...], int]]]:
         """Where objects of a class of the code are made: name of the class to function, arguments and line."""
         found: dict[str, list[tuple[Fn, tuple[Expr, ...], int]]] = {}
@@ -490,14 +519,16 @@ def made_in(fn: Fn, code: Code) -> Iterator[tuple[str, tuple[Expr, ...], int]]:
             yield around(call.callee), call.arguments, call.line
         elif fn.source.facts.language == "python" and last[:1].isupper():
             yield code.meant(call.callee, fn.source), call.arguments, call.line
+        for argument in call.arguments:
+            for value in _makes(argument):
+                yield value.text, value.parts, call.line
     for each in fn.facts.assignments:
         for value in _makes(each.value):
-            if value.text:
-                yield value.text, value.parts, each.line
+            yield value.text, value.parts, each.line
 
 
 def _makes(value: Expr, depth: int = 0) -> Iterator[Expr]:
-    if value.kind == "make":
+    if value.kind == "make" and value.text:
         yield value
     if depth < 4:
         for part in value.parts:

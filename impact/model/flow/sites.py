@@ -13,8 +13,8 @@ from ...facts.flow import Expr
 from .calls import Calls, Use
 from .code import Code, Fn, Variable, around, tail
 from .graph import Role
-from .types import interface_of, parsed
-from .values import Value, Values
+from .types import interface_of, parsed, split
+from .values import Value, Values, beside
 
 _ROLES: dict[str, Role] = {
     "publisher": "publisher",
@@ -96,9 +96,13 @@ class Sites:
         """In the order of files and lines; rows with further endpoints give several."""
         found: list[Site] = []
         for use in self.calls.uses:
-            if use.row.does in _ROLES:
+            if use.row.does in _ROLES and not self.wraps(use.fn):
                 found.extend(self._endpoints(use))
         return found
+
+    def wraps(self, fn: Fn) -> bool:
+        """Whether a function stands for the framework's own of the same name: its callers are the sites."""
+        return any(row.does in _ROLES for row in self.calls.table.calls.get(tail(fn.name), ())) and not fn.is_lambda
 
     def _endpoints(self, use: Use) -> Iterator[Site]:
         calls, row = self.calls, use.row
@@ -114,11 +118,8 @@ class Sites:
         yield site
         if row.camera_info:
             # https://docs.ros.org/en/api/image_transport: camera_info stands beside the image's topic.
-            beside = tuple(
-                value if value.text is None else value._replace(text=f"{value.text.rpartition('/')[0]}/camera_info".lstrip("/") if "/" in value.text.strip("/") else "camera_info")
-                for value in names
-            )
-            yield site._replace(names=beside, type="sensor_msgs/CameraInfo", implied=True)
+            infos = tuple(v if v.text is None else v._replace(text=beside(v.text, "camera_info")) for v in names)
+            yield site._replace(names=infos, type="sensor_msgs/CameraInfo", implied=True)
         for also in row.also:
             role = _ROLES[also.role]
             yield site._replace(
@@ -155,6 +156,8 @@ class Sites:
                     text = self._parameter_type(use)
             elif spot == "of receiver":
                 kind = code.type_of(Expr("name", self.calls.receiver_of(use)), fn)
+                if tail(kind.name) == "SubscriberFilter":
+                    return "sensor_msgs/PointCloud2" if "point_cloud" in kind.name else "sensor_msgs/Image"
                 text = kind.arguments[0] if kind.arguments else ""
             elif isinstance(spot, str) and spot.startswith("argument "):
                 place = int(spot[9:])
@@ -175,11 +178,16 @@ class Sites:
                     return "*"
                 known = interface_of(f"{kind.name}<{', '.join(kind.arguments)}>" if kind.arguments else kind.name)
                 if not known:
-                    known = self._in_namespaces(kind.name, fn)
+                    known = self._in_namespaces(kind.name, fn) or self._in_scope(kind.name, fn)
                 if known:
                     return known
         if not use.row.type and use.row.does in _ROLES:
             return ""
+        options = self.calls.argument(use, (0,))
+        if options is not None and options.kind == "name":
+            for _, call in code.results.get(code.identity(options.text, fn), ()):
+                if "Options::" in call.callee and call.types:
+                    return interface_of(code.meant_type(split(call.types)[0], fn.source, fn.scope).name)
         kept = self.calls.kept_in(use)
         if kept is not None:
             kind = code.type_of_variable(kept, fn)
@@ -195,6 +203,18 @@ class Sites:
             known = interface_of(f"{alias.target}::{name}")
             if known and (alias.target.endswith(("::msg", "::srv", "::action")) or alias.target.endswith(("_msgs", "_srvs"))):
                 return known
+        return ""
+
+    def _in_scope(self, name: str, fn: Fn) -> str:
+        """A type's interface by the namespaces around the function: `Pose` inside `namespace turtlesim`."""
+        if fn.source.facts.language != "cpp":
+            return ""
+        scope = fn.name.rpartition("::")[0]
+        while scope:
+            known = interface_of(f"{scope}::{name}")
+            if known.partition("/")[0] == fn.source.package or known.partition("/")[0].endswith(("_msgs", "_srvs", "_interfaces")):
+                return known
+            scope = scope.rpartition("::")[0]
         return ""
 
     def _python_type(self, value: Expr, fn: Fn) -> str:
@@ -236,11 +256,16 @@ class Sites:
             name = row.callback[0][1:]
             owner = self.code.owner_of(use.fn)
             return tuple(self.code.method(owner, name)) if owner else (), ""
-        value = self.calls.argument(use, row.callback)
+        value = None
+        for spot in row.callback:
+            one = self.calls.argument(use, (spot,))
+            found = self.bodies(one, use.fn, use) if one is not None else []
+            if found:
+                return tuple(found), ""
+            value = value or one
         if value is None:
             return self._joined_callbacks(use)
-        found = self.bodies(value, use.fn, use)
-        return tuple(found), "" if found else f"the callback `{shown(value)[:80]}` is not in the workspace or not followed"
+        return (), f"the callback `{shown(value)[:80]}` is not in the workspace or not followed"
 
     def _joined_callbacks(self, use: Use) -> tuple[tuple[Fn, ...], str]:
         """For filters: the callbacks registered with whatever joins them."""
@@ -497,6 +522,15 @@ class Sites:
         return found
 
     @cached_property
+    def made_in(self) -> dict[int, list[Site]]:
+        """Sites by the id() of the function that makes and returns them."""
+        found: dict[int, list[Site]] = {}
+        for site in self.endpoints:
+            if site.use.call.returned:
+                found.setdefault(id(site.use.fn), []).append(site)
+        return found
+
+    @cached_property
     def statements(self) -> list[Statement]:
         """All publish statements, in the order of files and lines."""
         found: list[Statement] = []
@@ -543,6 +577,7 @@ class Sites:
                 for each in target.facts.assignments:
                     if each.operator == "return" and each.value.kind == "name":
                         yield from self.publishers(each.value.text, target, depth + 1)
+                yield from (site for site in self.made_in.get(id(target), ()) if site.role == "publisher")
             if tail(receiver.removesuffix("()")) in ("get", "lock", "at", "value", "second", "front", "back"):
                 yield from self.publishers(around(receiver.removesuffix("()")), fn, depth + 1)
             return
@@ -564,8 +599,11 @@ class Sites:
                 place = parameter_of(one, variable.name)
                 if place is None:
                     continue
-                for caller, call in code.callers.get(id(one), ()):
-                    positional = [argument for argument in call.arguments if argument.kind != "keyword"]
+                for caller, arguments in [
+                    *((caller, call.arguments) for caller, call in code.callers.get(id(one), ())),
+                    *code.bound.get(id(one), ()),
+                ]:  # fmt: skip
+                    positional = [argument for argument in arguments if argument.kind != "keyword"]
                     if place[0] < len(positional) and positional[place[0]].kind == "name":
                         yield from self.publishers(positional[place[0]].text, caller, depth + 1)
 

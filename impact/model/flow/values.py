@@ -22,7 +22,8 @@ _SAME = frozenset(
      "get_value", "to_string", "as_int", "as_bool", "as_double")
 )  # fmt: skip
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "resolve", "string", "str", "String", "move", "forward",
-                       "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name"))  # fmt: skip
+                       "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name", "resolve_service_name",
+                       "resolve_topic_or_service_name"))  # fmt: skip
 _NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
 _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
@@ -72,6 +73,8 @@ class Values:
             yield from self._of(value.parts[0], fn, line, seen)
         elif kind == "make" and not value.parts and tail(value.text) in ("string", "str"):
             yield Value("")
+        elif kind == "make" and not value.parts:
+            return  # made empty, and written later
         elif kind == "index" and value.parts:
             yield from self._elements(value.parts[0], fn, line, seen)
         else:
@@ -220,8 +223,13 @@ class Values:
             else:
                 yield from self._name(head, fn, line, seen)
             return
-        if last in _OF_FIRST and value.parts:
+        # Options of ROS 1 are named by the name they are for.
+        if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
             yield from self._of(value.parts[0], fn, line, seen)
+            return
+        if last == "getCameraInfoTopic" and len(value.parts) == 1:
+            for one in self._of(value.parts[0], fn, line, seen):
+                yield one if one.text is None else one._replace(text=beside(one.text, "camera_info"))
             return
         if last == "append" and len(value.parts) == 2 and "names" in value.text:
             first, second = value.parts
@@ -294,6 +302,12 @@ class Values:
                 if target is not None and target.kind == "name" and not use.call.target:
                     found.setdefault(self.code.identity(target.text, use.fn), []).append(use)
         return found
+
+
+def beside(topic: str, name: str) -> str:
+    """A name in the namespace of a topic (image_transport puts camera_info beside the image)."""
+    head, slash, _ = topic.rpartition("/")
+    return f"{head}{slash}{name}"
 
 
 def _argument(arguments: tuple[Expr, ...], place: int, name: str) -> Expr | None:
