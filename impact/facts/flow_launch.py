@@ -82,7 +82,8 @@ class Action(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | namespace | namespace: pushed for what follows | |
     | remap | from, to | |
     | parameter | name, value, type; instead of value: textfile, binfile, command | |
-    | parameter-file | file or text (YAML), name (below which), command, substitute | |
+    | parameter-file | file or text (YAML), name (below which), command, substitute; below (several): keys in the file
+      whose values alone are given, as plain parameters | |
     | environment | name, value | |
     | process | command (several) | |
     | unknown | text: what could not be followed | |
@@ -690,7 +691,7 @@ def _tree(text: str) -> tuple[_Node | None, list[Problem]]:
                 break
             if isinstance(event, yaml.ScalarEvent):
                 is_key = bool(levels) and levels[-1][0].kind == "map" and levels[-1][1] is None
-                bare = event.style is None and event.tag is None and not is_key
+                bare = event.implicit[0] and not is_key
                 value = scalar(event.value) if bare else _clean(event.value)
                 if event.tag is not None and not is_key:
                     value = _tagged(event.tag, value)

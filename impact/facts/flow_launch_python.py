@@ -67,6 +67,13 @@ class _File(NamedTuple):
     value: Value
 
 
+class _Yaml(NamedTuple):
+    """What a YAML file holds, below keys."""
+
+    file: Value
+    keys: tuple[Value, ...] = ()
+
+
 class _Typed(NamedTuple):
     """A ParameterValue: its value and the name of the type it is to have."""
 
@@ -238,6 +245,9 @@ class _Walker:
         if entry is None:
             return (), (Problem(1, "has no generate_launch_description()"),)
         result = self.call_function(entry, [], {})
+        if isinstance(result, _List) and result.kind == "tuple" and result.items:
+            # A test's description, and what its cases are told
+            result = result.items[0]
         return tuple(self.actions(result, entry.node.lineno)), ()
 
     # Statements
@@ -546,6 +556,8 @@ class _Walker:
         key = self.value(node.slice) if not isinstance(node.slice, ast.Slice) else None
         if isinstance(holder, _Module) and holder.path == "os.environ" and isinstance(key, _Text):
             return _Text((named("env", key.value),))
+        if isinstance(holder, _Yaml) and isinstance(key, _Text):
+            return holder._replace(keys=(*holder.keys, key.value))
         if isinstance(holder, _Context) and isinstance(key, _Text):
             return _Text((named("arg", key.value),))
         if isinstance(holder, _Dict):
@@ -1172,6 +1184,8 @@ class _Making(NamedTuple):
                 yield from self.one(self.walker.text(key, self.call.node), held, extra)
         elif isinstance(value, _Text):
             yield Action("parameter-file", line, (("file", value.value),), extra)
+        elif isinstance(value, _Yaml):
+            yield self.below(value, None, extra)
         elif isinstance(value, _File):
             yield Action("parameter-file", line, (("file", value.value), ("substitute", literal("true"))), extra)
         elif isinstance(value, _Unknown):
@@ -1179,6 +1193,13 @@ class _Making(NamedTuple):
         elif value is not None and value != _Constant(None):
             source = _keyword_source(self.call.node, "parameters")
             yield Action("unknown", line, (("text", (other(f"parameters: {source}"),)),), extra)
+
+    def below(self, value: _Yaml, name: Value | None, extra: tuple[Condition, ...]) -> Action:
+        """The values of a YAML file that is loaded by the launch file, under a name if one is given."""
+        attributes = [("file", value.file), *(("below", key) for key in value.keys)]
+        if name is not None:
+            attributes.append(("name", name))
+        return Action("parameter-file", self.call.node.lineno, tuple(attributes), extra)
 
     def one(self, name: Value, value: Any, extra: tuple[Condition, ...]) -> Iterator[Action]:
         """A parameter, or those of a nested dict."""
@@ -1188,6 +1209,8 @@ class _Making(NamedTuple):
         elif isinstance(value, _Dict):
             for key, held in value.items:
                 yield from self.one(together([name, literal("."), self.walker.text(key, self.call.node)]), held, extra)
+        elif isinstance(value, _Yaml):
+            yield self.below(value, name, extra)
         else:
             text, type_ = self.typed(value)
             attributes = [("name", name), ("value", text)]
@@ -1571,6 +1594,22 @@ def _content(walker: _Walker, call: _Call) -> Any:
     return _Text((Piece("content", "", (walker.text(call.get(0, "file"), call.node),)),))
 
 
+def _loaded(walker: _Walker, call: _Call) -> Any:
+    """yaml.safe_load() of an open file."""
+    given = call.get(0, "stream")
+    if isinstance(given, _Text) and len(given.value) == 1 and given.value[0].kind == "content":
+        return _Yaml(given.value[0].parts[0])
+    return _Unknown(_source(call.node))
+
+
+def _boolean_argument(walker: _Walker, call: _Call) -> Any:
+    """DeclareBooleanLaunchArg of moveit_configs_utils: its default is given as a bool."""
+    making = _Making(walker, call)
+    default = call.get(1, "default_value")
+    attributes = making.attributes(("name", call.get(0, "name")), ("default", default))
+    return Action("argument", call.node.lineno, tuple(attributes), making.conditions())
+
+
 def _has_node(walker: _Walker, call: _Call) -> Any:
     """HasNodeParams of nav2_common."""
     given = (call.get(0, "source_file"), call.get(1, "node_name"))
@@ -1597,7 +1636,9 @@ def _replaced(walker: _Walker, call: _Call) -> Any:
     if isinstance(replacements, _Dict):
         for key, value in replacements.items:
             parts += (walker.text(key, call.node), walker.text(value, call.node))
-    return _Text((Piece("replaced", "", tuple(parts)),), False)
+    value = (Piece("replaced", "", tuple(parts)),)
+    asked = _Making(walker, call).conditions()
+    return _Text((Piece("choose", "", (_all(asked), value, parts[0])),) if asked else value, False)
 
 
 def _range(walker: _Walker, call: _Call) -> Any:
@@ -1745,6 +1786,10 @@ _CALLS: dict[str, Callable[[_Walker, _Call], Any]] = {
     "ForLoop": _for_each,
     "FileContent": _content,
     "open": _content,
+    "safe_load": _loaded,
+    "full_load": _loaded,
+    "load": _loaded,
+    "DeclareBooleanLaunchArg": _boolean_argument,
     "HasNodeParams": _has_node,
     "RewrittenYaml": _rewritten,
     "ReplaceString": _replaced,
