@@ -29,7 +29,7 @@ class Expr(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | lambda | the name of the Function it became | |
     | bind | | the function, then the bound arguments (std::bind, boost::bind, functools.partial) |
     | list | | its elements (tuples, braces) |
-    | keyword | name of the argument | its value |
+    | keyword | name of the argument; `*` and `**` for what Python unpacks | its value |
     | other | the source, its white space as single blanks, at most 120 characters | |
     """
 
@@ -69,7 +69,9 @@ class Call(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A call. callee: path as in Expr (`this.nh_.advertise`, `std::bind`, `node.create_publisher`), its last part being
     the function; empty receiver pieces that are no path are written `()`: `get().publish`. types: template arguments as
     written, without the angle brackets. guard: place in Function.guards, -1 for none. target: what the result is kept
-    in, a path, empty for nothing. returned: the result is what the function returns."""
+    in, a path, empty for nothing. returned: the result is what the function returns.
+
+    An element of a receiver or target is `[]` as in Access: `this.pubs_.[].publish`."""
 
     callee: str
     arguments: tuple[Expr, ...]
@@ -96,7 +98,8 @@ class Assignment(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class Access(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A use of a parameter or local variable, or of something below it. path: with its members (`msg.header.stamp`;
     `[]` for an element: `msg.ranges.[]`). kind: `read`, `write`, `pass` (to: callee, position: argument number from 0)
-    or `escape` (handed to something that cannot be followed, whole or in part)."""
+    or `escape` (handed to something that cannot be followed, whole or in part; to: what it is kept in, or the Function
+    that captures it, where one is known). keyword: name of the argument where it is passed by one."""
 
     path: str
     kind: str
@@ -104,10 +107,12 @@ class Access(msgspec.Struct, frozen=True, array_like=True, gc=False):
     guard: int = -1
     to: str = ""
     position: int = -1
+    keyword: str = ""
 
 
 class Parameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A parameter of a function. type: as written (annotation in Python), empty for none."""
+    """A parameter of a function. type: as written (annotation in Python), empty for none. Python's `self` and `cls` are
+    left out; the others are named `*args`, `**kwargs`, and `*` alone before those that are given by keyword only."""
 
     name: str
     type: str = ""
@@ -118,7 +123,10 @@ class Function(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A function's body. name: scopes joined by `::` in C++ and `.` in Python, template arguments left out; a lambda is
     called as what it stands in, followed by `lambda@line:column`. owner: the class it belongs to, as far as the file
     says (`ns::Class` for `void Class::f()` inside `namespace ns`), empty for none. decorators: as paths. returns: the
-    type as written. virtual: C++ `virtual` or `override` is written."""
+    type as written. virtual: C++ `virtual` or `override` is written. outside: names that Python declares `global` or
+    `nonlocal`.
+
+    The body of a Python class is a Function of the class's name, in which the names it binds are `this.name`."""
 
     name: str
     owner: str
@@ -132,6 +140,7 @@ class Function(msgspec.Struct, frozen=True, array_like=True, gc=False):
     decorators: tuple[str, ...] = ()
     returns: str = ""
     virtual: bool = False
+    outside: tuple[str, ...] = ()
 
 
 class Member(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -166,8 +175,9 @@ class Alias(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class FlowFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """language: `cpp` or `python`. constants: variables outside functions and classes, `#define`s of one literal among
-    them. exports: classes given to nodelet, component and plugin macros. unread: spans of lines (first, last) that did
-    not parse. The body of the file outside functions is a Function called `` (empty name)."""
+    them, and what Python functions assign to names declared global; in Python once for each place that assigns.
+    exports: classes given to nodelet, component and plugin macros. unread: spans of lines (first, last) that did not
+    parse. The body of the file outside functions is a Function called `` (empty name)."""
 
     language: str
     aliases: tuple[Alias, ...] = ()
