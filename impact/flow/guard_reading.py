@@ -1,0 +1,159 @@
+"""What each kind of guard says, as pieces that must all hold."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Literal
+
+from ..model.flow.graph import GuardAt
+from . import guard_cpp, guard_python
+from .guard_terms import Piece, Reading, Term, join, names_in, negation, rebuilt, renamed, substituted
+
+Language = Literal["cpp", "python"]
+_LOCK = re.compile(r"lock|mutex|condition|semaphore", re.IGNORECASE)
+_CAUGHT_AS = re.compile(r"^except\b\s*|\s+as\s+\w+$|\s*[&*]\s*\w*$|\bconst\b\s*")
+
+
+def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
+    """The language the guards are written in, as their paths tell it; a script without an ending is Python."""
+    for way in ways:
+        for guard in way:
+            ending = guard.path.rpartition("/")[2].rpartition(".")[1:]
+            return "python" if (ending[0] == "" and guard.path) or ending[1] in ("py", "pyw") else "cpp"
+    return "cpp"
+
+
+def pieces_of(way: Sequence[GuardAt], language: Language, renames: dict[str, str]) -> tuple[Piece, ...]:
+    """All that must hold on one way, outermost first, with variables of loops and conditions put back into what they
+    stand for."""
+    result: list[Piece] = []
+    names: dict[str, dict[str, Term]] = {}
+    for guard in way:
+        known = names.setdefault(guard.of, {})
+        reading = read(language, guard.kind, guard.text)
+        for piece in reading.pieces:
+            term = substituted(piece.term, known) if known else piece.term
+            if renames:
+                term = renamed(term, renames)
+            if term.kind != "true":
+                result.append(Piece(piece.text, term))
+        for name, value in reading.names:
+            known[name] = substituted(value, known) if known else value
+    return tuple(result)
+
+
+def this_left_out(sides: Sequence[Sequence[Sequence[Piece]]]) -> tuple[tuple[tuple[Piece, ...], ...], ...]:
+    """C++ sides (of ways, of pieces) with `this->x` as `x`, unless one side has both."""
+    for side in sides:
+        named = {name for way in side for piece in way for name in names_in(piece.term)}
+        ours = {name.removeprefix("this.").partition(".")[0] for name in named if name.startswith("this.")}
+        if any(name.partition(".")[0] in ours for name in named):
+            return tuple(tuple(tuple(way) for way in side) for side in sides)
+    return tuple(tuple(tuple(Piece(piece.text, _bare(piece.term)) for piece in way) for way in side) for side in sides)
+
+
+def _bare(term: Term) -> Term:
+    if term.kind == "name" and term.text.startswith("this."):
+        return Term("name", term.text.removeprefix("this."))
+    if not term.parts:
+        return term
+    return rebuilt(term.kind, term.text, tuple(map(_bare, term.parts)))
+
+
+@lru_cache(16384)
+def read(language: Language, kind: str, text: str) -> Reading:
+    """One guard by itself; kind and text as in facts."""
+    reader = guard_cpp if language == "cpp" else guard_python
+    if kind in ("if", "while"):
+        return reader.condition(text, True)
+    if kind == "unless":
+        if re.match(r"(?:catch|except)\b", text):
+            return Reading((Piece(f"no {text}", negation(_caught(text))),))
+        return reader.condition(text, False)
+    if kind == "cpp":
+        return guard_cpp.directive(text, True)
+    if kind == "case":
+        return case(language, text)
+    if kind == "for":
+        return reader.loop(text)
+    if kind == "do" or (kind == "with" and _LOCK.search(text)):
+        # Waiting for a lock is no condition.
+        return Reading()
+    if kind == "catch":
+        return Reading((Piece(f"catch ({text})", _caught(text)),))
+    return Reading((Piece(text, Term("opaque", f"{kind} {' '.join(text.split())}")),))
+
+
+def _caught(text: str) -> Term:
+    inside = re.sub(r"^catch\s*\((.*)\)$", r"\1", text.strip())
+    while True:
+        shorter = _CAUGHT_AS.sub("", inside).strip()
+        if shorter == inside:
+            break
+        inside = shorter
+    return Term("opaque", f"catch {' '.join(inside.split())}")
+
+
+def case(language: Language, text: str) -> Reading:
+    """`subject == a or b` or `subject other than a, b`."""
+    subject, other, values = text.partition(" other than ")
+    if other:
+        named = _split(values, ",")
+    else:
+        subject, _, values = text.partition(" == ")
+        named = _split(values, " or ")
+    reader = guard_cpp if language == "cpp" else guard_python
+    asked = reader.expression(subject)
+    alternatives: list[Term] = []
+    names: tuple[tuple[str, Term], ...] = ()
+    for value in named:
+        # Where each value comes with the subject again.
+        value = value.removeprefix(f"{subject} == ")
+        if language == "python":
+            reading = guard_python.matched(asked, value)
+            alternatives.append(reading.pieces[0].term)
+            names += reading.names
+        else:
+            alternatives.append(_case_value(asked, value))
+    if not alternatives:
+        return Reading()
+    term = join("or", alternatives)
+    return Reading((Piece(text, negation(term) if other else term),), () if other else names)
+
+
+def _case_value(subject: Term, value: str) -> Term:
+    first, dots, last = value.partition(" ... ")
+    if dots:
+        low, high = guard_cpp.expression(first), guard_cpp.expression(last)
+        return join("and", (guard_cpp.comparison("<=", low, subject), guard_cpp.comparison("<=", subject, high)))
+    return guard_cpp.comparison("==", subject, guard_cpp.expression(value))
+
+
+def _split(text: str, separator: str) -> list[str]:
+    """The parts of a text between separators outside brackets and quotes."""
+    parts: list[str] = []
+    depth = start = position = 0
+    quote = ""
+    while position < len(text):
+        character = text[position]
+        if quote:
+            if character == "\\":
+                position += 1
+            elif character == quote:
+                quote = ""
+        elif character in "\"'":
+            quote = character
+        elif character in "([{":
+            depth += 1
+        elif character in ")]}":
+            depth -= 1
+        elif depth <= 0 and text.startswith(separator, position):
+            parts.append(text[start:position])
+            position += len(separator)
+            start = position
+            continue
+        position += 1
+    parts.append(text[start:])
+    return [part.strip() for part in parts if part.strip()]
