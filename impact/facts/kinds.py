@@ -49,10 +49,14 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "setup_cfg": ("setup", "SetupFile", 3),
     "pyproject": ("setup", "SetupFile", 3),
     "script": ("", "", 1),
+    "flow_cpp": ("flow_cpp", "FlowFile", 1),
+    "flow_python": ("flow_python", "FlowFile", 1),
 }
 """kind: (module, struct, version). Raise the version with every change of what an extractor says: it is part of the key
 under which facts are stored."""
 WITH_KIND = frozenset({"interface", "launch", "setup"})
+FLOW = {"cpp": "flow_cpp", "python": "flow_python"}
+"""The second look that the message-flow graph takes at files of a kind."""
 
 BY_NAME = {
     "package.xml": "manifest",

@@ -159,7 +159,7 @@ class Calls:
     def _objects(self, fn: Fn) -> Iterator[Use]:
         seen = set()
         for name, call in self._made(fn):
-            for row in self.table.objects_of(name) if name else ():
+            for row in self.table.objects_of(name, fn.source.facts.language == "python") if name else ():
                 if row.does == "node" and not call.arguments:
                     continue
                 if row.first and not self._first_fits(row.first, fn, call):

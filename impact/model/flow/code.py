@@ -225,13 +225,7 @@ class Code:
         return []
 
     def _is_of(self, fn: Fn, cls: Cls) -> bool:
-        if not fn.facts.owner or fn.is_lambda:
-            return False
-        own, wanted = parts_of(fn.facts.owner), parts_of(cls.name)
-        if own[-1] != wanted[-1]:
-            return False
-        same = own == wanted or own[-len(wanted) :] == wanted or wanted[-len(own) :] == own
-        return same and (fn.source.package == cls.source.package or fn.source.path == cls.source.path)
+        return bool(fn.facts.owner) and not fn.is_lambda and self._owned(fn, cls, parts_of(cls.name))
 
     def overrides(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method in classes that derive from a class."""
@@ -295,6 +289,17 @@ class Code:
     def functions_of_class(self, name: str) -> list[Fn]:
         """All functions whose owner is a class of this name, lambdas in them included."""
         return self._by_owner.get(tail(name), [])
+
+    def functions_of(self, cls: Cls) -> list[Fn]:
+        """The functions of one class, lambdas in them included."""
+        wanted = parts_of(cls.name)
+        return [fn for fn in self._by_owner.get(wanted[-1], ()) if self._owned(fn, cls, wanted)]
+
+    def _owned(self, fn: Fn, cls: Cls, wanted: list[str]) -> bool:
+        own = parts_of(fn.facts.owner)
+        if own[-len(wanted) :] != wanted and wanted[-len(own) :] != own:
+            return False
+        return fn.source.path == cls.source.path or fn.source.package == cls.source.package
 
     @cached_property
     def _by_owner(self) -> dict[str, list[Fn]]:

@@ -82,9 +82,13 @@ class Frameworks:
                 return kind
         return ""
 
-    def objects_of(self, name: str) -> list[Row]:
-        """Rows about objects of a class, by its name as qualified as it is known."""
-        return [row for row in self.objects.get(last(name), ()) if any(_ends(full, name) for full in row.types)]
+    def objects_of(self, name: str, python: bool = False) -> list[Row]:
+        """Rows about objects of a class, by its name as qualified as it is known. python: whether Python makes it."""
+        return [
+            row
+            for row in self.objects.get(last(name), ())
+            if any(("::" in full) != python and _ends(full, name) for full in row.types)
+        ]
 
 
 def last(name: str) -> str:
@@ -98,7 +102,9 @@ def _ends(full: str, name: str) -> bool:
 
 
 def _row(raw: dict[str, Any]) -> Row:
-    spots = ("topic", "type", "queue", "qos", "callback", "latch", "period", "default", "variable", "message", "namespace")
+    spots = (
+        "topic", "type", "queue", "qos", "callback", "latch", "period", "default", "variable", "message", "namespace",
+    )  # fmt: skip
     fixed = {name: value if isinstance(value, list) else [value] for name, value in raw.items() if name in spots}
     return msgspec.convert({**raw, **fixed}, Row)
 

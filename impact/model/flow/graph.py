@@ -117,7 +117,8 @@ class Way(msgspec.Struct, frozen=True):
 
 class Publish(msgspec.Struct, frozen=True):
     """A publish statement. expression: what is published, as written. guards: outermost first, those of the functions
-    that lead to it included where there is but one way; `ways`: how many ways lead to it from a trigger, each in `by`."""
+    that lead to it included where there is but one way; `ways`: how many ways lead to it from a trigger, each in `by`. through:
+    the function of the code's own, called `publish` too, that is called here and holds the statement that sends."""
 
     node: str
     topic: str
@@ -132,6 +133,7 @@ class Publish(msgspec.Struct, frozen=True):
     ways: int = 1
     by: tuple[Way, ...] = ()
     reason: str = ""
+    through: str = ""
 
 
 class Timer(msgspec.Struct, frozen=True):
@@ -169,7 +171,7 @@ class Unresolved(msgspec.Struct, frozen=True):
 class Coverage(msgspec.Struct, frozen=True):
     """calls: of the frameworks; resolved: those of which all is known that they name (topic, type, callback,
     publisher). by_default: of the resolved, those whose name is a parameter's default. unread: files with spans that
-    did not parse."""
+    did not parse. wrappers: calls inside functions that stand for the framework's own; their callers are counted."""
 
     calls: int
     resolved: int
@@ -177,6 +179,7 @@ class Coverage(msgspec.Struct, frozen=True):
     files: int
     unread: tuple[str, ...] = ()
     unresolved: tuple[Unresolved, ...] = ()
+    wrappers: tuple[Unresolved, ...] = ()
 
 
 class Graph(msgspec.Struct, frozen=True):

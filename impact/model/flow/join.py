@@ -196,9 +196,11 @@ class Join:
                 for value in site.names:
                     endpoints.append(self._endpoint(site, value, node))
         for statement in self.sites.statements:
-            calls += 1
+            calls += not statement.through
             reason = statement.reason or next((site.names[0].reason for site in statement.sites if site.names[0].text is None), "")
-            if reason:
+            if statement.through:
+                pass  # counted where it sends
+            elif reason:
                 unresolved.append(Unresolved("publish", reason, *_place(statement.use), self.calls.receiver_of(statement.use)))
             else:
                 resolved += 1
@@ -221,6 +223,7 @@ class Join:
         coverage = Coverage(
             calls, resolved, by_default, len(self.code.sources), tuple(sorted(unread)),
             tuple(sorted(unresolved, key=lambda one: (one.path, one.line, one.what))),
+            tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_place(use)) for use in self.sites.wrapped),
         )  # fmt: skip
         return Graph(
             tuple(sorted(dict.fromkeys(nodes), key=lambda node: node.id)),
@@ -297,6 +300,7 @@ class Join:
             "path": use.fn.source.path, "line": use.call.line, "function": use.fn.name,
             "expression": statement.expression, "variable": self.calls.receiver_of(use), "guards": guards,
             "triggers": triggers, "ways": len(ways), "by": tuple(ways), "node": node.id if node else "",
+            "through": statement.through,
         }  # fmt: skip
         if not statement.sites:
             yield Publish(topic="", type=statement.type, reason=statement.reason, **common)

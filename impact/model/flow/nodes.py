@@ -61,7 +61,7 @@ class Reach:
                     if one.name in names:
                         continue
                     names.add(one.name)
-                    queue.extend(fn for fn in self.code.functions_of_class(one.name) if self._of_class(fn, one))
+                    queue.extend(self.code.functions_of(one))
                     for member in one.facts.members:
                         inner = self.code.class_of(self.code.meant_type(member.type, one.source, one.name).name, one.source, one.name) if member.type else None
                         if inner is not None:
@@ -76,12 +76,6 @@ class Reach:
             queue.extend(further)
             made.extend(cls for cls in objects if cls.name not in names)
         return functions, names
-
-    @staticmethod
-    def _of_class(fn: Fn, cls: Cls) -> bool:
-        return tail(fn.facts.owner) == tail(cls.name) and (
-            fn.source.package == cls.source.package or fn.source.path == cls.source.path
-        )
 
     def edges(self, fn: Fn) -> tuple[list[Fn], list[Cls]]:
         """Functions that a function may lead to, and classes of objects that it makes."""
@@ -125,7 +119,7 @@ def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
         for name, path in exported.get(package.package, ()):
             cls = _class(code, name, package.package)
             kind = _loaded_as(cls, code, kinds_of) if cls is not None else "plugin"
-            roots = tuple(code.functions_of_class(cls.name)) if cls is not None else ()
+            roots = tuple(code.functions_of(cls)) if cls is not None else ()
             place = (cls.source.path, cls.facts.line) if cls is not None else (path, 0)
             yield Program(package.package, kind, package.components.get(name, ""), name, roots, frozenset((path,)), *place)
         for name, where in package.scripts.items():

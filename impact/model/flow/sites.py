@@ -44,13 +44,15 @@ class Site(NamedTuple):
 
 
 class Statement(NamedTuple):
-    """A publish statement. sites: the publishers it may use; name: for frameworks that publish by name."""
+    """A publish statement. sites: the publishers it may use. through: the function of the code's own called `publish`
+    that it calls, which holds the statement that sends."""
 
     use: Use
     sites: tuple[Site, ...]
     type: str
     expression: str
     reason: str = ""
+    through: str = ""
 
 
 class TimerSite(NamedTuple):
@@ -99,6 +101,11 @@ class Sites:
             if use.row.does in _ROLES and not self.wraps(use.fn):
                 found.extend(self._endpoints(use))
         return found
+
+    @property
+    def wrapped(self) -> list[Use]:
+        """Uses inside wrappers of the framework's own functions."""
+        return [use for use in self.calls.uses if use.row.does in _ROLES and self.wraps(use.fn)]
 
     def wraps(self, fn: Fn) -> bool:
         """Whether a function stands for the framework's own of the same name: its callers are the sites."""
@@ -544,7 +551,35 @@ class Sites:
                 names = tuple(self.values.of(named, use.fn, use.call.line))
                 site = Site("publisher", use, names, shown(named), "", "*")
                 found.append(Statement(use, (site,), "*", shown(self.calls.argument(use, use.row.message))))
+        found.extend(self._through(found))
+        found.sort(key=lambda one: (one.use.fn.source.path, one.use.call.line, one.use.call.column))
         return found
+
+    def _through(self, direct: list[Statement]) -> Iterator[Statement]:
+        """Calls of the code's own methods that are called as the framework's, and publish."""
+        inside: dict[int, list[Statement]] = {}
+        for statement in direct:
+            inside.setdefault(id(statement.use.fn), []).append(statement)
+        names = {name for name, rows in self.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
+        for fn in self.code.functions:
+            for call in fn.facts.calls:
+                if tail(call.callee) not in names:
+                    continue
+                for target in self.code.targets(call.callee, fn):
+                    inner = inside.get(id(target)) or [
+                        statement
+                        for further in target.facts.calls
+                        for last in self.code.targets(further.callee, target)
+                        for statement in inside.get(id(last), ())
+                    ]
+                    if inner:
+                        sites = tuple(dict.fromkeys(site for statement in inner for site in statement.sites))
+                        types = {statement.type for statement in inner}
+                        use = Use(fn, inner[0].use.row, call)
+                        kind = types.pop() if len(types) == 1 else ""
+                        message = shown(call.arguments[0]) if call.arguments else ""
+                        yield Statement(use, sites, kind, message, "", target.name)
+                        break
 
     def _statement(self, use: Use) -> Statement | None:
         receiver = self.calls.receiver_of(use)
