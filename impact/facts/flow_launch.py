@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from .markup import Document, decode, scan
+from .markup import TOKEN, Document, Element, decode, scan, unescape
 from .place import Problem
 
 
@@ -371,8 +371,9 @@ def _launch_xml(data: bytes) -> LaunchFile:
     for element in document.elements:
         depth = depths[element.parent] + 1 if element.parent >= 0 else 0
         entity = _Entity(element.name.lower(), document.place(element.offset)[0])
-        entity.attributes = {a.name: a.value for a in reversed(element.attributes)}
-        entity.text = element.text
+        # XML's readers make blanks of line ends and tabs in values; the first of two attributes of a name counts.
+        entity.attributes = {a.name: _BLANK.sub(" ", a.value) for a in reversed(element.attributes)}
+        entity.text = _own_text(document, element) if element.text and entity.tag == "rosparam" else ""
         entities.append(entity)
         depths.append(depth)
         if depth == DEEPEST:
@@ -382,6 +383,19 @@ def _launch_xml(data: bytes) -> LaunchFile:
     reader = _Reader(generation)
     actions = reader.actions(entities[0].children)
     return LaunchFile("xml", generation, actions, (*problems, *reader.problems))
+
+
+_BLANK = re.compile(r"\r\n|[\r\n\t]")
+_COMMENT_OR_CDATA = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
+
+
+def _own_text(document: Document, element: Element) -> str:
+    """The text of an element without children as it stands, line ends around comments included: YAML needs them."""
+    opened = TOKEN.match(document.text, element.offset)
+    start = opened.end() if opened is not None else element.offset
+    end = document.text.find("</", start)
+    raw = document.text[start : end if end >= 0 else len(document.text)]
+    return unescape(_COMMENT_OR_CDATA.sub(lambda m: m[1] or "", raw))
 
 
 _ONLY_1 = re.compile(r"\$\((?:find|arg|optenv) ")
@@ -502,7 +516,8 @@ class _Reader:
             period = self.value(entity.attributes.get("period", ""))
             conditions = (*conditions, Condition("after", together([period, literal(" s")]), entity.line))
         if entity.tag == "rosparam" and entity.text:
-            attributes.append(("text", literal(entity.text)))
+            fill = "subst_value" in entity.attributes
+            attributes.append(("text", self.value(entity.text) if fill else literal(entity.text)))
         children = self.actions(entity.children, kind)
         return [Action(kind, entity.line, tuple(attributes), conditions, children)]
 
@@ -569,9 +584,6 @@ def _commas(values: list[Value]) -> Iterator[Value]:
         yield value
 
 
-_BLANKS = re.compile(r"\s+")
-
-
 def words(value: Value) -> list[Value]:
     """A command line as its words, split at the blanks of its literal pieces outside quotes; quotes are taken off."""
     found: list[Value] = []
@@ -630,7 +642,10 @@ _NOT_FINITE = re.compile(r"([-+]?)\.(?:inf|Inf|INF)\Z|\.(?:nan|NaN|NAN)\Z")
 
 
 def scalar(text: str) -> Any:
-    """What a plain scalar of YAML stands for: None, bool, int, float or str. Integers beyond 64 bits stay text."""
+    """What a plain scalar of YAML stands for: None, bool, int, float or str. Integers beyond 64 bits stay text.
+
+    `1e-4` is a float, as for rcl; PyYAML, which ROS 1 reads with, would ask for a dot.
+    """
     if text in _NULL:
         return None
     if text in _BOOLEAN:

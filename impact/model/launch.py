@@ -377,11 +377,16 @@ class _Evaluator:
             return self.value(node.body if self.value(node.test) else node.orelse)
         if isinstance(node, (ast.List, ast.Tuple)):
             return [self.value(element) for element in node.elts]
-        if isinstance(node, ast.Subscript) and not isinstance(node.slice, ast.Slice):
-            return self.value(node.value)[self.value(node.slice)]
+        if isinstance(node, ast.Subscript):
+            return self.value(node.value)[self.index(node.slice)]
         if isinstance(node, ast.Call) and not node.keywords:
             return self.call(node)
         raise _CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
+
+    def index(self, node: ast.expr) -> Any:
+        if not isinstance(node, ast.Slice):
+            return self.value(node)
+        return slice(*(None if bound is None else self.value(bound) for bound in (node.lower, node.upper, node.step)))
 
     def sum(self, node: ast.BinOp) -> Any:
         left, right = self.value(node.left), self.value(node.right)
@@ -870,14 +875,22 @@ class _Launch:
         return SettingFile(file, entries, at, conditions, True)
 
     def substituted(self, entry: Entry) -> Entry:
-        """An entry whose text holds substitutions, filled in where that can be done."""
-        if not isinstance(entry.value, str) or "$(" not in entry.value:
-            return entry
-        text = self.text(substitutions(entry.value, self.generation))
-        if text.value is None:
-            return entry
-        value = ros1_value(text.value) if self.generation == 1 else _yaml_value(text.value)
-        return Entry(entry.path, value, entry.line)
+        """An entry whose keys or values hold substitutions, filled in where that can be done."""
+        path = tuple(self.filled(part) if "$(" in part else part for part in entry.path)
+        return Entry(path, self.filled_value(entry.value), entry.line)
+
+    def filled(self, text: str) -> str:
+        made = self.text(substitutions(text, self.generation))
+        return text if made.value is None else made.value
+
+    def filled_value(self, value: Any) -> Any:
+        if isinstance(value, str) and "$(" in value:
+            return _yaml_value(self.filled(value))
+        if isinstance(value, list):
+            return [self.filled_value(item) for item in value]
+        if isinstance(value, dict):
+            return {self.filled(key): self.filled_value(item) for key, item in value.items()}
+        return value
 
     def entries(self, file: str, line: int) -> tuple[Entry, ...] | None:
         """The entries of a parameter file, changed as it is before it is read; None where it cannot be had."""
@@ -949,10 +962,12 @@ class _Launch:
             entries = self.entries(text.value, action.line) if text.value is not None else None
             assumed = text.assumed
         else:
-            entries, assumed = parameters(plain(content) or "").entries, ()
+            # What is filled in may be any piece of YAML, so that it comes before reading.
+            text = self.text(content or literal(""))
+            entries, assumed, fill = parameters(text.shown).entries, text.assumed, False
         for entry in entries or ():
             filled = self.substituted(entry) if fill else entry
-            key = "/".join(part.strip("/") for part in (full.value or "/", *entry.path) if part.strip("/"))
+            key = "/".join(part.strip("/") for part in (full.value or "/", *filled.path) if part.strip("/"))
             self.put(f"/{key}", filled.value, known(str(filled.value), assumed), action.line)
 
     # Nodes
