@@ -13,7 +13,7 @@ from .guard_terms import Piece, Reading, Term, join, names_in, negation, rebuilt
 
 Language = Literal["cpp", "python"]
 _LOCK = re.compile(r"lock|mutex|condition|semaphore", re.IGNORECASE)
-_CAUGHT_AS = re.compile(r"^except\b\s*|\s+as\s+\w+$|\s*[&*]\s*\w*$|\bconst\b\s*")
+_CAUGHT = re.compile(r"(?:const\s+)?([\w:]+(?:<.*>)?)(?:\s+const)?(?:\s*[&*]+\s*\w*|\s+(?!as\b)\w+)$")
 
 
 def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
@@ -87,13 +87,11 @@ def read(language: Language, kind: str, text: str) -> Reading:
 
 
 def _caught(text: str) -> Term:
-    inside = re.sub(r"^catch\s*\((.*)\)$", r"\1", text.strip())
-    while True:
-        shorter = _CAUGHT_AS.sub("", inside).strip()
-        if shorter == inside:
-            break
-        inside = shorter
-    return Term("opaque", f"catch {' '.join(inside.split())}")
+    """What is caught, without the variable it is called."""
+    inside = re.sub(r"^catch\s*\((.*)\)$|^except\b", r"\1", text.strip()).strip()
+    match = _CAUGHT.match(inside)
+    named = match[1] if match else re.sub(r"\s+as\s+\w+$", "", inside)
+    return Term("opaque", f"catch {' '.join(named.split())}")
 
 
 def case(language: Language, text: str) -> Reading:

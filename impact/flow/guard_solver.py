@@ -57,8 +57,8 @@ class Solver:
     # Questions
 
     def relation(self, old: Term, new: Term) -> tuple[bool | None, bool | None, bool]:
-        """Whether new implies old, and old implies new (None: true of some types only), and whether both can hold at
-        all. Raises Undecided."""
+        """Whether new implies old, and old implies new (None: true of some types only), and whether that is so of
+        conditions that can hold at all. Raises Undecided."""
         try:
             return self._relation(old, new)
         except (self.z3.Z3Exception, RecursionError, ArithmeticError) as error:
@@ -69,11 +69,13 @@ class Solver:
             self.look(term, False)
         before, after = self.truth(old), self.truth(new)
         self.solver.add(*self.known())
-        possible = self.holds(before) and self.holds(after)
         forward = not self.holds(self.z3.And(after, self.z3.Not(before)))
         backward = not self.holds(self.z3.And(before, self.z3.Not(after)))
-        if forward == backward:
-            return forward, backward, possible
+        if not forward and not backward:
+            return False, False, True
+        possible = self.holds(before) and self.holds(after)
+        if forward and backward:
+            return True, True, possible
         self.solver.add(*self.supposed())
         one_sided = self.z3.And(before, self.z3.Not(after)) if forward else self.z3.And(after, self.z3.Not(before))
         if self.holds(one_sided):

@@ -17,6 +17,7 @@ from ..model.flow.graph import GuardAt
 from .guard_reading import Language, language_of, pieces_of, this_left_out
 from .guard_solver import Solver, Undecided
 from .guard_terms import FALSE, TRUE, Piece, Term, join
+from .guard_words import words_of_ways
 
 Kind = Literal["tightened", "widened", "equivalent", "changed"]
 Guards = Sequence[GuardAt]
@@ -71,6 +72,43 @@ def compare_ways(
     if forward and backward is False:
         return "tightened"
     return "widened" if backward and forward is False else "changed"
+
+
+def explain(
+    old: Guards,
+    new: Guards,
+    renames: Mapping[str, str] = _NOTHING,
+    language: Language | None = None,
+    types: Mapping[str, str] = _NOTHING,
+    milliseconds: int = MILLISECONDS,
+) -> str:
+    """One clause that tells people what was added or removed, with code in backticks: "only when `a` too", "no longer
+    asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same. Arguments as of compare()."""
+    return explain_ways((old,), (new,), renames, language, types, milliseconds)
+
+
+def explain_ways(
+    old: Ways,
+    new: Ways,
+    renames: Mapping[str, str] = _NOTHING,
+    language: Language | None = None,
+    types: Mapping[str, str] = _NOTHING,
+    milliseconds: int = MILLISECONDS,
+) -> str:
+    """As explain(), for a statement that several ways lead to."""
+    if compare_ways(old, new, renames, language, types, milliseconds) == "equivalent":
+        return ""
+    language = language or language_of((*old, *new))
+    before, after = _sides(old, new, renames, language)
+
+    def asked(pieces: Sequence[Piece], piece: Piece) -> bool:
+        try:
+            forward, _, possible = Solver(language, types, milliseconds).relation(piece.term, _all_of(pieces))
+        except Undecided:
+            return False
+        return forward is True and possible
+
+    return words_of_ways(before, after, asked)
 
 
 def impossible(guards: Guards, language: Language | None = None, milliseconds: int = MILLISECONDS) -> bool:
