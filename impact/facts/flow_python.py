@@ -76,17 +76,10 @@ class Statements(Expressions):
             except RecursionError:
                 self.unread.append((body.line, body.end))
                 self.problems.append(Problem(body.line, "nested too deeply"))
-        for body, _ in self.waiting:
-            self.hand_over(body)
-
-    @staticmethod
-    def hand_over(body: Body) -> None:
-        """Tells the functions around one which of their variables it captures."""
-        inner, outer = body, body.outer
-        while outer is not None and body.captured:
-            for name in sorted(body.captured & outer.locals):
-                outer.captures(name, inner)
-            inner, outer = outer, outer.outer
+        for body in self.bodies:
+            if body.outer is not None:
+                for name in sorted(body.captured):
+                    body.outer.captures(name, body)
 
     # Blocks
 
@@ -326,12 +319,16 @@ class Statements(Expressions):
             value = self.unpacked(first, node.value)
         else:
             to = self.spelt(first)
-            local = first.__class__ is ast.Name and not self.in_class
+            local = self.is_local(first)
             use = "read" if local or to.partition(".")[0] in self.locals else "escape"
             value = self.value(node.value, use, "" if local else to, target=to)
         for place, target in enumerate(targets):
             self.bind(target, value if place < MOST_TARGETS else ANY, node.lineno)
         return STAYS
+
+    def is_local(self, target: ast.expr) -> bool:
+        """Whether a target is a variable of the function itself."""
+        return target.__class__ is ast.Name and not self.in_class and target.id not in self.body.outside  # type: ignore[attr-defined]
 
     def unpacked(self, target, value: ast.expr) -> Expr:
         """The value of `a, b = ...`, in which each part knows what it is kept in."""
@@ -346,7 +343,7 @@ class Statements(Expressions):
         target = node.target
         if node.value is not None:
             to = self.spelt(target)
-            local = target.__class__ is ast.Name and not self.in_class
+            local = self.is_local(target)
             value = self.value(node.value, "read" if local else "escape", "" if local else to, target=to)
             self.bind(target, value, node.lineno, type)
         elif target.__class__ is ast.Name:
