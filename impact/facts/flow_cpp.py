@@ -13,7 +13,8 @@ from tree_sitter import Node, Parser
 
 from .cpp import _exports, scan
 from .flow import Alias, Assignment, Class, Expr, FlowFile, Member
-from .flow_cpp_body import (
+from .flow_cpp_clean import Cleaned, cleaned, cleaned_further
+from .flow_cpp_grammar import (
     ARGUMENTS,
     BRACES,
     COMPOUND,
@@ -22,23 +23,21 @@ from .flow_cpp_body import (
     EQUALS,
     ERROR,
     FUNCTION_DECLARATOR,
+    IDENTIFIER,
     INIT_DECLARATOR,
     LANGUAGE,
     NAMES,
     PARAMETERS,
     POINTER_DECLARATOR,
-    PUNCTUATION,
-    READ,
     REFERENCE,
     TRAILING_RETURN,
     TYPES,
-    bare,
-    flat,
     grammatical,
     kind,
+    listed_in,
 )
-from .flow_cpp_clean import cleaned
 from .flow_cpp_statements import FIELD_INITIALIZERS, PREPROC, Statements
+from .flow_cpp_values import READ, bare, flat
 from .place import Problem
 
 PARSER = Parser(LANGUAGE)
@@ -48,17 +47,19 @@ EXPORTING = ("PLUGINLIB_", "RCLCPP_COMPONENTS_", "CLASS_LOADER_REGISTER")
 def extract(data: bytes) -> FlowFile:
     """The flow of one C or C++ file. Never raises; what did not parse is in `unread`, what went wrong in `problems`."""
     source = cleaned(data)
-    tree = PARSER.parse(source.source)
-    reader = _File(source)
-    root = tree.root_node
-    try:
-        reader.scope(root.children, "", "", ())
-    except RecursionError:
-        reader.problems.append(Problem(1, "nested too deeply to be read in full"))
+    root = PARSER.parse(source.source).root_node
+    wrong = errors(root)
+    reader = None if wrong else read(source, root)
+    if reader is None or reader.misread:
+        further = cleaned_further(data, source)
+        if further.source != source.source:
+            source = further
+            root = PARSER.parse(source.source).root_node
+            wrong = errors(root)
+            reader = None
+    if reader is None:
+        reader = read(source, root)
     reader.leave_outside()
-    unread = set(source.hidden)
-    if root.has_error:
-        unread.update(errors(root, source.starts, reader.line))
     exports: tuple[str, ...] = ()
     if any(word in source.text for word in EXPORTING):
         exports = _exports(scan(data).visible)
@@ -69,15 +70,25 @@ def extract(data: bytes) -> FlowFile:
         tuple(reader.functions),
         tuple(reader.constants),
         exports,
-        tuple(sorted(unread)),
+        tuple(sorted(wrong.union(source.hidden))),
         tuple(reader.problems),
     )
 
 
-def errors(root: Node, starts: list[int], line) -> set[tuple[int, int]]:
+def read(source: Cleaned, root: Node) -> _File:
+    """A source as parsed, read."""
+    reader = _File(source)
+    try:
+        reader.scope(root.children, "", "", ())
+    except RecursionError:
+        reader.problems.append(Problem(1, "nested too deeply to be read in full"))
+    return reader
+
+
+def errors(root: Node) -> set[tuple[int, int]]:
     """Lines, first and last, of what the grammar did not understand."""
     found: set[tuple[int, int]] = set()
-    waiting = [root]
+    waiting = [root] if root.has_error else []
     while waiting:
         node = waiting.pop()
         if node.kind_id == ERROR:
@@ -97,6 +108,7 @@ class _File(Statements):
         self.constants: list[Member] = []
         self.problems: list[Problem] = []
         self.namespaces: set[str] = set()
+        self.misread = False
         self.outside = {"": self.state()}
         self.conditions: tuple[tuple[str, int], ...] = ()
 
@@ -118,7 +130,7 @@ class _File(Statements):
     # Scopes
 
     def scope(self, children: list[Node], name: str, owner: str, conditions: tuple[tuple[str, int], ...]) -> None:
-        """What stands in a file, namespace or class. name: the scopes so far; owner: the class, empty outside of any."""
+        """What stands in a file, namespace or class. name: the scopes so far; owner: the class, empty for none."""
         for child in children:
             read = SCOPED.get(child.kind_id)
             if read is not None:
@@ -258,7 +270,7 @@ class _File(Statements):
                 given.kind_id == BRACES and given.prev_sibling is not None and given.prev_sibling.kind_id != EQUALS
             )
             if direct:
-                inner = [part for part in given.children if part.kind_id not in PUNCTUATION]
+                inner = listed_in(given)
                 if len(inner) == 1:
                     value = self.value(inner[0], base, READ, target)
                 else:
@@ -358,7 +370,9 @@ class _File(Statements):
             mark = declarator.children[0]
             marks += self.text[mark.start_byte : mark.end_byte]
             declarator = next((part for part in declarator.children if part.kind_id in DECLARATORS), None)
-        if declarator is None:
+        if declarator is None or (declarator.kind_id == IDENTIFIER and children[0].kind_id in DECLARED_TYPES):
+            # `class MACRO Name { ... }` is taken for a function that gives a `class MACRO`.
+            self.misread = True
             self.go_outside(owner)
             for child in children:
                 if child.kind_id == COMPOUND:
@@ -418,7 +432,7 @@ class _File(Statements):
             parts = grammatical(child)
             target = f"this.{bare(self.said(parts[0]))}"
             given = parts[-1]
-            inner = [part for part in given.children if part.kind_id not in PUNCTUATION]
+            inner = listed_in(given)
             if len(inner) == 1:
                 value = self.value(inner[0], guard, ("pass", target, 0), target)
             else:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from itertools import accumulate, pairwise
+from itertools import accumulate, count, pairwise
+from operator import add
 from typing import NamedTuple
 
 from .cpp import _decode, scan
@@ -31,26 +32,25 @@ class Cleaned(NamedTuple):
 
 
 _NOT_ASCII = re.compile(r"[^\x01-\x7f]")
-_VISIBILITY_ENDS = ("_PUBLIC", "_EXPORT", "_LOCAL", "_API", "_DECL", "_VISIBILITY", "_IMPORT", "_HIDDEN", "_TYPE")
-_VISIBILITY = re.compile(
-    r"\b[A-Z][A-Z0-9_]*_(?:PUBLIC_TYPE|PUBLIC|EXPORTS?|LOCAL|API|DECL|VISIBILITY|IMPORT|HIDDEN)\b"
-    r"(?=\s+(?:[A-Za-z_~]|::|\[\[))"
-)
+_VISIBILITY_ENDS = ("_PUBLIC", "_EXPORT", "_API", "_LOCAL")
+_VISIBILITY = re.compile(r"_(?:PUBLIC|EXPORTS?|LOCAL|API)(?:_TYPE)?\b(?=\s+(?:[A-Za-z_~]|::|\[\[))")
+_LAST_WORD = re.compile(r"[A-Z][A-Z0-9_]*\Z")
 _CLASS_MACRO = re.compile(
     r"\b(?:class|struct)\s+(?P<macro>[A-Z][A-Z0-9_]{5,}(?:\([^()\n]*\))?)(?=\s+\w+\s*(?:final\s*)?[:{])"
 )
 # Words that stand where the grammar knows none; gone, what is around them is plain C++.
 _BARE = (
     "Q_OBJECT", "Q_GADGET", "Q_NAMESPACE", "Q_INVOKABLE", "Q_SLOT", "Q_SIGNAL", "Q_DECL_OVERRIDE", "Q_EMIT",
-    "EIGEN_MAKE_ALIGNED_OPERATOR_NEW", "EIGEN_STRONG_INLINE", "EIGEN_DEVICE_FUNC", "BOOST_FORCEINLINE", "ROS_DEPRECATED",
-    "ROS_FORCE_INLINE", "PCL_MAKE_ALIGNED_OPERATOR_NEW", "TF2_PUBLIC", "BOOST_NOEXCEPT",
+    "EIGEN_MAKE_ALIGNED_OPERATOR_NEW", "EIGEN_STRONG_INLINE", "EIGEN_DEVICE_FUNC", "BOOST_FORCEINLINE",
+    "ROS_DEPRECATED", "ROS_FORCE_INLINE", "PCL_MAKE_ALIGNED_OPERATOR_NEW", "TF2_PUBLIC", "BOOST_NOEXCEPT",
     "__BEGIN_DECLS", "__END_DECLS", "__global__", "__device__", "__host__",
 )  # fmt: skip
+_RARE_VISIBILITY = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:DECL|VISIBILITY|IMPORT|HIDDEN)\b(?=\s+(?:[A-Za-z_~]|::|\[\[))")
 _BARE_WORD = re.compile(r"\b(?:" + "|".join(_BARE) + r")\b(?!\s*\()")
 _FORMATS = re.compile(r"\bPRI[diouxX](?:LEAST|FAST)?(?:8|16|32|64|MAX|PTR)\b")
 _SLOTS = re.compile(r"\b((?:public|protected|private)\s+)(slots|Q_SLOTS)(?=\s*:)")
 _SIGNALS = re.compile(r"^([ \t]*)(signals|Q_SIGNALS)([ \t]*:)(?!:)", re.MULTILINE)
-_EACH_NAMES = ("BOOST_FOREACH", "BOOST_REVERSE_FOREACH", "Q_FOREACH", "foreach")
+_EACH_NAMES = ("_FOREACH", "foreach")
 _EACH = re.compile(r"\b(?:BOOST_FOREACH|BOOST_REVERSE_FOREACH|Q_FOREACH|foreach)(?=\s*\()")
 _BETWEEN = re.compile(r"[(),<>;{}]")
 
@@ -62,24 +62,34 @@ def cleaned(data: bytes) -> Cleaned:
     if not source.isascii() or "\0" in source:
         source = _NOT_ASCII.sub(_stand_in, source)
     if any(end in source for end in _VISIBILITY_ENDS):
-        source = _VISIBILITY.sub(_unless_directive, source)
-    if any(word in source for word in _BARE):
-        source = _BARE_WORD.sub(_unless_directive, source)
-    source = _CLASS_MACRO.sub(_blank_macro, source)
-    if "PRI" in source:
-        source = _FORMATS.sub(_blank, source)
-    if "slots" in source or "Q_SLOTS" in source:
-        source = _SLOTS.sub(lambda match: match[1] + " " * len(match[2]), source)
-    if "signals" in source or "Q_SIGNALS" in source:
-        source = _SIGNALS.sub(_as_public, source)
+        source = _without_visibility(source)
     if any(name in source for name in _EACH_NAMES):
         source = _each(source)
-    starts = [0, *accumulate(len(line) + 1 for line in text.split("\n"))]
-    regions: tuple[Region, ...] = ()
-    hidden: tuple[tuple[int, int], ...] = ()
-    if source.count("#if") > 1 or source.count("# if"):
-        source, regions, hidden = _flattened(data, text, source, starts)
-    return Cleaned(text, source.encode(), starts, regions, hidden)
+    return Cleaned(text, source.encode(), [0, *map(add, accumulate(map(len, source.split("\n"))), count(1))])
+
+
+def cleaned_further(data: bytes, before: Cleaned) -> Cleaned:
+    """The source of a file that did not parse as it was: what is dear to look for is blanked too."""
+    source = before.source.decode()
+    for words, pattern, stand_in in _FURTHER:
+        if any(word in source for word in words):
+            source = pattern.sub(stand_in, source)
+    source, regions, hidden = _flattened(data, before.text, source, before.starts)
+    return Cleaned(before.text, source.encode(), before.starts, regions, hidden)
+
+
+def _without_visibility(source: str) -> str:
+    """`class FOO_PUBLIC A` as `class            A`. Searched from the end of the word, which is the rarer part."""
+    pieces: list[str] = []
+    position = 0
+    for match in _VISIBILITY.finditer(source):
+        line = source.rfind("\n", 0, match.start()) + 1
+        word = _LAST_WORD.search(source, max(line, position), match.start())
+        if word is None or source[line : word.start()].lstrip()[:1] == "#":
+            continue
+        pieces += [source[position : word.start()], " " * (match.end() - word.start())]
+        position = match.end()
+    return "".join(pieces) + source[position:]
 
 
 def _stand_in(match: re.Match[str]) -> str:
@@ -94,6 +104,10 @@ def _blank(match: re.Match[str]) -> str:
 def _blank_macro(match: re.Match[str]) -> str:
     start = match.start()
     return match[0][: match.start("macro") - start] + " " * (match.end() - match.start("macro"))
+
+
+def _without_slots(match: re.Match[str]) -> str:
+    return match[1] + " " * len(match[2])
 
 
 def _as_public(match: re.Match[str]) -> str:
@@ -142,6 +156,14 @@ def _each(source: str) -> str:
     return "".join(pieces) + source[position:]
 
 
+_FURTHER = (
+    (("class ", "struct "), _CLASS_MACRO, _blank_macro),
+    (("_DECL", "_VISIBILITY", "_IMPORT", "_HIDDEN"), _RARE_VISIBILITY, _unless_directive),
+    (_BARE, _BARE_WORD, _unless_directive),
+    (("PRI",), _FORMATS, _blank),
+    (("slots", "Q_SLOTS"), _SLOTS, _without_slots),
+    (("signals", "Q_SIGNALS"), _SIGNALS, _as_public),
+)
 _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(if|ifdef|ifndef|elif|else|endif)\b((?:[^\n]*\\\n)*[^\n]*)", re.MULTILINE)
 _BRACES = re.compile(r"[{}()]")
 _STARTS_INSIDE = re.compile(r"\s*(?:else\b|&&|\|\||<<|[,.?)+*/=]|:(?!:)|->|-)")
@@ -155,6 +177,8 @@ def _flattened(
 ) -> tuple[str, tuple[Region, ...], tuple[tuple[int, int], ...]]:
     """The source without those #if blocks that cut through a statement: of each, the first branch is kept and becomes
     a Region, the others are left out."""
+    if "#if" not in source and "# if" not in source:
+        return source, (), ()
     visible = scan(data).visible
     if len(visible) != len(text):
         return source, (), ()

@@ -14,7 +14,8 @@ from typing import NamedTuple
 from tree_sitter import Node
 
 from .flow import Assignment, Expr
-from .flow_cpp_body import (
+from .flow_cpp_declarations import Declarations
+from .flow_cpp_grammar import (
     ASSERTS,
     CALL,
     COMMENT,
@@ -23,18 +24,14 @@ from .flow_cpp_body import (
     DECLARATION,
     DECLARED_TYPES,
     ERROR,
-    ESCAPE,
     FUNCTION_DECLARATOR,
     NEVER_RETURNS,
     PARAMETERS,
-    READ,
-    RETURN,
-    VALUES,
-    Body,
-    flat,
     grammatical,
     kind,
+    listed_in,
 )
+from .flow_cpp_values import ESCAPE, READ, RETURN, VALUES, flat
 
 
 class Condition(NamedTuple):
@@ -93,7 +90,7 @@ def grouped(text: str) -> str:
     return f"({text})" if _LOOSE.search(text) else text
 
 
-class Statements(Body):
+class Statements(Declarations):
     """The reader of statements."""
 
     def run(self, body: Node, guard: int = -1) -> None:
@@ -124,7 +121,7 @@ class Statements(Body):
         return guard
 
     def block(self, node: Node, guard: int) -> Leaving:
-        return self.sequence(node.children, guard)
+        return self.sequence(node.named_children, guard)
 
     def sequence(self, children: list[Node], guard: int) -> Leaving:
         """Statements one after the other."""
@@ -132,9 +129,10 @@ class Statements(Body):
         ended = STAYS
         conditions: tuple[Condition, ...] = ()
         headed: Node | None = None
+        regions = self.regions
         for child in children:
             number = child.kind_id
-            if number == COMMENT or not child.is_named:
+            if number == COMMENT:
                 continue
             if headed is not None:
                 outer = self.guard("macro", self.said(headed), self.line(headed), guard)
@@ -148,7 +146,11 @@ class Statements(Body):
                     continue
             elif number == LABELED:
                 guard, conditions, ended = base, (), STAYS
-            leaving = self.statement(child, guard)
+            if regions:
+                leaving = self.statement(child, guard)
+            else:
+                read = STATEMENTS.get(number)
+                leaving = self.statement(child, guard) if read is None else read(self, child, guard)
             if leaving == STAYS or ended:
                 continue
             if not isinstance(leaving, tuple):
@@ -174,14 +176,14 @@ class Statements(Body):
 
     def condition(self, node: Node, guard: int) -> str:
         """Reads the condition in parentheses of an if, while or switch; gives its text."""
-        children = [child for child in node.children if child.is_named and child.kind_id != COMMENT]
+        children = listed_in(node)
         for child in children:
             if child.kind_id == INIT_STATEMENT:
                 for part in child.children:
                     if part.is_named:
                         self.statement(part, guard)
             else:
-                self.value(child, guard, READ)
+                self.value(child, guard, READ, None)
         if not children:
             return ""
         return self.outer_text(children[-1])
@@ -203,7 +205,7 @@ class Statements(Body):
                 elif asked is not None and child.is_named and number != COMMENT:
                     then = child
             if asked is None:
-                return self.sequence(node.children, guard)
+                return self.sequence(node.named_children, guard)
             line = self.line(node)
             text = self.condition(asked, guard)
             leaving = self.statement(then, self.guard("if", text, line, guard)) if then is not None else STAYS
@@ -276,9 +278,9 @@ class Statements(Body):
                 self.statement(child, guard)
                 semicolons += 1
             elif semicolons == 0:
-                self.value(child, guard)
+                self.value(child, guard, READ, None)
             elif semicolons == 1:
-                self.value(child, guard)
+                self.value(child, guard, READ, None)
                 text = self.outer_text(child)
             else:
                 update.append(child)
@@ -286,7 +288,7 @@ class Statements(Body):
         if body is not None:
             self.statement(body, inner)
         for child in update:
-            self.value(child, inner)
+            self.value(child, inner, READ, None)
         return STAYS
 
     def range_for(self, node: Node, guard: int) -> Leaving:
@@ -295,7 +297,7 @@ class Statements(Body):
         walked = node.child_by_field_name("right")
         body = node.child_by_field_name("body")
         if declarator is None or walked is None or body is None:
-            return self.sequence(children, guard)
+            return self.sequence(node.named_children, guard)
         container = self.value(walked, guard, READ)
         name, marks = self.declared(declarator)
         head_end = next((child.start_byte for child in children if child.kind_id == RIGHT_ROUND), walked.end_byte)
@@ -317,7 +319,7 @@ class Statements(Body):
         body = node.child_by_field_name("body")
         asked = node.child_by_field_name("condition")
         if body is None or asked is None:
-            return self.sequence(node.children, guard)
+            return self.sequence(node.named_children, guard)
         text = self.outer_text(asked)
         inner = self.guard("do", text, self.line(node), guard)
         leaving = self.statement(body, inner)
@@ -331,7 +333,7 @@ class Statements(Body):
         asked = next((child for child in node.children if child.kind_id == CONDITION), None)
         body = node.child_by_field_name("body")
         if asked is None or body is None:
-            return self.sequence(node.children, guard)
+            return self.sequence(node.named_children, guard)
         subject = self.condition(asked, guard)
         line = self.line(node)
         cases = list(self.cases(body))
@@ -473,22 +475,24 @@ class Statements(Body):
 
     def expression(self, node: Node, guard: int) -> Leaving:
         child = node.children[0]
-        if child.kind_id == COMMENT:
+        number = child.kind_id
+        if number == COMMENT:
             child = next((part for part in node.children if part.kind_id != COMMENT), child)
-        value = self.value(child, guard, READ)
-        if child.kind_id == CALL:
+            number = child.kind_id
+        value = VALUES[number](self, child, guard, READ, "")
+        if number == CALL:
             if value.kind == "call":
                 if value.text in NEVER_RETURNS:
                     return JUMPS
                 if value.text in ASSERTS and value.parts:
                     arguments = child.children[-1].children
                     return (Condition("if", self.outer_text(arguments[1]), self.line(node)),)
-        elif child.kind_id == THROW:
+        elif number == THROW:
             return JUMPS
         return STAYS
 
     def labeled(self, node: Node, guard: int) -> Leaving:
-        return self.sequence(node.children[1:], guard)
+        return self.sequence(node.named_children[1:], guard)
 
     def macro_block(self, node: Node, guard: int) -> Leaving:
         """`NAME(...) { ... }` inside a function, which the grammar takes for a function's definition."""
@@ -496,7 +500,7 @@ class Statements(Body):
         body = next((child for child in children if child.kind_id == COMPOUND), None)
         head = next((child for child in children if child.kind_id == FUNCTION_DECLARATOR), None)
         if body is None or head is None:
-            return self.sequence(children, guard)
+            return self.sequence(node.named_children, guard)
         known = set(self.known)
         self.parameters(next((part for part in head.children if part.kind_id == PARAMETERS), None), guard)
         text = flat(self.text[node.start_byte : body.start_byte])
