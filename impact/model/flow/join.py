@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from msgspec import structs
+
 from ...facts.flow import FlowFile, Guard
+from ..launch import Launched, Started
 from ..names_ros import NameRefused, canonical, ros1_name, ros2_name
 from . import nodes as programs_of
 from .calls import Calls, Use
@@ -28,6 +31,7 @@ from .graph import (
 )
 from .nodes import Built, Program, Reach
 from .qos import qos_of
+from .started import Instance, instances
 from .sites import Site, Sites, Statement
 from .types import Type
 from .values import Value, Values
@@ -43,12 +47,19 @@ _ROS2 = frozenset(("rclcpp", "rclpy", "nav2"))
 
 
 class Running(NamedTuple):
-    """A program with the node it is, and what of the code it reaches. names: of nodes that its code names."""
+    """A program with the node it is, and what of the code it reaches. instance: how a launch starts it; values: what
+    expressions are worth there."""
 
     program: Program
     node: Node
     functions: set[int]
     classes: set[str]
+    values: Values
+    instance: Instance | None = None
+
+
+Owner = Running | Node | None
+"""What runs a piece of code: a program, a library, or nothing that is known."""
 
 
 class Join:
@@ -86,8 +97,50 @@ class Join:
                 cls = next((c for c in self.code.classes.get(tail(program.plugin), ()) if c.source.path == program.path), None)
                 functions, classes = self.reach.of(program.roots, [cls] if cls is not None else [])
             named = [use for use in names.values() if id(use.fn) in functions]
-            found.append(Running(program, self._node(program, named), functions, classes))
+            found.append(Running(program, self._node(program, named), functions, classes, self.values))
         return found
+
+    def started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
+        """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
+        programs = self.running()
+        found: list[Running] = []
+        missing: list[Unresolved] = []
+        for start in launch.started:
+            at = (f"{start.at.package}/{start.at.path}", start.at.line)
+            if start.kind == "process":
+                continue
+            what = start.plugin.value or start.executable.value
+            if what is None:
+                shown = start.plugin.shown or start.executable.shown
+                reasons = "; ".join((*start.executable.reasons, *start.plugin.reasons))
+                missing.append(Unresolved("started node", reasons or "its executable is not known", *at, shown))
+                continue
+            fitting = [one for one in programs if self._starts(one.program, start)]
+            if not fitting:
+                reason = f"no code of `{start.package.shown}` here is `{what}`"
+                if start.kind != "container":
+                    missing.append(Unresolved("started node", reason, *at, what))
+                continue
+            one = fitting[0]
+            instance = instances(launch, one.node.name.rpartition("/")[2], start)
+            node = structs.replace(
+                one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
+            )  # fmt: skip
+            values = self.values.under(instance.settings) if instance.settings else self.values
+            found.append(one._replace(node=node, instance=instance, values=values))
+        return found, missing
+
+    @staticmethod
+    def _starts(program: Program, start: Started) -> bool:
+        if start.package.value not in (None, program.package):
+            return False
+        if start.plugin.value:
+            wanted = start.plugin.value.replace("/", "::")
+            return program.plugin == wanted or tail(program.plugin) == tail(wanted)
+        executable = start.executable.value or ""
+        if program.executable:
+            return executable in (program.executable, program.executable.removesuffix(".py"))
+        return bool(program.plugin) and executable == _snake(tail(program.plugin))
 
     def _kinds(self, cls) -> frozenset[str]:
         return self.calls.kinds_of(Type(cls.name), next(iter(self.code.functions_of_class(cls.name)), _nobody(cls.source)))
@@ -159,20 +212,29 @@ class Join:
 
     # The graph
 
-    def graph(self, root: str = "", rev: str = "", unread: Iterable[str] = ()) -> Graph:
-        """The graph of all programs; code that none of them runs belongs to `library` nodes, or to none."""
-        running = self.running()
+    def graph(
+        self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None
+    ) -> Graph:
+        """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
+        `library` nodes, or to none."""
+        missing: list[Unresolved] = []
+        if launch is None:
+            running = self.running()
+        else:
+            running, missing = self.started(launch)
         endpoints: list[Endpoint] = []
         publishes: list[Publish] = []
         timers: list[Timer] = []
         parameters: list[ParameterUse] = []
-        unresolved: list[Unresolved] = []
+        unresolved: list[Unresolved] = list(missing)
         calls = resolved = by_default = 0
         libraries: dict[str, Node] = {}
         used: set[str] = set()
 
-        def owners(use: Use) -> list[Running | Node | None]:
-            found: list[Running | Node | None] = [one for one in running if id(use.fn) in one.functions]
+        def owners(use: Use) -> list[Owner]:
+            found: list[Owner] = [one for one in running if id(use.fn) in one.functions]
+            if launch is not None:
+                return found
             if not found:
                 found = [one for one in running if use.fn.source.path in one.program.files]
             if not found:
@@ -181,21 +243,27 @@ class Join:
             return found
 
         for site in self.sites.endpoints:
-            missing = self._missing(site)
+            those = owners(site.use)
+            if launch is not None and not those:
+                continue
+            lacking = self._missing(site)
             if not site.implied:
                 calls += 1
-                if missing:
-                    unresolved.append(Unresolved(*missing, *_place(site.use), site.written))
+                if lacking:
+                    unresolved.append(Unresolved(*lacking, *_place(site.use), site.written))
                 else:
                     resolved += 1
                     by_default += all(value.how == "default" for value in site.names)
-            for owner in owners(site.use):
+            for owner in those:
                 node = owner.node if isinstance(owner, Running) else owner
                 if node is not None:
                     used.add(node.id)
-                for value in site.names:
-                    endpoints.append(self._endpoint(site, value, node))
+                for value in self._names(site, owner):
+                    endpoints.append(self._endpoint(site, value, owner))
         for statement in self.sites.statements:
+            those = owners(statement.use)
+            if launch is not None and not those:
+                continue
             calls += not statement.through
             reason = statement.reason or next((site.names[0].reason for site in statement.sites if site.names[0].text is None), "")
             if statement.through:
@@ -205,11 +273,11 @@ class Join:
             else:
                 resolved += 1
                 by_default += all(value.how == "default" for site in statement.sites for value in site.names)
-            for owner in owners(statement.use):
+            for owner in those:
                 node = owner.node if isinstance(owner, Running) else owner
                 if node is not None:
                     used.add(node.id)
-                publishes.extend(self._publishes(statement, node, owner.functions if isinstance(owner, Running) else None))
+                publishes.extend(self._publishes(statement, owner))
         for timer in self.sites.timers:
             for owner in owners(timer.use):
                 node = owner.node if isinstance(owner, Running) else owner
@@ -218,8 +286,7 @@ class Join:
         for use in self.calls.uses:
             if use.row.does == "parameter":
                 parameters.extend(self._parameters(use, owners(use)))
-        nodes = [one.node for one in running if one.node.id in used or one.program.kind != "plugin"]
-        nodes = [node for node in nodes if node.id in used] + [node for node in libraries.values() if node.id in used]
+        nodes = [one.node for one in running if one.node.id in used or launch is not None] + [node for node in libraries.values() if node.id in used]
         coverage = Coverage(
             calls, resolved, by_default, len(self.code.sources), tuple(sorted(unread)),
             tuple(sorted(unresolved, key=lambda one: (one.path, one.line, one.what))),
@@ -252,9 +319,17 @@ class Join:
             return f"{site.role} callback", site.reason
         return None
 
-    def _endpoint(self, site: Site, value: Value, node: Node | None) -> Endpoint:
+    def _names(self, site: Site, owner: Owner) -> tuple[Value, ...]:
+        """What a site's name may be for whoever runs it: parameters that a launch sets go over their defaults."""
+        if not isinstance(owner, Running) or owner.values is self.values or site.implied:
+            return site.names
+        named = self.calls.argument(site.use, site.use.row.topic)
+        return tuple(owner.values.of(named, site.use.fn, site.use.call.line))
+
+    def _endpoint(self, site: Site, value: Value, owner: Owner) -> Endpoint:
         use = site.use
-        topic, how, reason = self.name(site, value, node)
+        node = owner.node if isinstance(owner, Running) else owner
+        topic, how, reason = self.name(site, value, owner)
         qos = qos_of(self.calls, self.values, use)
         return Endpoint(
             site.role, node.id if node else "", topic, site.type, *_place(use), site.written, how, qos,
@@ -262,8 +337,10 @@ class Join:
             use.row.framework,
         )  # fmt: skip
 
-    def name(self, site: Site, value: Value, node: Node | None) -> tuple[str, How, str]:
+    def name(self, site: Site, value: Value, owner: Owner) -> tuple[str, How, str]:
         """The full name that a site has in a node, how it is known, and why not."""
+        node = owner.node if isinstance(owner, Running) else owner
+        instance = owner.instance if isinstance(owner, Running) else None
         if value.text is None:
             return "", "unresolved", value.reason
         text = value.text
@@ -279,19 +356,26 @@ class Join:
                 if site.prefix and text[:1] not in ("/", "~"):
                     prefix = site.prefix if site.prefix[:1] in ("~", "/") else site.prefix
                     text = f"{prefix}/{text}" if prefix != "~" else f"~{text}"
-                name = ros1_name(text, full)
+                name = ros1_name(text, full) if instance is None else instance.remapped(text, 1)
+                plain = ros1_name(text, full)
             else:
                 if text.startswith("~") and not text.startswith("~/") and len(text) > 1:
                     text = f"~/{text[1:]}"
                 if site.prefix == "~" and text[:1] not in ("/", "~"):
                     text = f"~/{text}"
-                name = ros2_name(text, own, namespace or "/")
+                plain = ros2_name(text, own, namespace or "/")
+                kind = "topic" if site.role in ("publisher", "subscriber") else "service"
+                name = plain if instance is None else instance.remapped(text, 2, kind)
         except NameRefused as error:
             return "", "unresolved", str(error)
+        if name != plain:
+            return name, "launch", ""
         return name, "given" if site.implied and value.how == "literal" else value.how, ""
 
-    def _publishes(self, statement: Statement, node: Node | None, functions: set[int] | None) -> Iterator[Publish]:
+    def _publishes(self, statement: Statement, owner: Owner) -> Iterator[Publish]:
         use = statement.use
+        node = owner.node if isinstance(owner, Running) else owner
+        functions = owner.functions if isinstance(owner, Running) else None
         own = self.guards(use.fn, use.call.guard)
         ways = [Way(way.trigger, (*way.guards, *own)) for way in self.ways(use.fn, functions)]
         guards = ways[0].guards if len(ways) == 1 else own
@@ -305,8 +389,8 @@ class Join:
         if not statement.sites:
             yield Publish(topic="", type=statement.type, reason=statement.reason, **common)
         for site in statement.sites:
-            for value in site.names:
-                topic, _, reason = self.name(site, value, node)
+            for value in self._names(site, owner):
+                topic, _, reason = self.name(site, value, owner)
                 yield Publish(topic=topic, type=site.type, reason=reason, **common)
 
     def _parameters(self, use: Use, owners: list) -> Iterator[ParameterUse]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from itertools import product
 from typing import NamedTuple
@@ -40,9 +40,17 @@ class Value(NamedTuple):
 class Values:
     """Evaluates expressions in the functions of a body of code."""
 
-    def __init__(self, calls: Calls):
+    def __init__(self, calls: Calls, settings: Mapping[str, str] | None = None):
+        """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`)."""
         self.calls, self.code = calls, calls.code
-        self._known: dict[tuple[Variable, int], list[Value]] = {}
+        self.settings = settings or {}
+
+    def under(self, settings: Mapping[str, str]) -> Values:
+        """The same code where a launch sets parameters."""
+        other = Values(self.calls, settings)
+        for name in ("filled", "declared", "bases_made"):
+            other.__dict__[name] = getattr(self, name)
+        return other
 
     def of(self, value: Expr | None, fn: Fn, line: int = 0) -> list[Value]:
         """What an expression may be worth, each once; unknown ones last. line: of the statement it stands in."""
@@ -90,7 +98,8 @@ class Values:
             if unknown is not None:
                 yield unknown
                 continue
-            how: How = "default" if any(one.how == "default" for one in row) else "literal"
+            hows = {one.how for one in row}
+            how: How = "default" if "default" in hows else "launch" if "launch" in hows else "literal"
             named = next((one.parameter for one in row if one.parameter), "")
             yield Value("".join(one.text or "" for one in row), how, "", named)
 
@@ -263,6 +272,10 @@ class Values:
         """The default of the parameter that a use declares or reads."""
         names = [one.text for one in self._of(self.calls.argument(use, use.row.topic), use.fn, use.call.line, seen)]
         name = names[0] if names and names[0] is not None else ""
+        given = self.settings.get(name.lstrip("~").lstrip("/")) if name else None
+        if given is not None:
+            yield Value(given, "launch", "", name)
+            return
         default = self.calls.argument(use, use.row.default) if use.row.default else None
         if default is not None and not (default.kind == "name" and use.row.variable and default == self.calls.argument(use, use.row.variable)):
             for one in self._of(default, use.fn, use.call.line, seen):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 import msgspec
 
@@ -15,6 +15,7 @@ from ..workspace import Package, Workspace
 from .graph import Graph
 from .join import Join
 from .nodes import Built
+from .started import launched
 
 # Raise with every change of what the join says of the same facts.
 VERSION = "1"
@@ -100,9 +101,16 @@ def graph_of(
     rev: str = "",
     jobs: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    launch: str = "",
+    arguments: Mapping[str, str] | None = None,
 ) -> Graph:
-    """The message-flow graph of a workspace. store: remembers it by the content it was joined from."""
+    """The message-flow graph of a workspace. store: remembers it by the content it was joined from. launch: the path of
+    a launch file, relative to the workspace's root: then the graph of what it starts; arguments: its arguments."""
     gathered = _flow(workspace, jobs, progress)
+    if launch:
+        start = launched(workspace, launch, arguments or {})
+        join = _join(workspace, gathered)
+        return join.graph(root, rev, [s.path for s in join.code.sources if s.facts.unread], start)
     stamp = hashlib.sha1(workspace.identity + VERSION.encode())
     for path in sorted(gathered.kinds):
         stamp.update(f"{path} {gathered.ids.get(path, '')} {gathered.kinds[path]}\n".encode("utf-8", "surrogateescape"))
