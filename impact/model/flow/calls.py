@@ -1,4 +1,4 @@
-"""Calls and objects of the code that a row of the table of frameworks describes, with their arguments by what they are."""
+"""Calls and objects of the code that a row of the table of frameworks describes, and what their arguments are."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from .frameworks import Frameworks, Row, Spot
 from .types import Type, parsed, split
 
 # Names that mean something else in most code: their receiver has to be known to be of the framework.
-_COMMON = frozenset(("publish", "subscribe", "advertise", "param", "get", "getCached", "init", "call", "sendTransform",
-                     "Register", "Notify", "Subscriber", "Publisher", "Service", "Timer", "ActionServer", "ActionClient"))  # fmt: skip
+_COMMON = frozenset(
+    ("publish", "subscribe", "advertise", "param", "get", "getCached", "init", "call", "sendTransform", "Register",
+     "Notify", "Subscriber", "Publisher", "Service", "Timer", "ActionServer", "ActionClient")
+)  # fmt: skip
 
 
 class Use(NamedTuple):
@@ -190,15 +192,23 @@ class Calls:
         for each in fn.facts.assignments:
             value = each.value
             for make in _nested(value):
+                if not make.text:
+                    continue
                 kind = code.meant_type(make.text, source, scope)
-                yield kind.name, Call(make.text, make.parts, each.line, 0, each.guard, ", ".join(kind.arguments), each.target)
-            if value.kind == "make":
+                yield (
+                    kind.name,
+                    Call(make.text, make.parts, each.line, 0, each.guard, ", ".join(kind.arguments), each.target),
+                )
+            if value.kind == "make" and value.text:
                 continue
-            if value.kind == "list" or each.target.startswith("this."):
+            if value.kind in ("list", "make") or each.target.startswith("this."):
                 kind = self._initialised(fn, each.target)
-                if kind.name and value.kind in ("list", "name", "text", "call"):
-                    arguments = value.parts if value.kind == "list" else (value,)
-                    yield kind.name, Call(kind.name, arguments, each.line, 0, each.guard, ", ".join(kind.arguments), each.target)
+                if kind.name and value.kind in ("list", "make", "name", "text", "call"):
+                    arguments = value.parts if value.kind in ("list", "make") else (value,)
+                    yield (
+                        kind.name,
+                        Call(kind.name, arguments, each.line, 0, each.guard, ", ".join(kind.arguments), each.target),
+                    )
 
     def _made_in_python(self, fn: Fn, call: Call, last: str) -> Iterator[tuple[str, Call]]:
         if call.callee == "super().__init__":
@@ -252,7 +262,9 @@ class Calls:
         if value.kind == "make":
             return tail(kind) == "string"
         return tail(kind) in ("string", "str", "char") or (
-            not kind and value.kind in ("name", "call") and any(part in value.text.lower() for part in ("name", "topic"))
+            not kind
+            and value.kind in ("name", "call")
+            and any(part in value.text.lower() for part in ("name", "topic"))
         )
 
     def template_argument(self, use: Use, number: int) -> str:

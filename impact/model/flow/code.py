@@ -1,4 +1,4 @@
-"""The sources of a workspace or a package as one body of code: functions, classes and variables found by their names."""
+"""The sources of a workspace or a package as one body of code: functions, classes and variables by their names."""
 
 from __future__ import annotations
 
@@ -229,7 +229,9 @@ class Code:
 
     def overrides(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method in classes that derive from a class."""
-        return [fn for one in self.derived.get(cls.name, ()) for fn in self.by_tail.get(name, ()) if self._is_of(fn, one)]
+        return [
+            fn for one in self.derived.get(cls.name, ()) for fn in self.by_tail.get(name, ()) if self._is_of(fn, one)
+        ]
 
     def enclosing(self, fn: Fn) -> Fn | None:
         """The function that a lambda stands in."""
@@ -419,7 +421,9 @@ class Code:
             found = [f for f in candidates or () if not f.facts.owner and parts_of(f.name)[-len(wanted) :] == wanted]
             return self._nearest(found, fn)
         for one in self.chain(fn):
-            local = self.by_name.get((fn.source.path, f"{one.name}{'::' if fn.source.facts.language == 'cpp' else '.'}{last}"))
+            local = self.by_name.get(
+                (fn.source.path, f"{one.name}{'::' if fn.source.facts.language == 'cpp' else '.'}{last}")
+            )
             if local is not None:
                 return [local]
         if fn.source.facts.language == "cpp":
@@ -446,7 +450,9 @@ class Code:
             meant = self.meant(f"{receiver}.{name}", fn.source)
             if meant != f"{receiver}.{name}":
                 module = parts_of(meant)[:-1]
-                found = [f for f in self.by_tail.get(name, ()) if not f.facts.owner and _module_of(f.source.path, module)]
+                found = [
+                    f for f in self.by_tail.get(name, ()) if not f.facts.owner and _module_of(f.source.path, module)
+                ]
                 if found:
                     return found
         if receiver.endswith("()"):
@@ -461,7 +467,11 @@ class Code:
     def _nearest(self, found: list[Fn], fn: Fn) -> list[Fn]:
         for near in (
             [f for f in found if f.source.path == fn.source.path],
-            [f for f in found if f.source.package == fn.source.package and f.source.facts.language == fn.source.facts.language],
+            [
+                f
+                for f in found
+                if f.source.package == fn.source.package and f.source.facts.language == fn.source.facts.language
+            ],
         ):
             if near:
                 return near

@@ -117,8 +117,8 @@ class Way(msgspec.Struct, frozen=True):
 
 class Publish(msgspec.Struct, frozen=True):
     """A publish statement. expression: what is published, as written. guards: outermost first, those of the functions
-    that lead to it included where there is but one way; `ways`: how many ways lead to it from a trigger, each in `by`. through:
-    the function of the code's own, called `publish` too, that is called here and holds the statement that sends."""
+    that lead to it included where there is but one way; `ways`: how many ways lead to it from a trigger, each in `by`.
+    through: the function of the code's own, called `publish` too, that is called here and holds what sends."""
 
     node: str
     topic: str

@@ -1,4 +1,4 @@
-"""Facts of nodes joined into the message-flow graph: sites bound to the nodes that run them, with guards and triggers."""
+"""Facts of nodes joined into the message-flow graph: sites bound to nodes, with guards and triggers."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ from .graph import (
 )
 from .nodes import Built, Program, Reach
 from .qos import qos_of
-from .started import Instance, instances
 from .sites import Site, Sites, Statement
+from .started import Instance, instances
 from .types import Type
 from .values import Value, Values
 
@@ -94,7 +94,9 @@ class Join:
                 if not program.roots:
                     functions = {id(fn) for fn in self.code.functions if fn.source.path in program.files}
             else:
-                cls = next((c for c in self.code.classes.get(tail(program.plugin), ()) if c.source.path == program.path), None)
+                cls = next(
+                    (c for c in self.code.classes.get(tail(program.plugin), ()) if c.source.path == program.path), None
+                )
                 functions, classes = self.reach.of(program.roots, [cls] if cls is not None else [])
             named = [use for use in names.values() if id(use.fn) in functions]
             found.append(Running(program, self._node(program, named), functions, classes, self.values))
@@ -143,7 +145,9 @@ class Join:
         return bool(program.plugin) and executable == _snake(tail(program.plugin))
 
     def _kinds(self, cls) -> frozenset[str]:
-        return self.calls.kinds_of(Type(cls.name), next(iter(self.code.functions_of_class(cls.name)), _nobody(cls.source)))
+        return self.calls.kinds_of(
+            Type(cls.name), next(iter(self.code.functions_of_class(cls.name)), _nobody(cls.source))
+        )
 
     def _node(self, program: Program, named: list[Use]) -> Node:
         own = [use for use in named if tail(use.fn.facts.owner) == tail(program.plugin)] if program.plugin else []
@@ -212,9 +216,7 @@ class Join:
 
     # The graph
 
-    def graph(
-        self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None
-    ) -> Graph:
+    def graph(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
         `library` nodes, or to none."""
         missing: list[Unresolved] = []
@@ -265,11 +267,15 @@ class Join:
             if launch is not None and not those:
                 continue
             calls += not statement.through
-            reason = statement.reason or next((site.names[0].reason for site in statement.sites if site.names[0].text is None), "")
+            reason = statement.reason or next(
+                (site.names[0].reason for site in statement.sites if site.names[0].text is None), ""
+            )
             if statement.through:
                 pass  # counted where it sends
             elif reason:
-                unresolved.append(Unresolved("publish", reason, *_place(statement.use), self.calls.receiver_of(statement.use)))
+                unresolved.append(
+                    Unresolved("publish", reason, *_place(statement.use), self.calls.receiver_of(statement.use))
+                )
             else:
                 resolved += 1
                 by_default += all(value.how == "default" for site in statement.sites for value in site.names)
@@ -286,7 +292,9 @@ class Join:
         for use in self.calls.uses:
             if use.row.does == "parameter":
                 parameters.extend(self._parameters(use, owners(use)))
-        nodes = [one.node for one in running if one.node.id in used or launch is not None] + [node for node in libraries.values() if node.id in used]
+        nodes = [one.node for one in running if one.node.id in used or launch is not None] + [
+            node for node in libraries.values() if node.id in used
+        ]
         coverage = Coverage(
             calls, resolved, by_default, len(self.code.sources), tuple(sorted(unread)),
             tuple(sorted(unresolved, key=lambda one: (one.path, one.line, one.what))),
@@ -304,10 +312,30 @@ class Join:
             if package.package == fn.source.package:
                 for name, sources in package.libraries.items():
                     if path in sources:
-                        return Node(f"{package.package}/{name}", "", package.package, "library", name, "", fn.source.facts.language, path, 0)
+                        return Node(
+                            f"{package.package}/{name}",
+                            "",
+                            package.package,
+                            "library",
+                            name,
+                            "",
+                            fn.source.facts.language,
+                            path,
+                            0,
+                        )
         if not fn.source.package:
             return None
-        return Node(f"{fn.source.package}/{path.rpartition('/')[2]}", "", fn.source.package, "library", "", "", fn.source.facts.language, path, 0)
+        return Node(
+            f"{fn.source.package}/{path.rpartition('/')[2]}",
+            "",
+            fn.source.package,
+            "library",
+            "",
+            "",
+            fn.source.facts.language,
+            path,
+            0,
+        )
 
     def _missing(self, site: Site) -> tuple[str, str] | None:
         known = [value for value in site.names if value.text is not None]
@@ -354,8 +382,7 @@ class Join:
             if one:
                 text = text.replace("{node}", full).replace("{ns}", namespace or "/")
                 if site.prefix and text[:1] not in ("/", "~"):
-                    prefix = site.prefix if site.prefix[:1] in ("~", "/") else site.prefix
-                    text = f"{prefix}/{text}" if prefix != "~" else f"~{text}"
+                    text = f"~{text}" if site.prefix == "~" else f"{site.prefix}/{text}"
                 name = ros1_name(text, full) if instance is None else instance.remapped(text, 1)
                 plain = ros1_name(text, full)
             else:

@@ -63,7 +63,13 @@ class Reach:
                     names.add(one.name)
                     queue.extend(self.code.functions_of(one))
                     for member in one.facts.members:
-                        inner = self.code.class_of(self.code.meant_type(member.type, one.source, one.name).name, one.source, one.name) if member.type else None
+                        inner = (
+                            self.code.class_of(
+                                self.code.meant_type(member.type, one.source, one.name).name, one.source, one.name
+                            )
+                            if member.type
+                            else None
+                        )
                         if inner is not None:
                             made.append(inner)
             if not queue:
@@ -121,13 +127,17 @@ def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
             kind = _loaded_as(cls, code, kinds_of) if cls is not None else "plugin"
             roots = tuple(code.functions_of(cls)) if cls is not None else ()
             place = (cls.source.path, cls.facts.line) if cls is not None else (path, 0)
-            yield Program(package.package, kind, package.components.get(name, ""), name, roots, frozenset((path,)), *place)
+            yield Program(
+                package.package, kind, package.components.get(name, ""), name, roots, frozenset((path,)), *place
+            )
         for name, where in package.scripts.items():
             path, _, function = where.partition(":")
             fns = by_path.get(path, ())
             roots = [fn for fn in fns if fn.name in ("", function or "main")]
             if roots:
-                yield Program(package.package, "script", name, "", tuple(roots), frozenset((path,)), path, roots[0].facts.line)
+                yield Program(
+                    package.package, "script", name, "", tuple(roots), frozenset((path,)), path, roots[0].facts.line
+                )
 
 
 def _linked(name: str, package: Built, sources: Iterable[str]) -> Iterator[str]:

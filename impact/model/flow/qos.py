@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 from ...facts.flow import Expr
 from .calls import Calls, Use
 from .code import Fn, tail
@@ -33,7 +31,6 @@ _SETTINGS = {
     "durability_best_available": ("durability", "best_available"),
     "liveliness_automatic": ("liveliness", "automatic"), "manual_by_topic": ("liveliness", "manual_by_topic"),
 }  # fmt: skip
-_WORD = re.compile(r"(reliab\w*|durab\w*|histor\w*|liveli\w*)\W+.*?(BEST_EFFORT|RELIABLE|TRANSIENT_LOCAL|VOLATILE|KEEP_ALL|KEEP_LAST|BestEffort|Reliable|TransientLocal|Volatile|KeepAll|KeepLast)", re.IGNORECASE)  # fmt: skip
 
 
 def qos_of(calls: Calls, values: Values, use: Use) -> Qos | None:
@@ -107,7 +104,14 @@ def _built(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos
             fields["history"] = "keep_all" if tail(first.text) == "KeepAll" else "keep_last"
             fields["depth"] = _number(first.parts[0], fn, values) if first.parts else -1
         elif first.kind in ("call", "make"):
-            fields = {**fields, **{k: v for k, v in _fields(_of(first, fn, calls, values, depth + 1)).items() if v not in ("", -1, None)}}
+            fields = {
+                **fields,
+                **{
+                    k: v
+                    for k, v in _fields(_of(first, fn, calls, values, depth + 1)).items()
+                    if v not in ("", -1, None)
+                },
+            }
         else:
             fields["depth"] = _number(first, fn, values)
     for name in names:
@@ -135,7 +139,9 @@ def _keyword(name: str, value: Expr, fields: dict, fn: Fn, values: Values) -> No
     elif name == "history":
         fields[name] = "keep_all" if "KEEP_ALL" in setting else "keep_last" if "KEEP_LAST" in setting else ""
     elif name == "liveliness":
-        fields[name] = "manual_by_topic" if "MANUAL_BY_TOPIC" in setting else "automatic" if "AUTOMATIC" in setting else ""
+        fields[name] = (
+            "manual_by_topic" if "MANUAL_BY_TOPIC" in setting else "automatic" if "AUTOMATIC" in setting else ""
+        )
 
 
 def _set_later(found: Qos, name: str, fn: Fn, calls: Calls, values: Values) -> Qos:

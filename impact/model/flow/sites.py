@@ -144,7 +144,11 @@ class Sites:
         for call in use.fn.facts.calls:
             if tail(call.callee) in ("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"):
                 for argument in call.arguments:
-                    if argument.kind in ("call", "make") and argument.parts == use.call.arguments and "." in call.callee:
+                    if (
+                        argument.kind in ("call", "make")
+                        and argument.parts == use.call.arguments
+                        and "." in call.callee
+                    ):
                         return self.code.identity(call.callee.rpartition(".")[0], use.fn)
         return None
 
@@ -204,11 +208,13 @@ class Sites:
 
     def _in_namespaces(self, name: str, fn: Fn) -> str:
         """A type's interface by `using namespace sensor_msgs` and `using namespace std_msgs::msg`."""
-        if fn.source.facts.language != "cpp" or "::" in name and not name.startswith("msg::"):
+        if fn.source.facts.language != "cpp" or ("::" in name and not name.startswith("msg::")):
             return ""
         for alias in self.code.aliases[fn.source.path].get("*", ()):
             known = interface_of(f"{alias.target}::{name}")
-            if known and (alias.target.endswith(("::msg", "::srv", "::action")) or alias.target.endswith(("_msgs", "_srvs"))):
+            if known and (
+                alias.target.endswith(("::msg", "::srv", "::action")) or alias.target.endswith(("_msgs", "_srvs"))
+            ):
                 return known
         return ""
 
@@ -219,7 +225,9 @@ class Sites:
         scope = fn.name.rpartition("::")[0]
         while scope:
             known = interface_of(f"{scope}::{name}")
-            if known.partition("/")[0] == fn.source.package or known.partition("/")[0].endswith(("_msgs", "_srvs", "_interfaces")):
+            if known.partition("/")[0] == fn.source.package or known.partition("/")[0].endswith(
+                ("_msgs", "_srvs", "_interfaces")
+            ):
                 return known
             scope = scope.rpartition("::")[0]
         return ""
@@ -295,7 +303,21 @@ class Sites:
                 if last == "registerCallback" and receiver and call.arguments:
                     for argument in call.arguments[:1]:
                         registered.setdefault(code.identity(receiver, fn), []).extend(self.bodies(argument, fn))
-                elif last in ("connectInput", "reset", "make_shared", "make_unique", "Synchronizer", "TimeSynchronizer", "ApproximateTimeSynchronizer", "Cache", "MessageFilter") or call.target:
+                elif (
+                    last
+                    in (
+                        "connectInput",
+                        "reset",
+                        "make_shared",
+                        "make_unique",
+                        "Synchronizer",
+                        "TimeSynchronizer",
+                        "ApproximateTimeSynchronizer",
+                        "Cache",
+                        "MessageFilter",
+                    )
+                    or call.target
+                ):
                     target = receiver if last in ("connectInput", "reset") else call.target
                     if target:
                         fed = feeds.setdefault(code.identity(target, fn), set())
@@ -419,7 +441,9 @@ class Sites:
         """Of overloads those whose first parameter is of the message's type."""
         if use is None or len(found) < 2 or not use.call.types:
             return found
-        wanted = interface_of(self.code.meant_type(self.calls.template_argument(use, 0), use.fn.source, use.fn.scope).name)
+        wanted = interface_of(
+            self.code.meant_type(self.calls.template_argument(use, 0), use.fn.source, use.fn.scope).name
+        )
         fitting = [
             fn
             for fn in found
@@ -596,7 +620,11 @@ class Sites:
             return None  # of a class that is not a framework's
         if not use.sure and not self._plausible(receiver, use):
             return None
-        known = interface_of(self.code.meant_type(kind.arguments[0], use.fn.source, use.fn.scope).name) if kind.arguments else ""
+        known = (
+            interface_of(self.code.meant_type(kind.arguments[0], use.fn.source, use.fn.scope).name)
+            if kind.arguments
+            else ""
+        )
         return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be told")
 
     def _plausible(self, receiver: str, use: Use) -> bool:
@@ -622,9 +650,19 @@ class Sites:
             yield from found
         for writer, each in code.writes.get(variable, ()):
             if each.value.kind in ("name", "index", "call") and each.operator in ("=", "for"):
-                text = each.value.text if each.value.kind == "name" else shown(each.value.parts[0]) if each.value.parts else ""
+                text = (
+                    each.value.text
+                    if each.value.kind == "name"
+                    else shown(each.value.parts[0])
+                    if each.value.parts
+                    else ""
+                )
                 if each.value.kind == "call":
-                    text = around(each.value.text) if tail(each.value.text) in ("at", "value", "get") else f"{each.value.text}()"
+                    text = (
+                        around(each.value.text)
+                        if tail(each.value.text) in ("at", "value", "get")
+                        else f"{each.value.text}()"
+                    )
                 if text and text != receiver:
                     yield from self.publishers(text, writer, depth + 1)
         if variable.kind == "local":

@@ -1,4 +1,4 @@
-"""Launch files in the message-flow graph: the sources of launch files in a workspace, and nodes as a launch starts them."""
+"""Launch files in the message-flow graph: where a workspace has them, and nodes as a launch starts them."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ..workspace import Workspace
 class InWorkspace:
     """Launch and parameter files of a workspace, by package and path as they are installed.
 
-    A path in a package's share folder is looked for in the package's own folder, which is where nearly all install from;
-    CMake's install rules are asked for the others.
+    A path in a package's share folder is looked for in the package's own folder, which is where nearly all install
+    from; CMake's install rules are asked for the others.
     """
 
     def __init__(self, workspace: Workspace):

@@ -118,6 +118,11 @@ def interface_of(name: str, packages=None) -> str:
                 break
     if len(parts) >= 3 and parts[-2] in _KINDS:
         return f"{parts[-3]}/{parts[-1]}"
-    if len(parts) == 2 and parts[1][:1].isupper() and parts[0][:1].islower() and (packages is None or packages(parts[0])):
+    if (
+        len(parts) == 2
+        and parts[1][:1].isupper()
+        and parts[0][:1].islower()
+        and (packages is None or packages(parts[0]))
+    ):
         return f"{parts[0]}/{parts[1]}"
     return ""

@@ -79,8 +79,6 @@ class Values:
             yield from self._call(value, fn, line, seen)
         elif kind in ("make", "keyword", "list") and len(value.parts) == 1:
             yield from self._of(value.parts[0], fn, line, seen)
-        elif kind == "make" and not value.parts and tail(value.text) in ("string", "str"):
-            yield Value("")
         elif kind == "make" and not value.parts:
             return  # made empty, and written later
         elif kind == "index" and value.parts:
@@ -120,6 +118,9 @@ class Values:
         parts = parts_of(path)
         if "." in path and parts[-1] in _SAME:
             yield from self._name(path.rpartition(".")[0], fn, line, seen)
+            return
+        if path.endswith("()"):
+            yield from self._inner(path.removesuffix("()"), fn, line, seen)
             return
         variable = self.code.identity(path, fn)
         if variable in seen:
@@ -246,7 +247,9 @@ class Values:
             return
         yield from self._inner(value.text, fn, line, seen, value.parts)
 
-    def _inner(self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[Expr, ...] | None = None) -> Iterator[Value]:
+    def _inner(
+        self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[Expr, ...] | None = None
+    ) -> Iterator[Value]:
         """What a call inside an expression gives: a parameter's default, or what a function of the code returns."""
         near = [call for call in fn.facts.calls if call.callee == callee]
         near.sort(key=lambda call: (abs(call.line - line), call.arguments != arguments))
@@ -277,7 +280,8 @@ class Values:
             yield Value(given, "launch", "", name)
             return
         default = self.calls.argument(use, use.row.default) if use.row.default else None
-        if default is not None and not (default.kind == "name" and use.row.variable and default == self.calls.argument(use, use.row.variable)):
+        target = self.calls.argument(use, use.row.variable) if use.row.variable else None
+        if default is not None and not (default.kind == "name" and default == target):
             for one in self._of(default, use.fn, use.call.line, seen):
                 if one.text is None:
                     yield one
@@ -285,12 +289,14 @@ class Values:
                     yield Value(one.text, "default", "", name or one.parameter)
             return
         yielded = False
-        for other in self.declared.get(name, ()) if name else ():
-            if other.call is not use.call and other.fn.source.package == use.fn.source.package:
-                for one in self._parameter(other, (*seen, ("parameter", name))) if ("parameter", name) not in seen else ():
-                    if one.text is not None:
-                        yielded = True
-                        yield one
+        mark = ("parameter", name)
+        for other in self.declared.get(name, ()) if name and mark not in seen else ():
+            if other.call is use.call or other.fn.source.package != use.fn.source.package:
+                continue
+            for one in self._parameter(other, (*seen, mark)):
+                if one.text is not None:
+                    yielded = True
+                    yield one
         if not yielded:
             yield Value(None, "unresolved", f"the parameter `{name or '?'}` has no default here", name)
 
@@ -299,10 +305,11 @@ class Values:
         """Declarations of parameters and reads with a default, by their literal names."""
         found: dict[str, list[Use]] = {}
         for use in self.calls.uses:
-            if use.row.does == "parameter" and use.row.default and self.calls.argument(use, use.row.default) is not None:
-                name = self.calls.argument(use, use.row.topic)
-                if name is not None and name.kind == "text":
-                    found.setdefault(name.text, []).append(use)
+            if use.row.does != "parameter" or self.calls.argument(use, use.row.default) is None:
+                continue
+            name = self.calls.argument(use, use.row.topic)
+            if name is not None and name.kind == "text":
+                found.setdefault(name.text, []).append(use)
         return found
 
     @cached_property
