@@ -620,7 +620,8 @@ PIECES = st.sampled_from([
     "\n", "\t", "(", ")", "[", "]", "'", '"""', "#", "\\", "f'{a}'", "f'''\n{a}'''", "é", "\0", "self.x = ", "return ",
     ", ", "x = ", "'%s' % ", ".format(", "lambda a: ", "def f(self, (b, c)):\n", "a.b.c", "0777", "`a`", "<>", "@",
     "with (a as b): pass\n", ":=", "match x:\n", "class C: ", "\r\n", "global a\n", "else:\n", "for x in y:\n",
-    "raise E, 1", "case 1: p()\n", "while True:\n", "  ", "del a.b\n", "*", "yield ", "await ", "\x0c", "\ud800", "\u2028",
+    "raise E, 1", "case 1: p()\n", "while True:\n", "  ", "del a.b\n", "*", "yield ", "await ", "\x0c",
+    "\ud800", "\u2028",
 ])  # fmt: skip
 
 
