@@ -30,7 +30,7 @@ def pieces_of(way: Sequence[GuardAt], language: Language, renames: dict[str, str
     stand for."""
     result: list[Piece] = []
     names: dict[str, dict[str, Term]] = {}
-    for guard in way:
+    for place, guard in enumerate(way):
         known = names.setdefault(guard.of, {})
         reading = read(language, guard.kind, guard.text)
         for piece in reading.pieces:
@@ -38,7 +38,7 @@ def pieces_of(way: Sequence[GuardAt], language: Language, renames: dict[str, str
             if renames:
                 term = renamed(term, renames)
             if term.kind != "true":
-                result.append(Piece(piece.text, term))
+                result.append(Piece(piece.text, term, place))
         for name, value in reading.names:
             known[name] = substituted(value, known) if known else value
     return tuple(result)
@@ -51,7 +51,9 @@ def this_left_out(sides: Sequence[Sequence[Sequence[Piece]]]) -> tuple[tuple[tup
         ours = {name.removeprefix("this.").partition(".")[0] for name in named if name.startswith("this.")}
         if any(name.partition(".")[0] in ours for name in named):
             return tuple(tuple(tuple(way) for way in side) for side in sides)
-    return tuple(tuple(tuple(Piece(piece.text, _bare(piece.term)) for piece in way) for way in side) for side in sides)
+    return tuple(
+        tuple(tuple(piece._replace(term=_bare(piece.term)) for piece in way) for way in side) for side in sides
+    )
 
 
 def _bare(term: Term) -> Term:

@@ -18,8 +18,7 @@ _TOKENS: dict[Language, re.Pattern[str]] = {
     "python": re.compile(_TOKEN.replace("COMMENT", r"\#[^\n]*"), re.DOTALL | re.VERBOSE),
 }
 _KEYWORDS = frozenset(
-    "and or not in is if elif else return while for case assert del raise yield await lambda from import as with global"
-    " nonlocal new delete throw goto co_return co_await typename using namespace print".split()
+    ["and", "or", "not", "in", "is", "if", "elif", "else", "return", "while", "for", "case", "assert", "del", "raise", "yield", "await", "lambda", "from", "import", "as", "with", "global", "nonlocal", "new", "delete", "throw", "goto", "co_return", "co_await", "typename", "using", "namespace", "print"]
 )
 _TYPE_ENDS = frozenset(("*", "&", ">"))
 _MOST_STATEMENTS = 20000
@@ -117,4 +116,6 @@ def _is_made(statement: Statement, place: int) -> bool:
     if before == "::":
         # The definition of a method, `void A::b(`; a call has no type before it.
         return place > 2 and statement[place - 3][1] and statement[place - 3][0] not in _KEYWORDS and following == "("
-    return (is_name and before not in _KEYWORDS) or (before in _TYPE_ENDS and place > 1 and following in ("", ",", ")", "("))
+    return (is_name and before not in _KEYWORDS) or (
+        before in _TYPE_ENDS and place > 1 and following in ("", ",", ")", "(")
+    )

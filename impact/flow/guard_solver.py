@@ -8,10 +8,10 @@ negative, show it too, wherever the terms could be of such a type. What lies bet
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
-from typing import Any
 
+from .guard_reading import Language
 from .guard_terms import FORMULAS, NULL, Term, owner_of
 
 _ENUMERATOR = re.compile(r"(?P<scope>.+)::(?:[A-Z]|k[A-Z])\w*|(?P<class>.+)\.[A-Z][A-Z0-9_]+")
@@ -23,7 +23,7 @@ _RESOURCES_PER_MILLISECOND = 6000
 
 
 class Undecided(Exception):
-    """The limit was reached, or the conditions are more than can be told to z3."""
+    """The limit was reached, or the conditions are nested too deep."""
 
 
 class Solver:
@@ -33,20 +33,15 @@ class Solver:
     an amount of work that is the same on every machine.
     """
 
-    def __init__(self, language: str, types: Mapping[str, str], milliseconds: int) -> None:
-        import z3
-
-        self.z3 = z3
+    def __init__(self, language: Language, types: Mapping[str, str], milliseconds: int) -> None:
         self.python = language == "python"
         self.types = types
-        self.solver = z3.SimpleSolver()
-        self.solver.set("rlimit", max(milliseconds, 1) * _RESOURCES_PER_MILLISECOND)
-        # Should the amount of work be misjudged, it ends all the same.
-        self.solver.set("timeout", max(milliseconds, 1) * 20)
-        self.numbers: dict[Term, Any] = {}
-        self.truths: dict[Term, Any] = {}
-        self.nulls: dict[Term, Any] = {}
-        self.texts: dict[str, Any] = {}
+        self.milliseconds = max(milliseconds, 1)
+        self.numbers: dict[Term, str] = {}
+        self.truths: dict[Term, str] = {}
+        self.nulls: dict[Term, str] = {}
+        self.texts: dict[str, str] = {}
+        self.script: list[str] = []
         self.valued: set[Term] = set()
         self.counted: set[Term] = set()
         self.ordered: set[Term] = set()
@@ -59,48 +54,57 @@ class Solver:
     def relation(self, old: Term, new: Term) -> tuple[bool | None, bool | None, bool]:
         """Whether new implies old, and old implies new (None: true of some types only), and whether that is so of
         conditions that can hold at all. Raises Undecided."""
-        try:
-            return self._relation(old, new)
-        except (self.z3.Z3Exception, RecursionError, ArithmeticError) as error:
-            raise Undecided from error
-
-    def _relation(self, old: Term, new: Term) -> tuple[bool | None, bool | None, bool]:
-        for term in (old, new):
-            self.look(term, False)
-        before, after = self.truth(old), self.truth(new)
-        self.solver.add(*self.known())
-        forward = not self.holds(self.z3.And(after, self.z3.Not(before)))
-        backward = not self.holds(self.z3.And(before, self.z3.Not(after)))
-        if not forward and not backward:
+        before, after = self.stated(old, new)
+        loses, gains = f"(and {before} (not {after}))", f"(and {after} (not {before}))"
+        ask = self.asked(before=before, after=after, loses=loses, gains=gains)
+        lost, gained = ask("loses", "supposed"), ask("gains", "supposed")
+        if lost and gained:
             return False, False, True
-        possible = self.holds(before) and self.holds(after)
-        if forward and backward:
-            return True, True, possible
-        self.solver.add(*self.supposed())
-        one_sided = self.z3.And(before, self.z3.Not(after)) if forward else self.z3.And(after, self.z3.Not(before))
-        if self.holds(one_sided):
-            return forward, backward, possible
-        return (True, None, possible) if forward else (None, True, possible)
+        forward = False if gained else None if ask("gains") else True
+        backward = False if lost else None if ask("loses") else True
+        return forward, backward, (lost or ask("before")) and (gained or ask("after"))
 
     def possible(self, term: Term) -> bool:
         """Whether a condition can hold. Raises Undecided."""
+        (asked,) = self.stated(term)
+        return self.asked(asked=asked)("asked")
+
+    def stated(self, *terms: Term) -> list[str]:
+        """The terms as formulas, in the language of SMT-LIB; `script` says what is in them."""
         try:
-            self.look(term, False)
-            asked = self.truth(term)
-            self.solver.add(*self.known())
-            return self.holds(asked)
-        except (self.z3.Z3Exception, RecursionError, ArithmeticError) as error:
+            for term in terms:
+                self.look(term, False)
+            return [self.truth(term) for term in terms]
+        except RecursionError as error:
             raise Undecided from error
 
-    def holds(self, formula: Any) -> bool:
-        """Whether something makes a formula true."""
-        self.solver.push()
-        self.solver.add(formula)
-        answer = self.solver.check()
-        self.solver.pop()
-        if answer == self.z3.unknown:
-            raise Undecided
-        return answer == self.z3.sat
+    def asked(self, **formulas: str) -> Callable[..., bool]:
+        """A function that tells whether some of the formulas, by their names, hold together for some values. Besides
+        them there is `supposed`: see supposed()."""
+        import z3
+
+        formulas["supposed"] = _all(self.supposed())
+        known = [f"(assert {fact})" for fact in self.known()]
+        named = [f"(declare-const {name} Bool)(assert (=> {name} {formula}))" for name, formula in formulas.items()]
+        solver = z3.SimpleSolver()
+        solver.set("rlimit", self.milliseconds * _RESOURCES_PER_MILLISECOND)
+        # Should the amount of work be misjudged, it ends all the same.
+        solver.set("timeout", self.milliseconds * 20)
+        try:
+            solver.from_string("".join((*self.script, *known, *named)))
+        except z3.Z3Exception as error:
+            raise Undecided from error
+
+        def ask(*names: str) -> bool:
+            try:
+                answer = solver.check(*(z3.Bool(name) for name in names))
+            except z3.Z3Exception as error:
+                raise Undecided from error
+            if answer == z3.unknown:
+                raise Undecided
+            return answer == z3.sat
+
+        return ask
 
     # What terms are used as
 
@@ -210,184 +214,170 @@ class Solver:
             return "integer"
         return type_class(self.types.get(term.text, "")) if term.kind == "name" else ""
 
-    # Terms to z3
+    # Terms to formulas
 
-    def fresh(self, sort: Any) -> Any:
-        number = len(self.numbers) + len(self.truths) + len(self.nulls) + len(self.texts)
-        return self.z3.Const(f"{sort.name()[0]}{number}", sort)
+    def fresh(self, sort: str) -> str:
+        name = f"{sort[0].lower()}{len(self.script)}"
+        self.script.append(f"(declare-const {name} {sort})")
+        return name
 
-    def number_of(self, term: Term) -> Any:
+    def number_of(self, term: Term) -> str:
         """The unknown number that a term is."""
         if term.kind == "*" or (term.kind == "op" and term.text in ("&", "|", "^")):
             term = Term(term.kind, term.text, tuple(sorted(term.parts)))
         if term not in self.numbers:
-            self.numbers[term] = self.fresh(self.z3.RealSort())
+            self.numbers[term] = self.fresh("Real")
         return self.numbers[term]
 
-    def value(self, term: Term) -> Any:
-        z3, kind, parts = self.z3, term.kind, term.parts
+    def value(self, term: Term) -> str:
+        kind, parts = term.kind, term.parts
         folded = self.fold(term)
         if folded is not None:
-            return z3.RealVal(str(folded))
+            return _real(folded)
         if kind in FORMULAS:
-            return z3.If(self.truth(term), z3.RealVal(1), z3.RealVal(0))
+            return f"(ite {self.truth(term)} 1.0 0.0)"
         if kind == "choice":
-            return z3.If(self.truth(parts[0]), self.value(parts[1]), self.value(parts[2]))
+            return f"(ite {self.truth(parts[0])} {self.value(parts[1])} {self.value(parts[2])})"
         if self.is_arithmetic(term):
-            left, right = self.value(parts[0]), self.value(parts[1])
-            if kind == "+":
-                return left + right
-            if kind == "-":
-                return left - right
-            return left * right if kind == "*" else left / right
+            return f"({term.text or kind} {self.value(parts[0])} {self.value(parts[1])})"
         if kind == "abs":
             inside = self.value(parts[0])
-            return z3.If(inside >= 0, inside, -inside)
+            return f"(ite (>= {inside} 0.0) {inside} (- {inside}))"
         if kind == "null" and not self.python:
-            return z3.RealVal(0)
+            return "0.0"
         if kind == "string":
             if term.text not in self.texts:
-                self.texts[term.text] = self.fresh(z3.RealSort())
+                self.texts[term.text] = self.fresh("Real")
             return self.texts[term.text]
         return self.number_of(term)
 
-    def truth(self, term: Term) -> Any:
-        z3, kind, parts = self.z3, term.kind, term.parts
+    def truth(self, term: Term) -> str:
+        kind, parts = term.kind, term.parts
         if kind in ("true", "false"):
-            return z3.BoolVal(kind == "true")
-        if kind in ("and", "or"):
-            return (z3.And if kind == "and" else z3.Or)([self.truth(part) for part in parts])
-        if kind == "not":
-            return z3.Not(self.truth(parts[0]))
+            return kind
+        if kind in ("and", "or", "not"):
+            return f"({kind} {' '.join(map(self.truth, parts))})"
         if kind == "truth":
             return self.truth(parts[0])
         if kind == "compare":
             return self.compared(term.text, *parts)
         if kind == "choice":
-            return z3.If(self.truth(parts[0]), self.truth(parts[1]), self.truth(parts[2]))
-        if kind == "null":
-            return z3.BoolVal(False)
+            return f"(ite {' '.join(map(self.truth, parts))})"
+        if kind == "null" or (kind == "string" and self.python and is_empty(term.text)):
+            return "false"
         if kind == "string":
-            return z3.BoolVal(not self.python or not is_empty(term.text))
-        if kind in ("whole", "real", "size", "abs") or self.is_arithmetic(term):
-            return self.value(term) != 0
-        if not self.python and term in self.valued and self.type_of(term) != "optional":
-            return self.value(term) != 0
+            return "true"
+        measured = kind in ("whole", "real", "size", "abs") or self.is_arithmetic(term)
+        if measured or (not self.python and term in self.valued and self.type_of(term) != "optional"):
+            return f"(not (= {self.value(term)} 0.0))"
         if term not in self.truths:
-            self.truths[term] = self.fresh(z3.BoolSort())
+            self.truths[term] = self.fresh("Bool")
         return self.truths[term]
 
-    def compared(self, operator: str, left: Term, right: Term) -> Any:
-        if operator == "==":
-            for one, other in ((left, right), (right, left)):
-                if one.kind == "null":
-                    return self.is_null(other)
-            for one, other in ((left, right), (right, left)):
-                if one.kind in ("true", "false"):
-                    # Who compares with `true` has a bool.
-                    truth = self.truth(other)
-                    return truth if one.kind == "true" else self.z3.Not(truth)
-            if left.kind in FORMULAS or right.kind in FORMULAS:
-                return self.truth(left) == self.truth(right)
-            if left.kind == "string" and right.kind == "string":
-                return self.z3.BoolVal(left.text == right.text)
-            return self.value(left) == self.value(right)
-        first, second = self.value(left), self.value(right)
-        return first < second if operator == "<" else first <= second
+    def compared(self, operator: str, left: Term, right: Term) -> str:
+        if operator != "==":
+            return f"({operator} {self.value(left)} {self.value(right)})"
+        for one, other in ((left, right), (right, left)):
+            if one.kind == "null":
+                return self.is_null(other)
+        for one, other in ((left, right), (right, left)):
+            if one.kind in ("true", "false"):
+                # Who compares with `true` has a bool.
+                truth = self.truth(other)
+                return truth if one.kind == "true" else f"(not {truth})"
+        if left.kind in FORMULAS or right.kind in FORMULAS:
+            return f"(= {self.truth(left)} {self.truth(right)})"
+        return f"(= {self.value(left)} {self.value(right)})"
 
-    def is_null(self, term: Term) -> Any:
+    def is_null(self, term: Term) -> str:
         if not self.python:
-            return self.z3.Not(self.truth(term))
+            return f"(not {self.truth(term)})"
         if term == NULL:
-            return self.z3.BoolVal(True)
+            return "true"
         if term.kind in FORMULAS or term.kind in ("whole", "real", "string", "size") or self.is_arithmetic(term):
-            return self.z3.BoolVal(False)
+            return "false"
         if term not in self.nulls:
-            self.nulls[term] = self.fresh(self.z3.BoolSort())
+            self.nulls[term] = self.fresh("Bool")
         return self.nulls[term]
 
     # What is known of them
 
-    def known(self) -> list[Any]:
+    def known(self) -> list[str]:
         """What holds of the terms whatever their types are."""
-        result: list[Any] = []
-        if self.python:
-            result.extend(self.truth_in_python())
+        result = list(self.known_in_python()) if self.python else []
         for term, others in self.equated.items():
-            for text in (other for other in others if other.kind == "string"):
-                if term in self.counted:
-                    size = self.value(Term("size", "", (term,)))
-                    filled = size == 0 if is_empty(text.text) else size > 0
-                    result.append(self.z3.Implies(self.value(term) == self.value(text), filled))
-                    if is_empty(text.text):
-                        result.append(self.z3.Implies(filled, self.value(term) == self.value(text)))
-        if len(self.texts) > 1:
-            result.append(self.z3.Distinct(*self.texts.values()))
-        scopes: dict[str, list[Any]] = {}
+            for text in sorted(other for other in others if other.kind == "string" and term in self.counted):
+                size, equal = self.value(Term("size", "", (term,))), f"(= {self.value(term)} {self.value(text)})"
+                same = is_empty(text.text)
+                result.append(f"(= {equal} (= {size} 0.0))" if same else f"(=> {equal} (> {size} 0.0))")
+        scopes: dict[str, list[str]] = {"a text": list(self.texts.values())}
         for term, value in self.numbers.items():
             match = _ENUMERATOR.fullmatch(term.text) if term.kind == "name" else None
             if match:
                 scopes.setdefault(match["scope"] or match["class"], []).append(value)
             type_ = self.type_of(term)
             if type_ in ("integer", "unsigned", "bool"):
-                result.append(self.whole(value))
+                result.append(f"(is_int {value})")
             if type_ in ("unsigned", "bool") or (term.kind in ("size", "call") and type_ == "integer"):
-                result.append(value >= 0)
+                result.append(f"(>= {value} 0.0)")
             if type_ == "bool":
-                result.append(value <= 1)
-        result.extend(self.z3.Distinct(*values) for values in scopes.values() if len(values) > 1)
+                result.append(f"(<= {value} 1.0)")
+        result.extend(f"(distinct {' '.join(values)})" for values in scopes.values() if len(values) > 1)
         return result
 
-    def truth_in_python(self) -> Iterable[Any]:
+    def known_in_python(self) -> Iterable[str]:
         """What the truth of a value, its being None, its length and its being equal to something have to do with each
         other."""
-        z3 = self.z3
-        for term in list(self.truths):
-            truth = self.truths[term]
-            there = z3.Not(self.nulls[term]) if term in self.nulls else z3.BoolVal(True)
+        for term, truth in self.truths.items():
+            there = f"(not {self.nulls[term]})" if term in self.nulls else "true"
             type_ = self.type_of(term)
             if term in self.counted:
-                yield truth == z3.And(there, self.value(Term("size", "", (term,))) != 0)
+                yield f"(= {truth} (and {there} (not (= {self.value(Term('size', '', (term,)))} 0.0))))"
             elif term in self.valued and (term in self.ordered or type_ in ("integer", "float", "bool")):
-                yield truth == z3.And(there, self.value(term) != 0)
+                yield f"(= {truth} (and {there} (not (= {self.value(term)} 0.0))))"
             else:
-                yield z3.Implies(truth, there)
+                yield f"(=> {truth} {there})"
         for term, others in self.equated.items():
-            for other in others:
+            for other in sorted(others):
                 if term not in self.valued:
                     continue
-                equal = self.value(term) == self.value(other)
+                equal = f"(= {self.value(term)} {self.value(other)})"
                 if term in self.nulls:
-                    yield z3.Implies(equal, z3.Not(self.nulls[term]))
+                    yield f"(=> {equal} (not {self.nulls[term]}))"
                 if term in self.truths and not self.is_constant(other):
-                    filled = self.truth(other)
-                    yield z3.Implies(equal, self.truths[term] == filled)
-                    if (
-                        other.kind == "string"
-                        and is_empty(other.text)
-                        and type_class(self.types.get(term.text, "")) == "str"
-                    ):
-                        yield z3.Implies(z3.Not(self.truths[term]), equal)
+                    truth = self.truths[term]
+                    yield f"(=> {equal} (= {truth} {self.truth(other)}))"
+                    if other.kind == "string" and is_empty(other.text) and self.type_of(term) == "str":
+                        yield f"(=> (not {truth}) {equal})"
 
-    def supposed(self) -> list[Any]:
+    def supposed(self) -> list[str]:
         """What may hold of them besides: a difference that only shows otherwise is not believed."""
-        result: list[Any] = []
-        constants: list[Any] = []
+        result: list[str] = []
+        constants: list[str] = []
         for term, value in self.numbers.items():
             if self.type_of(term) == "float":
                 continue
             if term.kind == "name" and _CONSTANT.fullmatch(term.text):
                 constants.append(value)
             if term not in self.fractional:
-                result.append(self.whole(value))
-            if term not in self.fractional and term not in self.signed and self.type_of(term) != "integer":
-                result.append(value >= 0)
+                result.append(f"(is_int {value})")
+                if term not in self.signed and self.type_of(term) != "integer":
+                    result.append(f"(>= {value} 0.0)")
         if len(constants) > 1:
-            result.append(self.z3.Distinct(*constants))
+            result.append(f"(distinct {' '.join(constants)})")
         return result
 
-    def whole(self, value: Any) -> Any:
-        return value == self.z3.ToReal(self.z3.Int(f"{value}'"))
+
+def _all(formulas: list[str]) -> str:
+    return f"(and {' '.join(formulas)})" if formulas else "true"
+
+
+def _real(number: Fraction) -> str:
+    """A number in the language of SMT-LIB."""
+    written = f"{abs(number.numerator)}.0"
+    if number.denominator != 1:
+        written = f"(/ {written} {number.denominator}.0)"
+    return f"(- {written})" if number < 0 else written
 
 
 def is_empty(literal: str) -> bool:

@@ -18,7 +18,7 @@ class Term(NamedTuple):
     | compare | `==`, `<` or `<=` | left, right; the operands of `==` in a fixed order |
     | choice | | condition, value if true, value if false |
     | true, false, null | | |
-    | whole, real | the number as a fraction; real: written with a point or an exponent | |
+    | whole, real | the number as a fraction; real: written with a point or exponent | |
     | string | the literal as written, without prefix | |
     | name | a path: `a.b.c` (`->` is `.`, `self` and `this` are `this`), `ns::kName` | |
     | + - * | | left, right |
@@ -37,10 +37,12 @@ class Term(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """One of the conditions that must all hold. text: as a person would write it; term: what it says."""
+    """One of the conditions that must all hold. text: as a person would write it; term: what it says; guard: the place
+    of the guard it comes from."""
 
     text: str
     term: Term
+    guard: int = 0
 
 
 class Reading(NamedTuple):
@@ -119,7 +121,7 @@ def number(written: str) -> Term | None:
         value = Fraction(written)
     except (ValueError, ZeroDivisionError):
         return None
-    return Term("whole" if written.isdigit() else "real", str(value))
+    return Term("whole" if written.lstrip("+-").isdigit() else "real", str(value))
 
 
 def rewrite(term: Term, change: Callable[[Term], Term | None]) -> Term:

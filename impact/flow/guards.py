@@ -5,12 +5,12 @@
 
 All of it is about the same moment: a name, and a call with the same arguments, has the same value wherever it stands in
 the two conditions. That calls have effects and that variables are assigned between two guards is not seen, save where
-guards would then contradict each other: those are compared as wholes.
+guards would then contradict each other: nothing but what stands in both is then known of them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Literal
 
 from ..model.flow.graph import GuardAt
@@ -60,11 +60,14 @@ def compare_ways(
     before, after = _sides(old, new, renames, language)
     if _said(before) == _said(after):
         return "equivalent"
+
+    def solver() -> Solver:
+        return Solver(language, types, milliseconds)
+
     try:
-        forward, backward, possible = Solver(language, types, milliseconds).relation(_any_way(before), _any_way(after))
-        if not possible and _several(before, after):
-            whole = Solver(language, types, milliseconds)
-            forward, backward, _ = whole.relation(_any_way(before, _as_whole), _any_way(after, _as_whole))
+        forward, backward, possible = solver().relation(_any_way(before), _any_way(after))
+        if not possible and not all(_is_settled(side, solver) for side in (before, after)):
+            forward, backward, _ = solver().relation(_any_way(before, _as_whole), _any_way(after, _as_whole))
     except Undecided:
         return "changed"
     if forward and backward:
@@ -138,8 +141,16 @@ def _said(side: _Side) -> frozenset[frozenset[Term]]:
     return frozenset(frozenset(piece.term for piece in way) for way in side)
 
 
-def _several(*sides: _Side) -> bool:
-    return any(len(way) > 1 for side in sides for way in side)
+def _is_settled(side: _Side, solver: Callable[[], Solver]) -> bool:
+    """Whether a side can hold, or does not since on each way one guard contradicts itself: nothing is assigned within
+    a guard. Raises Undecided."""
+    if solver().possible(_any_way(side)):
+        return True
+    for way in side:
+        guards = [[piece for piece in way if piece.guard == place] for place in {piece.guard for piece in way}]
+        if all(solver().possible(_all_of(pieces)) for pieces in guards):
+            return False
+    return True
 
 
 def _as_whole(term: Term) -> Term:
