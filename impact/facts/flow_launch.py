@@ -6,6 +6,7 @@ values are sequences of pieces. Files of parameters are read here too.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -115,7 +116,7 @@ class LaunchFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A value of a parameter file. path: its keys from the root. value: bool, int, float, str, None, list or, below a
-    list, dict. line: of the value."""
+    list, dict. line: of the value, of its key where it is a list."""
 
     path: tuple[str, ...]
     value: Any
@@ -372,7 +373,8 @@ def _launch_xml(data: bytes) -> LaunchFile:
         depth = depths[element.parent] + 1 if element.parent >= 0 else 0
         entity = _Entity(element.name.lower(), document.place(element.offset)[0])
         # XML's readers make blanks of line ends and tabs in values; the first of two attributes of a name counts.
-        entity.attributes = {a.name: _BLANK.sub(" ", a.value) for a in reversed(element.attributes)}
+        for attribute in element.attributes:
+            entity.attributes.setdefault(attribute.name, _BLANK.sub(" ", attribute.value))
         entity.text = _own_text(document, element) if element.text and entity.tag == "rosparam" else ""
         entities.append(entity)
         depths.append(depth)
@@ -637,7 +639,7 @@ _BOOLEAN = {word: flag for flag, stems in ((True, ("true", "yes", "on")), (False
             for stem in stems for word in (stem, stem.capitalize(), stem.upper())}  # fmt: skip
 _NULL = frozenset(("", "~", "null", "Null", "NULL"))
 _INTEGER = re.compile(r"[-+]?(?:0b[01_]+|0x[0-9a-fA-F_]+|0o?[0-7_]*|[1-9][0-9_]*)\Z")
-_FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9][0-9_]*(?:\.[0-9_]*)?)(?:[eE][-+]?[0-9]+)?\Z")
+_FLOAT = re.compile(r"[-+]?(?:(?:\.[0-9]+|[0-9][0-9_]*\.[0-9_]*)(?:[eE][-+]?[0-9]+)?|[0-9]+[eE][-+]?[0-9]+)\Z")
 _NOT_FINITE = re.compile(r"([-+]?)\.(?:inf|Inf|INF)\Z|\.(?:nan|NaN|NAN)\Z")
 
 
@@ -677,7 +679,7 @@ def _tree(text: str) -> tuple[_Node | None, list[Problem]]:
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     problems: list[Problem] = []
     root: list[_Node] = []
-    # Each level: the node, and the key that waits for its value.
+    # Each level: the node, the key that waits for its value, and that key's line, which is also a block's.
     levels: list[list[Any]] = []
     anchors: dict[str, _Node] = {}
     pending: list[str] = []
@@ -687,13 +689,16 @@ def _tree(text: str) -> tuple[_Node | None, list[Problem]]:
             if not root:
                 root.append(node)
             return
-        above, key = levels[-1]
+        above, key, _ = levels[-1]
         if above.kind == "list":
             above.value.append(node)
         elif key is None:
             levels[-1][1] = str(node.value) if node.kind == "scalar" and node.value is not None else "~"
+            levels[-1][2] = node.line
             return
         else:
+            if node.kind != "scalar":
+                node.line = min(node.line, levels[-1][2])
             above.value.append((key, node))
             levels[-1][1] = None
         above.height = max(above.height, node.height + 1)
@@ -718,7 +723,7 @@ def _tree(text: str) -> tuple[_Node | None, list[Problem]]:
                 kind = "map" if isinstance(event, yaml.MappingStartEvent) else "list"
                 if len(levels) >= DEEPEST:
                     raise ValueError(f"nested more than {DEEPEST} deep")
-                levels.append([_Node(kind, [], event.start_mark.line + 1), None])
+                levels.append([_Node(kind, [], event.start_mark.line + 1), None, 0])
                 pending.append(event.anchor or "")
             elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
                 node = levels.pop()[0]
@@ -749,10 +754,13 @@ def _tree(text: str) -> tuple[_Node | None, list[Problem]]:
 
 
 def _tagged(tag: str, value: str) -> Any:
-    """A scalar with a tag of its own: `!!str 5`, `!!int "5"`, `!degrees 90`."""
+    """A scalar with a tag of its own: `!!str 5`, `!!int "5"`, rosparam's `!degrees 90`."""
     if tag.endswith(":str") or tag == "!":
         return value
-    return scalar(value)
+    number = scalar(value)
+    if tag == "!degrees" and isinstance(number, (int, float)):
+        return math.radians(number)
+    return number
 
 
 def _clean(text: str) -> str:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from .flow_launch import (
+    DEEPEST,
     Action,
     Condition,
     LaunchFile,
@@ -27,13 +28,14 @@ from .place import Problem
 from .python import read
 
 MOST_STEPS = 200_000
+STEPS = f"takes more than {MOST_STEPS} steps"
 DEEPEST_CALL = 24
 MOST_TURNS = 200
 ENTRIES = ("generate_launch_description", "generate_test_description")
 
 
 class _TooMuch(Exception):
-    """More steps than a launch file ever takes."""
+    """More than a launch file ever does; the message says what."""
 
 
 class _Text(NamedTuple):
@@ -208,11 +210,29 @@ def extract(data: bytes) -> LaunchFile:
         return LaunchFile("python", 2, (), problems or (Problem(1, "not parsed: is not Python 3"),))
     try:
         actions, more = _Walker().launch(source.tree)
+        _measure(actions)
         return LaunchFile("python", 2, actions, (*problems, *more))
     except RecursionError:
         return LaunchFile("python", 2, (), (*problems, Problem(1, "nested too deeply to be read")))
-    except _TooMuch:
-        return LaunchFile("python", 2, (), (*problems, Problem(1, f"takes more than {MOST_STEPS} steps")))
+    except _TooMuch as error:
+        return LaunchFile("python", 2, (), (*problems, Problem(1, str(error))))
+
+
+def _measure(actions: tuple[Action, ...]) -> None:
+    """Raises _TooMuch for facts too large or too deep to be handed on: values may hold one another many times over."""
+    pieces = 0
+    rest: list[tuple[Any, int]] = [(action, 0) for action in actions]
+    while rest:
+        item, depth = rest.pop()
+        pieces += 1
+        if pieces > MOST_STEPS or depth > DEEPEST:
+            raise _TooMuch("says too much to be kept")
+        if isinstance(item, Action):
+            values = [value for _, value in item.attributes] + [c.value for c in item.conditions]
+            rest += [(child, depth + 1) for child in item.children]
+        else:
+            values = item.parts
+        rest += [(piece, depth + 1) for value in values for piece in value]
 
 
 def _negated(conditions: Sequence[Condition], line: int) -> Condition:
@@ -257,9 +277,7 @@ class _Walker:
         added = 0
         try:
             for statement in statements:
-                self.steps += 1
-                if self.steps > MOST_STEPS:
-                    raise _TooMuch
+                self.spend(1)
                 handler = _STATEMENTS.get(type(statement))
                 if handler is None:
                     continue
@@ -512,9 +530,7 @@ class _Walker:
     # Expressions
 
     def value(self, node: ast.expr) -> Any:
-        self.steps += 1
-        if self.steps > MOST_STEPS:
-            raise _TooMuch
+        self.spend(1)
         handler = _EXPRESSIONS.get(type(node))
         if handler is None:
             return _Unknown(_source(node))
@@ -628,6 +644,7 @@ class _Walker:
 
     def add(self, left: Any, right: Any, node: ast.AST) -> Any:
         if isinstance(left, _List) and isinstance(right, _List):
+            self.spend(len(left.items) + len(right.items))
             return _List([*left.items, *right.items], len(self.conditions), left.kind)
         if isinstance(left, _Text) or isinstance(right, _Text):
             if isinstance(left, (_Text, _Either)) and isinstance(right, (_Text, _Either)):
@@ -742,7 +759,7 @@ class _Walker:
         for item in items:
             holder.items.append(self.guarded(item, holder.depth))
             if len(holder.items) > MOST_STEPS:
-                raise _TooMuch
+                raise _TooMuch(STEPS)
 
     # Calls
 
@@ -936,9 +953,17 @@ class _Walker:
 
     # Values as facts
 
+    def spend(self, steps: int) -> None:
+        """Counts steps; raises _TooMuch when there have been too many."""
+        self.steps += steps
+        if self.steps > MOST_STEPS:
+            raise _TooMuch(STEPS)
+
     def text(self, value: Any, node: ast.AST) -> Value:
         """A value as text; node: what to show where it is not known."""
+        self.spend(1)
         if isinstance(value, _Text):
+            self.spend(len(value.value) + len(value.value[0].text) // 100 if value.value else 1)
             return value.value
         if isinstance(value, _Constant):
             return literal("" if value.value is None else str(value.value))
@@ -954,6 +979,7 @@ class _Walker:
 
     def actions(self, value: Any, line: int, extra: tuple[Condition, ...] = ()) -> Iterator[Action]:
         """The actions that a value given for actions holds."""
+        self.spend(1)
         if isinstance(value, Action):
             if extra:
                 value = Action(value.kind, value.line, value.attributes, (*extra, *value.conditions), value.children)
@@ -1554,12 +1580,10 @@ def _environment(walker: _Walker, call: _Call) -> Any:
     """os.getenv() and os.environ.get()."""
     if not call.path.endswith(("os.getenv", "environ.get")):
         return _Unknown(_source(call.node))
-    given = [walker.text(value, call.node) for value in call.arguments if value != _Constant(None)]
-    if not given:
+    key, default = call.get(0, "key", "varname"), call.get(1, "default")
+    if key is None:
         return _Unknown(_source(call.node))
-    if len(call.arguments) < 2 and "default" not in call.keywords:
-        # None where it is not set: no text
-        return _Unknown(_source(call.node)) if len(given) < 1 else _Text((named("env", given[0]),))
+    given = [walker.text(value, call.node) for value in (key, default) if value not in (None, _Constant(None))]
     return _Text((named("env", *given),))
 
 
