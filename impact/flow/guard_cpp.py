@@ -33,6 +33,8 @@ _ABSOLUTE = frozenset(("abs", "std::abs", "fabs", "std::fabs", "fabsf"))
 _SUFFIX = re.compile(r"(?<=[\d.])[uUlLfFzZ]+$")
 _DURATION = re.compile(r"([\d.']+)(h|min|s|ms|us|ns)$")
 _SECONDS = {"h": "3600", "min": "60", "s": "1", "ms": "1e-3", "us": "1e-6", "ns": "1e-9"}
+_CATCH = re.compile(r"\bcatch\s*\(([^()]*)\)")
+_CAUGHT = re.compile(r"(?:const\s+)?(?:[\w:]*::)?(\w+(?:<.*>)?)(?:\s+const)?(?:\s*[&*]+\s*\w*|\s+(?!as\b)\w+)?")
 _DEFINED = re.compile(r"\bdefined\s+([A-Za-z_]\w*)")
 _HAS_INCLUDE = re.compile(r"<([^<>\s]+\.?[^<>\s]*)>")
 
@@ -75,6 +77,12 @@ def opaque(text: str) -> Term:
     return Term("opaque", " ".join(text.split()))
 
 
+def caught(declared: str) -> Term:
+    """That an exception was caught, whatever the variable is called and the namespace is."""
+    match = _CAUGHT.fullmatch(" ".join(declared.split()))
+    return Term("opaque", f"catch {match[1] if match else ' '.join(declared.split())}")
+
+
 def opaque_piece(text: str, holds: bool) -> Piece:
     term = opaque(text)
     return Piece(text if holds else f"!({text})", term if holds else negation(term))
@@ -108,8 +116,10 @@ class _Reader:
 
     def __init__(self, text: str) -> None:
         self.names: list[tuple[str, Term]] = []
-        self.source = b"void f() { if (" + text.encode("utf-8", "replace") + b"\n) ; }"
         self.text = text
+        # What was caught stands between conditions where branches are put together.
+        text = _CATCH.sub(lambda match: f'catch_("{match[1]}")', text) if "catch" in text else text
+        self.source = b"void f() { if (" + text.encode("utf-8", "replace") + b"\n) ; }"
 
     def clause(self) -> Any:
         """The condition's node; None when the text is not one condition."""
@@ -131,7 +141,8 @@ class _Reader:
         return clause.child_by_field_name("value")
 
     def said(self, node: Any) -> str:
-        return " ".join(self.source[node.start_byte : node.end_byte].decode("utf-8", "replace").split())
+        text = " ".join(self.source[node.start_byte : node.end_byte].decode("utf-8", "replace").split())
+        return re.sub(r'catch_\("([^"]*)"\)', r"catch (\1)", text) if "catch_" in text else text
 
     def tokens(self, node: Any) -> str:
         found: list[str] = []
@@ -276,6 +287,8 @@ class _Reader:
             if cast is not None:
                 return self.as_type(cast, arguments[0])
         function = self.term(called, depth)
+        if function.text == "catch_" and len(arguments) == 1 and arguments[0].kind == "string":
+            return caught(arguments[0].text[1:-1])
         if function.kind == "name" and len(arguments) == 1:
             if function.text in _PASSED_ON:
                 return arguments[0]

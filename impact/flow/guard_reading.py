@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Literal
 
@@ -13,7 +13,6 @@ from .guard_terms import Piece, Reading, Term, join, names_in, negation, rebuilt
 
 Language = Literal["cpp", "python"]
 _LOCK = re.compile(r"lock|mutex|condition|semaphore", re.IGNORECASE)
-_CAUGHT = re.compile(r"(?:const\s+)?([\w:]+(?:<.*>)?)(?:\s+const)?(?:\s*[&*]+\s*\w*|\s+(?!as\b)\w+)$")
 
 
 def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
@@ -25,13 +24,16 @@ def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
     return "cpp"
 
 
-def pieces_of(way: Sequence[GuardAt], language: Language, renames: dict[str, str]) -> tuple[Piece, ...]:
+def pieces_of(
+    way: Sequence[GuardAt], language: Language, renames: Mapping[str, str], meanings: Mapping[str, str]
+) -> tuple[Piece, ...]:
     """All that must hold on one way, outermost first, with variables of loops and conditions put back into what they
-    stand for."""
+    stand for, and so are those in meanings (name to expression)."""
     result: list[Piece] = []
+    meant = {name: _meaning(language, text) for name, text in meanings.items()}
     names: dict[str, dict[str, Term]] = {}
     for place, guard in enumerate(way):
-        known = names.setdefault(guard.of, {})
+        known = names.setdefault(guard.of, dict(meant))
         reading = read(language, guard.kind, guard.text)
         for piece in reading.pieces:
             term = substituted(piece.term, known) if known else piece.term
@@ -42,6 +44,11 @@ def pieces_of(way: Sequence[GuardAt], language: Language, renames: dict[str, str
         for name, value in reading.names:
             known[name] = substituted(value, known) if known else value
     return tuple(result)
+
+
+@lru_cache(4096)
+def _meaning(language: Language, text: str) -> Term:
+    return guard_cpp.expression(text) if language == "cpp" else guard_python.expression(text)
 
 
 def this_left_out(sides: Sequence[Sequence[Sequence[Piece]]]) -> tuple[tuple[tuple[Piece, ...], ...], ...]:
@@ -89,11 +96,10 @@ def read(language: Language, kind: str, text: str) -> Reading:
 
 
 def _caught(text: str) -> Term:
-    """What is caught, without the variable it is called."""
-    inside = re.sub(r"^catch\s*\((.*)\)$|^except\b", r"\1", text.strip()).strip()
-    match = _CAUGHT.match(inside)
-    named = match[1] if match else re.sub(r"\s+as\s+\w+$", "", inside)
-    return Term("opaque", f"catch {' '.join(named.split())}")
+    """That an exception was caught; the text is what is caught, alone or after `catch` or `except`."""
+    match = re.match(r"catch\s*\((.*)\)$|except\b(.*)", text.strip())
+    inside = match[1] or match[2] or "" if match else text
+    return guard_cpp.caught(re.sub(r"\s+as\s+\w+$", "", inside.strip()))
 
 
 def case(language: Language, text: str) -> Reading:

@@ -17,9 +17,22 @@ _TOKENS: dict[Language, re.Pattern[str]] = {
     "cpp": re.compile(_TOKEN.replace("COMMENT", r"//[^\n]*|/\*.*?\*/|\#[^\n]*"), re.DOTALL | re.VERBOSE),
     "python": re.compile(_TOKEN.replace("COMMENT", r"\#[^\n]*"), re.DOTALL | re.VERBOSE),
 }
-_KEYWORDS = frozenset(
-    ["and", "or", "not", "in", "is", "if", "elif", "else", "return", "while", "for", "case", "assert", "del", "raise", "yield", "await", "lambda", "from", "import", "as", "with", "global", "nonlocal", "new", "delete", "throw", "goto", "co_return", "co_await", "typename", "using", "namespace", "print"]
-)
+_KEYWORDS = frozenset(("and", "or", "not", "in", "is", "if", "elif", "else", "return", "while", "for", "case", "del"))
+_KEYWORDS |= {
+    "raise",
+    "yield",
+    "await",
+    "lambda",
+    "from",
+    "import",
+    "as",
+    "with",
+    "global",
+    "nonlocal",
+    "new",
+    "delete",
+}
+_KEYWORDS |= {"throw", "goto", "co_return", "co_await", "typename", "using", "namespace", "print", "assert"}
 _TYPE_ENDS = frozenset(("*", "&", ">"))
 _MOST_STATEMENTS = 20000
 
@@ -30,9 +43,10 @@ Statement = tuple[tuple[str, bool], ...]
 def propose_renames(old: str, new: str, language: Language) -> dict[str, str]:
     """Identifiers of one text that are called otherwise in the next, old name to new name.
 
-    old, new: the whole text of what is compared (all files that may know the names, one after the other). Proposed is a name that is gone from the text, when one that was not there before stands in its place in
-    statements that are the same otherwise: always the same one, in most of its places, two at the least, and where it
-    is declared or assigned among them. A name that only ever is asked for is not renamed: another one is asked.
+    old, new: the whole text of what is compared (all files that may know the names, one after the other). Proposed is
+    a name that is gone from the text, when one that was not there before stands in its place in statements that are
+    the same otherwise: always the same one, in most of its places, two at the least, and where it is declared or
+    assigned among them. A name that only ever is asked for is not renamed: another one is asked.
     """
     if old == new:
         return {}

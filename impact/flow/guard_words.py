@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from .guard_terms import Piece, Term, names_in
 
 _LONGEST = 100
+_MOST = 4
 _BLOCKS = ("macro ", "with ", "catch ")
 
 Asked = Callable[[Sequence[Piece], Piece], bool]
@@ -25,9 +26,8 @@ def words(before: Sequence[Piece], after: Sequence[Piece], asked: Asked) -> str:
             clauses.append(f"{_quoted(piece)} was {_quoted(other)}")
     removed = [piece for piece in removed if not asked(after, piece)]
     added = [piece for piece in added if not asked(before, piece)]
-    if len(removed) == len(added) == 1 and not clauses:
-        if _is_block(added[0]) == _is_block(removed[0]):
-            return f"{_quoted(added[0])} was {_quoted(removed[0])}"
+    if len(removed) == len(added) == 1 and not clauses and _is_block(added[0]) == _is_block(removed[0]):
+        return f"{_quoted(added[0])} was {_quoted(removed[0])}"
     more = " too" if before else ""
     for place, pieces in (("when", [p for p in added if not _is_block(p)]), ("inside", list(filter(_is_block, added)))):
         if pieces:
@@ -95,6 +95,8 @@ def _is_block(piece: Piece) -> bool:
 
 def _listed(pieces: Sequence[Piece]) -> str:
     quoted = [_quoted(piece) for piece in pieces]
+    if len(quoted) > _MOST:
+        quoted = [*quoted[: _MOST - 1], f"{len(quoted) - _MOST + 1} more"]
     return " and ".join(([", ".join(quoted[:-1])] if quoted[:-1] else []) + quoted[-1:])
 
 

@@ -26,6 +26,7 @@ _Side = tuple[tuple[Piece, ...], ...]
 
 MILLISECONDS = 200
 _NOTHING: Mapping[str, str] = {}
+_NO_MEANINGS = (_NOTHING, _NOTHING)
 
 
 def compare(
@@ -34,15 +35,18 @@ def compare(
     renames: Mapping[str, str] = _NOTHING,
     language: Language | None = None,
     types: Mapping[str, str] = _NOTHING,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
     milliseconds: int = MILLISECONDS,
 ) -> Kind:
     """What happened to the guards of one statement, outermost first.
 
     renames: identifiers of the old revision that are called otherwise in the new one. language: as the guards' paths
     tell it when it is not given. types: of names as the new revision has them, as they are declared; they decide
-    whether `n > 0` is `n >= 1` and `n != 0`. milliseconds: what it may take; `changed` when that is not enough.
+    whether `n > 0` is `n >= 1` and `n != 0`. meanings: local variables of the old and of the new revision that are
+    assigned once, with the expression they are assigned: `if (n)` after `n = v.size()` is `if (v.size())`.
+    milliseconds: what it may take; `changed` when that is not enough.
     """
-    return compare_ways((old,), (new,), renames, language, types, milliseconds)
+    return compare_ways((old,), (new,), renames, language, types, meanings, milliseconds)
 
 
 def compare_ways(
@@ -51,13 +55,14 @@ def compare_ways(
     renames: Mapping[str, str] = _NOTHING,
     language: Language | None = None,
     types: Mapping[str, str] = _NOTHING,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
     milliseconds: int = MILLISECONDS,
 ) -> Kind:
     """As compare(), for a statement that several ways lead to: it runs when all guards of one of them hold."""
-    if not renames and _written(old) == _written(new):
+    if not renames and meanings[0] == meanings[1] and _written(old) == _written(new):
         return "equivalent"
     language = language or language_of((*old, *new))
-    before, after = _sides(old, new, renames, language)
+    before, after = _sides(old, new, renames, language, meanings)
     if _said(before) == _said(after):
         return "equivalent"
 
@@ -83,11 +88,12 @@ def explain(
     renames: Mapping[str, str] = _NOTHING,
     language: Language | None = None,
     types: Mapping[str, str] = _NOTHING,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
     milliseconds: int = MILLISECONDS,
 ) -> str:
     """One clause that tells people what was added or removed, with code in backticks: "only when `a` too", "no longer
     asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same. Arguments as of compare()."""
-    return explain_ways((old,), (new,), renames, language, types, milliseconds)
+    return explain_ways((old,), (new,), renames, language, types, meanings, milliseconds)
 
 
 def explain_ways(
@@ -96,13 +102,14 @@ def explain_ways(
     renames: Mapping[str, str] = _NOTHING,
     language: Language | None = None,
     types: Mapping[str, str] = _NOTHING,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
     milliseconds: int = MILLISECONDS,
 ) -> str:
     """As explain(), for a statement that several ways lead to."""
-    if compare_ways(old, new, renames, language, types, milliseconds) == "equivalent":
+    if compare_ways(old, new, renames, language, types, meanings, milliseconds) == "equivalent":
         return ""
     language = language or language_of((*old, *new))
-    before, after = _sides(old, new, renames, language)
+    before, after = _sides(old, new, renames, language, meanings)
 
     def asked(pieces: Sequence[Piece], piece: Piece) -> bool:
         try:
@@ -118,7 +125,7 @@ def impossible(guards: Guards, language: Language | None = None, milliseconds: i
     """Whether guards contradict each other. That tells that the statement never runs only where nothing they name is
     assigned between them."""
     language = language or language_of((guards,))
-    pieces = pieces_of(guards, language, {})
+    pieces = pieces_of(guards, language, _NOTHING, _NOTHING)
     try:
         return not Solver(language, _NOTHING, milliseconds).possible(_all_of(pieces))
     except Undecided:
@@ -129,9 +136,15 @@ def _written(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
     return frozenset(tuple((guard.kind, guard.text) for guard in way) for way in ways)
 
 
-def _sides(old: Ways, new: Ways, renames: Mapping[str, str], language: Language) -> tuple[_Side, _Side]:
-    before = tuple(pieces_of(way, language, dict(renames)) for way in old)
-    after = tuple(pieces_of(way, language, {}) for way in new)
+def _sides(
+    old: Ways,
+    new: Ways,
+    renames: Mapping[str, str],
+    language: Language,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]],
+) -> tuple[_Side, _Side]:
+    before = tuple(pieces_of(way, language, renames, meanings[0]) for way in old)
+    after = tuple(pieces_of(way, language, _NOTHING, meanings[1]) for way in new)
     if language == "cpp":
         before, after = this_left_out((before, after))
     return before, after
