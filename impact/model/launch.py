@@ -1130,6 +1130,7 @@ class _Launch:
         outer, self.scope = self.scope, self.scope.inner(len(self.open))
         self.scope.remaps = []
         own: list[Remap] = []
+        given: list[tuple[Action, list[str]]] = [(action, []) for action in self.scope.private]
         for child in action.children:
             verdict, open_, _, _ = self.decide(child.conditions)
             if verdict is False:
@@ -1137,15 +1138,17 @@ class _Launch:
             self.open += open_
             if child.kind == "remap":
                 own.append(self.remap(child))
-            elif child.kind == "parameter" and full.value is not None:
-                self.serve(child, full)
+            elif child.kind == "parameter":
+                given.append((child, open_))
             elif child.kind == "parameter-file" and full.value is not None:
                 self.serve_file(child, full)
             del self.open[len(self.open) - len(open_) :]
         self.scope = outer
-        if full.value is not None:
-            for action_ in self.scope.private:
-                self.serve(action_, full)
+        # Files are loaded as they are met, then come the private parameters of the scope, then the node's own.
+        for child, open_ in given if full.value is not None else ():
+            self.open += open_
+            self.serve(child, full)
+            del self.open[len(self.open) - len(open_) :]
         remaps = _without_earlier([*self.scope.remaps, *own])
         for text in words:
             old, sign, new = (text.value or "").partition(":=")

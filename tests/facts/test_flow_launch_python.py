@@ -12,9 +12,8 @@ def said(value):
     shown = []
     for p in value:
         parts = ", ".join(said(part) for part in p.parts)
-        shown.append(
-            p.text if p.kind == "text" else f"<{p.kind}{' ' if p.text else ''}{p.text}{f': {parts}' if parts else ''}>"
-        )
+        name = f"{p.kind} {p.text}".strip()
+        shown.append(p.text if p.kind == "text" else f"<{name}{f': {parts}' if parts else ''}>")
     return "".join(shown)
 
 
@@ -30,7 +29,8 @@ def lines(actions, depth=0):
 
 def read(body, before=""):
     """The actions of a launch file whose generate_launch_description() has a body."""
-    text = f"{textwrap.dedent(before)}\ndef generate_launch_description():\n{textwrap.indent(textwrap.dedent(body), '    ')}\n"
+    inside = textwrap.indent(textwrap.dedent(body), "    ")
+    text = f"{textwrap.dedent(before)}\ndef generate_launch_description():\n{inside}\n"
     file = extract(text.encode(), "launch_python")
     assert (file.language, file.generation, file.problems) == ("python", 2, ())
     return lines(file.actions)
@@ -138,7 +138,7 @@ VALUES = [
     ("unknown_thing(x)", "<other unknown_thing(x)>"),
     ("x.upper()", "<method upper: b>"),
     ("open('f').read()", "<content: f>"),
-    ("RewrittenYaml(source_file='f', root_key=x, param_rewrites={'a': 'c'}, convert_types=True)", "<rewritten: f, b, a, c>"),
+    ("RewrittenYaml(source_file='f', root_key=x, param_rewrites={'a': 'c'})", "<rewritten: f, b, a, c>"),
 ]  # fmt: skip
 
 
@@ -170,7 +170,8 @@ BODIES = {
             [Node(package='p', executable='e', name=f'n{i}') for i in range(2)]
             + [Node(package='p', executable=e, name=n) for n, e in {'a': 'b', 'c': 'd'}.items() if n != 'a'])
         """,
-        ["node package=p executable=e name=n0", "node package=p executable=e name=n1", "node package=p executable=d name=c"],
+        ["node package=p executable=e name=n0", "node package=p executable=e name=n1",
+         "node package=p executable=d name=c"],
     ),
     "unknown loop": (
         """
@@ -275,7 +276,8 @@ BODIES = {
             Node(package='p', executable='b', condition=LaunchConfigurationNotEquals('m', 'x')),
             Node(package='p', executable='c', condition=strange())])
         """,
-        ["node package=p executable=a [if <equals: <arg m>, x>]", "node package=p executable=b [unless <equals: <arg m>, x>]",
+        ["node package=p executable=a [if <equals: <arg m>, x>]",
+         "node package=p executable=b [unless <equals: <arg m>, x>]",
          "node package=p executable=c [if <other strange()>]"],
     ),
 }  # fmt: skip
