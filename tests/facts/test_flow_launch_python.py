@@ -76,8 +76,8 @@ def test_what_actions_say():
         "parameter name=use_sim_time value=True type=bool",
         "remap from=/tf to=tf",
         "namespace namespace=<arg ns>",
-        "node package=p executable=e name=n namespace=s arguments=--ros-args arguments=--log-level arguments=<arg level>"
-        " [if <arg go>]",
+        "node package=p executable=e name=n namespace=s arguments=--ros-args arguments=--log-level"
+        " arguments=<arg level> [if <arg go>]",
         "  remap from=a to=b",
         "  remap from=<arg from> to=x/<arg to>",
         "  parameter name=f value=0.5 type=double",

@@ -61,7 +61,8 @@ def node(name, more="", inside=""):
         ('<group ns="g"><group ns="h">' + node("n") + "</group>" + node("m") + "</group>", ["/g/h/n", "/g/m"]),
         (node("n", 'args="__name:=m __ns:=/q"'), ["/q/m"]),
         (node("$(anon n)"), ["/n_<anonymous>"]),
-        ('<arg name="a" default="x"/>' + node("n", "if=\"$(eval a == 'x')\"") + node("m", "unless=\"$(eval a == 'x')\""),
+        ('<arg name="a" default="x"/>' + node("n", "if=\"$(eval a == 'x')\"")
+         + node("m", "unless=\"$(eval a == 'x')\""),
          ["/n"]),
         ('<arg name="a" default="false"/>' + node("n", 'if="$(arg a)"'), []),
         ('<arg name="a" default="1"/><group ns="$(arg a)" if="$(arg a)">' + node("n") + "</group>", ["/1/n"]),
@@ -345,7 +346,8 @@ def test_values_of_ros1(text, type_, expected):
 
 @pytest.mark.parametrize(
     ("expression", "expected"),
-    [("1 + 2 * 3", 7), ("'a' in 'abc' and not False", True), ("'a' if 1 > 2 else 'b'", "b"), ("'a-b'.split('-')[1]", "b"),
+    [("1 + 2 * 3", 7), ("'a' in 'abc' and not False", True), ("'a' if 1 > 2 else 'b'", "b"),
+     ("'a-b'.split('-')[1]", "b"),
      ("1 < 2 < 3", True), ("'abc'[1:]", "bc"), ("len('ab') == 2", True)],
 )  # fmt: skip
 def test_expressions(expression, expected):
