@@ -175,7 +175,8 @@ class Code:
         if len(found) > 1:
             found = max(_groups(found, source, scope).items(), default=(0, found))[1]
         names = {(cls.name, cls.source.package) for cls in found}
-        return found[0] if len(names) == 1 else None
+        # Of several bodies under one name (behind `#if`, say) the largest.
+        return max(found, key=lambda cls: cls.facts.end - cls.facts.line) if len(names) == 1 else None
 
     def bases(self, cls: Cls) -> list[Cls]:
         """The class and those it derives from, nearest first, as far as they are in the code."""
@@ -486,6 +487,21 @@ class Code:
                 for target in self.targets(call.callee, fn):
                     if target is not fn:
                         found.setdefault(id(target), []).append((fn, call))
+        return found
+
+    @cached_property
+    def passed(self) -> dict[Variable, list[tuple[Fn, Call, int]]]:
+        """Calls of functions of the code that a variable is passed to, with the argument's number."""
+        found: dict[Variable, list[tuple[Fn, Call, int]]] = {}
+        for fn in self.functions:
+            if fn.source.facts.language != "cpp":
+                continue
+            for call in fn.facts.calls:
+                if tail(call.callee) not in self.by_tail:
+                    continue
+                for place, argument in enumerate(call.arguments):
+                    if argument.kind == "name":
+                        found.setdefault(self.identity(argument.text, fn), []).append((fn, call, place))
         return found
 
     @cached_property

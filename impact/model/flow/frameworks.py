@@ -15,7 +15,7 @@ import msgspec
 if sys.version_info >= (3, 11):
     import tomllib
 else:
-    import tomli as tomllib
+    import tomli as tomllib  # pyright: ignore[reportMissingImports]
 
 Spot = int | str
 TABLE = Path(__file__).with_name("frameworks.toml")

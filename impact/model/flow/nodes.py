@@ -43,6 +43,13 @@ class Reach:
     def __init__(self, sites: Sites):
         self.sites, self.code = sites, sites.code
         self._edges: dict[int, tuple[list[Fn], list[Cls]]] = {}
+        # Owners, as functions name them, of classes that are loaded by name, to the name of the class.
+        self._loaded: dict[str, str] = {}
+        for source in self.code.sources:
+            for name in source.facts.exports:
+                cls = self.code.class_of(name.removeprefix("::"), source)
+                if cls is not None:
+                    self._loaded.update((fn.facts.owner, cls.name) for fn in self.code.functions_of(cls))
         self._lambdas: dict[tuple[str, str], list[Fn]] = {}
         for fn in self.code.functions:
             if fn.is_lambda:
@@ -53,6 +60,7 @@ class Reach:
         functions: set[int] = set()
         names: set[str] = set()
         queue: list[Fn] = list(roots)
+        begun = {id(fn) for fn in queue}
         made: list[Cls] = list(classes)
         while queue or made:
             while made:
@@ -63,13 +71,10 @@ class Reach:
                     names.add(one.name)
                     queue.extend(self.code.functions_of(one))
                     for member in one.facts.members:
-                        inner = (
-                            self.code.class_of(
-                                self.code.meant_type(member.type, one.source, one.name).name, one.source, one.name
-                            )
-                            if member.type
-                            else None
-                        )
+                        if not member.type or _points(member.type):
+                            continue  # made elsewhere, or by this class with code that is followed
+                        kind = self.code.meant_type(member.type, one.source, one.name)
+                        inner = self.code.class_of(kind.name, one.source, one.name) if kind.name else None
                         if inner is not None:
                             made.append(inner)
             if not queue:
@@ -77,6 +82,9 @@ class Reach:
             fn = queue.pop()
             if id(fn) in functions:
                 continue
+            loaded = self._loaded.get(fn.facts.owner)
+            if loaded is not None and loaded not in names and id(fn) not in begun:
+                continue  # one of many that may be loaded at run time: a node of its own
             functions.add(id(fn))
             further, objects = self.edges(fn)
             queue.extend(further)
@@ -97,13 +105,18 @@ class Reach:
                 if cls is not None:
                     objects.append(cls)
             for each in fn.facts.assignments:
-                if each.type and "*" not in each.type and "&" not in each.type:
+                if each.type and not _points(each.type):
                     kind = code.meant_type(each.type, fn.source, fn.scope)
                     cls = code.class_of(kind.name, fn.source, fn.scope) if kind.name else None
                     if cls is not None:
                         objects.append(cls)
             known = self._edges[id(fn)] = (further, objects)
         return known
+
+
+def _points(type_: str) -> bool:
+    """Whether a variable of a type holds what is made elsewhere, or by code that is followed."""
+    return "*" in type_ or "&" in type_ or "ptr" in type_.lower()
 
 
 def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:

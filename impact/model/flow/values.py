@@ -153,6 +153,8 @@ class Values:
                 yield Value(None, "unresolved", f"`{variable.name}` is put together in steps")
         for use in self.filled.get(variable, ()):
             yield from self._parameter(use, seen)
+        if not self.code.writes.get(variable) or variable.kind == "local":
+            yield from self._by_reference(variable, seen)
         if variable.kind == "local":
             for one in self.code.chain(fn):
                 place = parameter_of(one, variable.name)
@@ -161,6 +163,25 @@ class Values:
                     if place[1].default is not None:
                         yield from self._of(place[1].default, one, one.facts.line, seen)
                     break
+
+    def _by_reference(self, variable: Variable, seen: tuple) -> Iterator[Value]:
+        """What functions write into a variable that is passed to them by reference."""
+        for caller, call, place in self.code.passed.get(variable, ()):
+            for target in self.code.targets(call.callee, caller):
+                parameters = target.facts.parameters
+                if place < len(parameters) and "&" in parameters[place].type and "const" not in parameters[place].type:
+                    inner = self.code.identity(parameters[place].name, target)
+                    if inner not in seen:
+                        yield from self.written(inner, (*seen, inner))
+
+    def written(self, variable: Variable, seen: tuple) -> Iterator[Value]:
+        """What is written into a variable, where it stands, or fills it from a parameter."""
+        for writer, each in self.code.writes.get(variable, ()):
+            if each.operator == "=":
+                yield from self._of(each.value, writer, each.line, seen)
+        for use in self.filled.get(variable, ()):
+            yield from self._parameter(use, seen)
+        yield from self._by_reference(variable, seen)
 
     def _constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[Value]:
         name = variable.name

@@ -1,4 +1,4 @@
-"""The message-flow graph of a linked workspace: which files are read for it, what is built of them, and the join."""
+"""The message-flow graph of a workspace: which files are read for it, what is built of them, and the join."""
 
 from __future__ import annotations
 
@@ -7,39 +7,53 @@ from collections.abc import Callable, Iterator, Mapping
 
 import msgspec
 
+from ...cache import code_stamp
 from ...facts.flow import FlowFile
 from ...facts.kinds import FLOW
+from ...facts.kinds import kind_of as kind_by_name
 from ...gather import Gathered, gather
-from ..package import role_of_folder
-from ..workspace import Package, Workspace
+from ..package import Watched, role_of_folder
+from ..workspace import Package, Workspace, link
 from .graph import Graph
 from .join import Join
 from .nodes import Built
 from .started import launched
 
-# Raise with every change of what the join says of the same facts.
-VERSION = "1"
 _LIBRARIES = frozenset(("library", "module", "interface"))
+_BUILD = frozenset(("manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "msg", "srv", "action"))
+_CODE = frozenset(FLOW.values())
+
+Progress = Callable[[int, int], None]
 
 
-def kinds_of(workspace: Workspace) -> dict[str, str]:
-    """The kind of flow facts wanted of each C++ and Python file of the packages, tests left out."""
-    gathered = workspace.gathered
-    wanted: dict[str, str] = {}
+def kind_of(path: str) -> str | None:
+    """The kind of facts that message flow wants of a path: code, and what tells how it is built."""
+    kind = kind_by_name(path)
+    return FLOW.get(kind or "") or (kind if kind in _BUILD else None)
+
+
+def linked(tree, store, jobs: int | None = None, progress: Progress | None = None) -> Workspace:
+    """A workspace as far as message flow needs it: its packages, their builds, and the flow facts of its code.
+
+    Rules on dependencies cannot be asked of it: the facts that they need are not read. progress: as gather() has it.
+    """
+    gathered = gather(tree, store, jobs=jobs, progress=progress, kind_of=kind_of)
+    return link(tree, gathered, store, None, Watched(), jobs)
+
+
+def code_of(workspace: Workspace) -> dict[str, str]:
+    """The code of the packages, by path the package it belongs to; tests are left out."""
+    found: dict[str, str] = {}
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in package.digest.files:
-            kind = gathered.kinds.get(path)
-            if kind == "script":
-                kind = gathered.facts(path).kind
-            flow = FLOW.get(kind or "")
-            if flow is not None and role_of_folder(path[start:]) != "test":
-                wanted[path] = flow
-    return wanted
+            if workspace.gathered.kinds.get(path) in _CODE and role_of_folder(path[start:]) != "test":
+                found[path] = package.name
+    return found
 
 
-def built_of(workspace: Workspace) -> Iterator[Built]:
-    """What the build of each package makes."""
+def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[Built]:
+    """What the build of each package makes. files: flow facts by path."""
     libraries = {
         target.name: target.sources
         for package in workspace
@@ -54,95 +68,88 @@ def built_of(workspace: Workspace) -> Iterator[Built]:
     for package in workspace:
         targets = package.build.targets
         executables = {target.name: target.sources for target in targets if target.kind == "executable"}
-        yield Built(package.name, executables, libraries, _components(package), _scripts(package), links)
+        components = {exported.item: "" for exported in package.build.exports if exported.how == "component"}
+        yield Built(package.name, executables, libraries, components, _scripts(package, files), links)
 
 
-def _components(package: Package) -> dict[str, str]:
-    return {exported.item: "" for exported in package.build.exports if exported.how == "component"}
-
-
-def _scripts(package: Package) -> dict[str, str]:
-    """Python programs of a package: entry points, installed programs, and files that say so in their first line."""
-    files = set(package.digest.files)
-    base = f"{package.path}/" if package.path else ""
+def _scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, str]:
+    """Python programs of a package: entry points, installed programs, and files that run when they are started."""
+    present = set(package.digest.files)
     found: dict[str, str] = {}
     for path, setup in package.digest.setup:
         folder = path.rpartition("/")[0]
         for name, target, _ in setup.entry_points:
             module, _, function = target.partition(":")
             stem = module.strip().replace(".", "/")
-            for candidate in (f"{folder}/{stem}.py", f"{folder}/src/{stem}.py", f"{folder}/{stem}/__init__.py"):
-                candidate = candidate.lstrip("/")
-                if candidate in files:
-                    found[name] = f"{candidate}:{function.strip() or 'main'}"
+            for inside in (f"{folder}/{stem}.py", f"{folder}/src/{stem}.py", f"{folder}/{stem}/__init__.py"):
+                if inside.lstrip("/") in present:
+                    found[name] = f"{inside.lstrip('/')}:{function.strip() or 'main'}"
                     break
     reached = {where.partition(":")[0] for where in found.values()}
     programs = {item for install in package.build.installs if install.kind == "programs" for item in install.items}
-    for path in (*sorted(programs & files), *package.digest.scripts):
+    runs = [path for path in package.digest.files if path in files and _runs(files[path])]
+    for path in (*sorted(programs & files.keys()), *runs):
         name = path.rpartition("/")[2]
-        if path not in reached and name not in ("setup.py", "conf.py") and path.startswith(base):
+        if path not in reached and name not in ("setup.py", "conf.py"):
             found.setdefault(name, path)
             reached.add(path)
     return found
 
 
-def joined(
-    workspace: Workspace, jobs: int | None = None, progress: Callable[[int, int], None] | None = None
-) -> tuple[Join, Gathered]:
-    """The code of a workspace, joined; and its facts. progress: as gather() has it."""
-    gathered = _flow(workspace, jobs, progress)
-    return _join(workspace, gathered), gathered
+def _runs(file: FlowFile) -> bool:
+    """Whether a Python file does something when it is started: it asks for its name, or makes itself a node."""
+    if file.language != "python":
+        return False
+    top = [function for function in file.functions if not function.name]
+    asks = any("__main__" in guard.text for function in top for guard in function.guards)
+    return asks or any(call.callee == "rospy.init_node" for function in top for call in function.calls)
+
+
+def joined(workspace: Workspace) -> Join:
+    """The code of a workspace, joined."""
+    gathered, packages = workspace.gathered, code_of(workspace)
+    gathered.preload(packages)
+    facts = {path: gathered.facts(path).facts for path in packages}
+    files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
+    return Join(files, packages.__getitem__, built_of(workspace, files), workspace.ros)
 
 
 def graph_of(
-    workspace: Workspace,
-    store,
-    root: str = "",
-    rev: str = "",
-    jobs: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
-    launch: str = "",
+    workspace: Workspace, store, root: str = "", rev: str = "", launch: str = "",
     arguments: Mapping[str, str] | None = None,
-) -> Graph:
-    """The message-flow graph of a workspace. store: remembers it by the content it was joined from. launch: the path of
-    a launch file, relative to the workspace's root: then the graph of what it starts; arguments: its arguments."""
-    gathered = _flow(workspace, jobs, progress)
+) -> Graph:  # fmt: skip
+    """The message-flow graph of a workspace. store: remembers it by the content it was joined from.
+
+    launch: the path of a launch file, relative to the workspace's root: then the graph of what it starts; arguments:
+    the launch file's arguments.
+    """
     if launch:
         start = launched(workspace, launch, arguments or {})
-        join = _join(workspace, gathered)
-        return join.graph(root, rev, [s.path for s in join.code.sources if s.facts.unread], start)
-    stamp = hashlib.sha1(workspace.identity + VERSION.encode())
-    for path in sorted(gathered.kinds):
-        stamp.update(f"{path} {gathered.ids.get(path, '')} {gathered.kinds[path]}\n".encode("utf-8", "surrogateescape"))
-    key = stamp.digest()
+        join = joined(workspace)
+        return join.graph(root, rev, _unread(join), start)
+    key = _key(workspace)
     known = store.memo("graph", key) if store is not None else None
     if known is not None:
         try:
             return msgspec.structs.replace(msgspec.msgpack.decode(known, type=Graph), root=root, rev=rev)
         except msgspec.MsgspecError:
-            pass
-    join = _join(workspace, gathered)
-    graph = join.graph(unread=[s.path for s in join.code.sources if s.facts.unread])
+            pass  # of another version: made anew
+    join = joined(workspace)
+    graph = join.graph(unread=_unread(join))
     if store is not None:
         store.remember("graph", [(key, msgspec.msgpack.encode(graph))])
     return msgspec.structs.replace(graph, root=root, rev=rev)
 
 
-def _flow(workspace: Workspace, jobs: int | None, progress: Callable[[int, int], None] | None) -> Gathered:
-    wanted = kinds_of(workspace)
-    main = workspace.gathered
-    return gather(main.tree, main.store, jobs=jobs, progress=progress, kind_of=wanted.get)
+def _unread(join: Join) -> list[str]:
+    return [source.path for source in join.code.sources if source.facts.unread]
 
 
-def _join(workspace: Workspace, gathered: Gathered) -> Join:
-    paths = gathered.paths()
-    gathered.preload(paths)
-    files: dict[str, FlowFile] = {path: gathered.facts(path).facts for path in paths}
-    owner = workspace.discovered.owner
-    packages = {package.path: package.name for package in workspace}
-
-    def package_of(path: str) -> str:
-        place = owner(path)
-        return packages.get(place.path, "") if place is not None else ""
-
-    return Join(files, package_of, built_of(workspace), workspace.ros)
+def _key(workspace: Workspace) -> bytes:
+    gathered: Gathered = workspace.gathered
+    stamp = hashlib.sha1(workspace.identity + code_stamp().encode())
+    for path in sorted(gathered.kinds):
+        if gathered.kinds[path] in _CODE:
+            row = f"{path} {gathered.ids.get(path, '')} {gathered.kinds[path]}\n"
+            stamp.update(row.encode("utf-8", "surrogateescape"))
+    return stamp.digest()
