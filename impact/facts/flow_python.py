@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 from .flow import Access, Alias, Assignment, Expr, FlowFile
 from .flow_python_body import Body, ClassBody
-from .flow_python_conditions import EXITS, JUMPS, STAYS, Condition, Leaving, Test, breaks, either, test
+from .flow_python_conditions import EXITS, JUMPS, STAYS, Condition, Leaving, Test, breaks, either, test, within
 from .flow_python_expressions import ANY, Expressions
 from .place import Problem
 from .python import Source, read
@@ -189,17 +189,18 @@ class Statements(Expressions):
             more = self.block(node.orelse)
             left = JUMPS if more is None else (*left, *more)
             self.guard = saved
-        if self.block(node.finalbody) is None:
+        last = self.block(node.finalbody)
+        if last is None:
             return JUMPS
         going_on = [(what, line) for what, line, leaving in caught if leaving is not None]
         if left is None:
             if not going_on:
                 return JUMPS
-            return (Condition("catch", ", ".join(what for what, _ in going_on), going_on[0][1]),)
+            return (Condition("catch", ", ".join(what for what, _ in going_on), going_on[0][1]), *last)
         jumping = tuple(
             Condition("unless", f"except {what}", line) for what, line, leaving in caught if leaving is None
         )
-        return jumping if going_on else (*left, *jumping)
+        return (*jumping, *last) if going_on else (*left, *jumping, *last)
 
     def with_(self, node: ast.With) -> Leaving:
         heads: list[str] = []
@@ -214,47 +215,69 @@ class Statements(Expressions):
                 heads.append(f"{self.source(item.context_expr)} as {self.source(variable)}")
         return self.under("with", ", ".join(heads), node.lineno, node.body)
 
-    def match(self, node) -> Leaving:
+    def match(self, node: ast.Match) -> Leaving:
         subject = self.value(node.subject, "read")
         head = self.source(node.subject)
-        values: list[str] = []
-        named = [self.pattern(case.pattern) for case in node.cases]
+        if node.subject.__class__ not in (ast.Name, ast.Attribute, ast.Call, ast.Subscript):
+            head = f"({head})"
+        # Values that a case takes whatever else holds, cases that ask more, and how those that are taken are left.
+        taken: list[str] = []
+        asking: list[tuple[list[str], str]] = []
         jumping: list[str] = []
-        staying: list[str] = []
+        staying: list[tuple[list[str], str]] = []
         conditions: list[Condition] = []
         other: Leaving = STAYS
-        for case, value in zip(node.cases, named, strict=False):
-            saved = self.guard
-            line = case.pattern.lineno
+        for case in node.cases:
+            saved, line = self.guard, case.pattern.lineno
+            values = self.pattern(case.pattern)
+            entered = [" or ".join(f"{head} == {value}" for value in values)] if values else []
+            if len(values) > 1:
+                entered = [f"({entered[0]})"]
             self.captured(case.pattern, subject, line)
-            if value:
-                self.push("case", f"{head} == {' or '.join(value)}", line)
-            elif values:
-                self.push("case", f"{head} other than {', '.join(values)}", line)
+            if values:
+                self.push("case", f"{head} == {' or '.join(values)}", line)
+            elif taken:
+                self.push("case", f"{head} other than {', '.join(taken)}", line)
+                entered = [f"{head} != {value}" for value in taken]
+            for asked_values, text in asking:
+                if not values or not asked_values or not set(values).isdisjoint(asked_values):
+                    self.push("unless", text, line)
             if case.guard is not None:
                 self.visit(case.guard)
                 self.push("if", self.source(case.guard), line)
+                entered.append(self.test(case.guard).conjunct)
             leaving = self.block(case.body)
             self.guard = saved
-            if not value and case.guard is None:
-                other = leaving
-            elif case.guard is not None:
-                if leaving is None:
-                    asked = self.test(case.guard).conjunct
-                    text = f"{head} == {' or '.join(value)} and {asked}" if value else asked
+            text = " and ".join(entered)
+            if leaving is None:
+                if case.guard is not None:
                     conditions.append(Condition("unless", text, line))
-                elif value:
-                    staying += value
+                elif values:
+                    jumping += values
+                else:
+                    other = JUMPS
             else:
-                (jumping if leaving is None else staying).extend(value)
+                staying.append((values if case.guard is None else [], text))
+                conditions += within(text, leaving)
             if case.guard is None:
-                values += value
+                taken += values
+            else:
+                asking.append((values, text))
+            if not values and case.guard is None:
+                break
         if other is None:
             if not staying:
                 return JUMPS
-            return (*conditions, Condition("case", f"{head} == {' or '.join(staying)}", node.lineno))
+            if all(values for values, _ in staying):
+                values = [value for values, _ in staying for value in values]
+                text = f"{head} == {' or '.join(values)}"
+                opposite = " and ".join(f"{head} != {value}" for value in values)
+                return (*conditions, Condition("case", text, node.lineno, opposite))
+            return (*conditions, Condition("if", " or ".join(text for _, text in staying), node.lineno))
         if jumping:
-            conditions.append(Condition("case", f"{head} other than {', '.join(jumping)}", node.lineno))
+            text = f"{head} other than {', '.join(jumping)}"
+            opposite = " or ".join(f"{head} == {value}" for value in jumping)
+            conditions.append(Condition("case", text, node.lineno, f"({opposite})"))
         return tuple(conditions)
 
     def pattern(self, node) -> list[str]:

@@ -7,11 +7,13 @@ from typing import NamedTuple
 
 
 class Condition(NamedTuple):
-    """A condition that holds behind a statement: kind, text and line of the Guard it becomes."""
+    """A condition that holds behind a statement: kind, text and line of the Guard it becomes. opposite: the text of
+    when it does not hold, to stand beside `and`, where kind and text do not give it."""
 
     kind: str
     text: str
     line: int
+    opposite: str = ""
 
 
 # How control leaves statements: not at all, or at their end under these conditions.
@@ -55,20 +57,25 @@ def either(asked: Test, yes: Leaving, no: Leaving) -> Leaving:
     if not yes and not no:
         return STAYS
     if not yes and len(no) == 1 and no[0].kind == "if" and len(asked.text) + len(no[0].text) < LONGEST_COMPOSED:
-        return (Condition("if", f"{asked.text} or {no[0].text}", asked.line),)
+        texts = (f"({text})" if " else " in text else text for text in (asked.text, no[0].text))
+        return (Condition("if", " or ".join(texts), asked.line),)
+    return (*within(asked.conjunct, yes), *within(asked.negation, no))
+
+
+def within(head: str, leaving: tuple[Condition, ...]) -> tuple[Condition, ...]:
+    """What holds behind a branch that is entered when `head` holds and is left at its end under conditions."""
     result: list[Condition] = []
-    for head, leaving in ((asked.conjunct, yes), (asked.negation, no)):
-        for condition in leaving:
-            tail = _opposite(condition)
-            if tail and len(head) + len(tail) < LONGEST_COMPOSED:
-                result.append(Condition("unless", f"{head} and {tail}", condition.line))
+    for condition in leaving:
+        tail = _opposite(condition)
+        if tail and len(head) + len(tail) < LONGEST_COMPOSED:
+            result.append(Condition("unless", f"{head} and {tail}" if head else tail, condition.line))
     return tuple(result)
 
 
 def _opposite(condition: Condition) -> str:
     """The text of when a condition does not hold, beside an `and`; empty when that has no words."""
-    if condition.text.startswith("except"):
-        return ""
+    if condition.opposite or condition.text.startswith("except"):
+        return condition.opposite
     if condition.kind == "unless":
         return f"({condition.text})" if " or " in condition.text or " else " in condition.text else condition.text
     return f"not ({condition.text})" if condition.kind == "if" else ""

@@ -1,6 +1,8 @@
 """Facts of message flow in Python: calls, what they are given and kept in, their guards, uses of variables."""
 
 import ast
+import contextlib
+import itertools
 import sys
 import textwrap
 import time
@@ -91,7 +93,9 @@ def guards(text, callee="p"):
         ("match a:\n  case 1 | B.c: p()", ["case a == 1 or B.c"]),
         ("match a:\n  case 1: x()\n  case 2 | 3: y()\n  case _: p()", ["case a other than 1, 2, 3"]),
         ("match a:\n  case 1 if b: p()", ["case a == 1", "if b"]),
-        ("match a:\n  case 1 if b: x()\n  case _: p()", []),
+        ("match a:\n  case 1 if b: x()\n  case _: p()", ["unless a == 1 and b"]),
+        ("match a:\n  case 1 if b: x()\n  case 2: p()", ["case a == 2"]),
+        ("match a, b:\n  case (1, x): p()", ["case (a, b) == (1, x)"]),
         ("match a:\n  case C(x=1) as c: p()", ["case a == C(x=1)"]),
         ("match a.b:\n  case x: p()", []),
     ],
@@ -650,6 +654,97 @@ def test_never_raises_on_bytes(data):
 @given(st.lists(PIECES).map("".join))
 def test_never_raises_on_pieces(text):
     check(text.encode("utf-8", "surrogatepass"))
+
+
+NAMES = "abcd"
+CONDITIONS = st.sampled_from(
+    ["a", "b", "c", "d", "not a", "a and b", "b or c", "not (c or d)", "a if b else c", "a == d"]
+)
+
+
+SIMPLE = st.sampled_from(
+    ["p()", "p()", "p()", "x = a and p()", "x = p() if c else d", "return", "assert b or p()", "raise E"]
+)
+
+
+def indented(text):
+    return textwrap.indent(text, " ")
+
+
+@st.composite
+def programs(draw, depth=3):
+    """Statements that branch and jump; every `p()` in them is a place to be reached."""
+
+    def body():
+        return indented(draw(programs(depth - 1)))
+
+    statements = []
+    for _ in range(draw(st.integers(1, 3))):
+        kind = (
+            draw(st.sampled_from(["simple", "simple", "if", "if", "match", "with", "finally"])) if depth else "simple"
+        )
+        if kind == "simple":
+            statements.append(draw(SIMPLE))
+        elif kind == "if":
+            tests = draw(st.lists(CONDITIONS, min_size=1, max_size=3))
+            text = "\nel".join(f"if {test}:\n{body()}" for test in tests)
+            statements.append(text + (f"\nelse:\n{body()}" if draw(st.booleans()) else ""))
+        elif kind == "match":
+            other = f"\n case _:\n{indented(body())}" if draw(st.booleans()) else ""
+            statements.append(f"match {draw(CONDITIONS)}:\n case True:\n{indented(body())}{other}")
+        elif kind == "with":
+            statements.append(f"with w:\n{body()}")
+        else:
+            statements.append(f"try:\n{body()}\nfinally:\n{body()}")
+    return "\n".join(statements)
+
+
+class Anything:
+    """A context that does nothing."""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        return False
+
+
+def holds(guard, values):
+    if guard.kind == "with":
+        return True
+    if guard.kind == "case":
+        return eval(guard.text.replace(" other than ", " != "), {}, values)
+    assert guard.kind in ("if", "unless")
+    return bool(eval(guard.text, {"p": lambda number: False}, values)) == (guard.kind == "if")
+
+
+@given(programs())
+def test_calls_are_reached_exactly_when_their_guards_hold(program):
+    """Where nothing loops and nothing is caught, guards say all: every program is run under every valuation."""
+    lines = program.split("\n")
+    numbered = "\n".join(line.replace("p()", f"p({number})") for number, line in enumerate(lines))
+    text = "def f(a, b, c, d, p, w, E):\n" + indented(numbered)
+    body = function(extract(text.encode()), "f")
+    code = compile(text, "program", "exec")
+    runs = []
+    for values in itertools.product((False, True), repeat=4):
+        reached, scope = set(), {}
+        exec(code, scope)
+        with contextlib.suppress(AssertionError, ValueError):
+            scope["f"](
+                *values, lambda number, reached=reached: not reached.add(number) and False, Anything(), ValueError
+            )
+        runs.append((dict(zip(NAMES, values, strict=True)), reached))
+    ever = set().union(*(reached for _, reached in runs))
+    for call in body.calls:
+        number = int(call.arguments[0].text)
+        chain, place = [], call.guard
+        while place >= 0:
+            chain.append(body.guards[place])
+            place = body.guards[place].outer
+        for values, reached in runs:
+            if number in ever:
+                assert (number in reached) == all(holds(guard, values) for guard in chain), (text, values, chain)
 
 
 SEEN_THROUGH = ("enumerate", "sorted", "zip")
