@@ -12,7 +12,6 @@ from . import guard_cpp, guard_python
 from .guard_terms import Piece, Reading, Term, join, names_in, negation, rebuilt, renamed, substituted
 
 Language = Literal["cpp", "python"]
-_LOCK = re.compile(r"lock|mutex|condition|semaphore", re.IGNORECASE)
 
 
 def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
@@ -87,8 +86,8 @@ def read(language: Language, kind: str, text: str) -> Reading:
         return case(language, text)
     if kind == "for":
         return reader.loop(text)
-    if kind == "do" or (kind == "with" and _LOCK.search(text)):
-        # Waiting for a lock is no condition.
+    if kind in ("do", "with"):
+        # What runs once at least, or inside a context, runs under no condition.
         return Reading()
     if kind == "catch":
         return Reading((Piece(f"catch ({text})", _caught(text)),))

@@ -64,6 +64,7 @@ LONGEST = 4000
 """Longer conditions are opaque. Extractors cut them off at this length, so that no more is known of them anyway."""
 
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")
+_FIRST = re.compile(r"([^\W\d]\w*)(::|\.|$)")
 _LONGEST_NUMBER = 80
 _LARGEST_EXPONENT = 99
 
@@ -152,16 +153,19 @@ def renamed(term: Term, renames: Mapping[str, str]) -> Term:
 
 
 def substituted(term: Term, names: Mapping[str, Term]) -> Term:
-    """The term with variables, alone or at the start of a path, replaced by what they stand for."""
+    """The term with variables and namespaces, alone or at the start of a path, replaced by what they stand for."""
 
     def change(part: Term) -> Term | None:
         if part.kind != "name":
             return None
-        first, *rest = part.text.split(".")
-        value = names.get(first)
-        if value is None:
+        match = _FIRST.match(part.text)
+        value = names.get(match[1]) if match else None
+        if match is None or value is None:
             return None
-        for name in rest:
+        rest = part.text[match.end() :]
+        if match[2] == "::":
+            return Term("name", f"{value.text}::{rest}") if value.kind == "name" else None
+        for name in rest.split(".") if rest else ():
             value = member(value, name)
         return value
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import takewhile
 
 from .guard_terms import Piece, Term, names_in
 
 _LONGEST = 100
 _MOST = 4
-_BLOCKS = ("macro ", "with ", "catch ")
+_AROUND = 3
+_BLOCKS = ("macro ", "catch ")
 
 Asked = Callable[[Sequence[Piece], Piece], bool]
 """Whether some pieces together already ask for another."""
@@ -23,11 +25,11 @@ def words(before: Sequence[Piece], after: Sequence[Piece], asked: Asked) -> str:
         if other is not None:
             removed.remove(other)
             added.remove(piece)
-            clauses.append(f"{_quoted(piece)} was {_quoted(other)}")
+            clauses.append(_instead(other, piece))
     removed = [piece for piece in removed if not asked(after, piece)]
     added = [piece for piece in added if not asked(before, piece)]
     if len(removed) == len(added) == 1 and not clauses and _is_block(added[0]) == _is_block(removed[0]):
-        return f"{_quoted(added[0])} was {_quoted(removed[0])}"
+        return _instead(removed[0], added[0])
     more = " too" if before else ""
     for place, pieces in (("when", [p for p in added if not _is_block(p)]), ("inside", list(filter(_is_block, added)))):
         if pieces:
@@ -71,6 +73,26 @@ def _without(pieces: Sequence[Piece], others: Sequence[Piece]) -> list[Piece]:
     return result
 
 
+def _instead(old: Piece, new: Piece) -> str:
+    """What one condition became; of long ones the part that differs, with a few words around it."""
+    was, now = old.text.split(" "), new.text.split(" ")
+    if max(len(old.text), len(new.text)) > _LONGEST:
+        start = sum(1 for _ in takewhile(_same, zip(was, now, strict=False)))
+        same = sum(1 for _ in takewhile(_same, zip(was[start:][::-1], now[start:][::-1], strict=False)))
+        was, now = _part(was, start, same), _part(now, start, same)
+    return f"{_shown(' '.join(now))} was {_shown(' '.join(was))}"
+
+
+def _same(pair: tuple[str, str]) -> bool:
+    return pair[0] == pair[1]
+
+
+def _part(words: list[str], start: int, end: int) -> list[str]:
+    """The words without those of a beginning and an end that are too far from the rest."""
+    first, last = max(start - _AROUND, 0), min(len(words) - end + _AROUND, len(words))
+    return ["…"] * (first > 0) + words[first:last] + ["…"] * (last < len(words))
+
+
 def _is_other_form(old: Term, new: Term) -> bool:
     """Whether a condition is about what another one was about, as far as names tell."""
     was, now = _about(old), _about(new)
@@ -101,5 +123,8 @@ def _listed(pieces: Sequence[Piece]) -> str:
 
 
 def _quoted(piece: Piece) -> str:
-    text = piece.text
+    return _shown(piece.text)
+
+
+def _shown(text: str) -> str:
     return f"`{text if len(text) <= _LONGEST else text[: _LONGEST - 1] + '…'}`"

@@ -43,7 +43,8 @@ def compare(
     renames: identifiers of the old revision that are called otherwise in the new one. language: as the guards' paths
     tell it when it is not given. types: of names as the new revision has them, as they are declared; they decide
     whether `n > 0` is `n >= 1` and `n != 0`. meanings: local variables of the old and of the new revision that are
-    assigned once, with the expression they are assigned: `if (n)` after `n = v.size()` is `if (v.size())`.
+    assigned once, with the expression they are assigned: `if (n)` after `n = v.size()` is `if (v.size())`; namespaces
+    with what they are short for.
     milliseconds: what it may take; `changed` when that is not enough.
     """
     return compare_ways((old,), (new,), renames, language, types, meanings, milliseconds)
