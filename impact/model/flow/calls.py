@@ -34,6 +34,7 @@ class Calls:
     def __init__(self, code: Code, table: Frameworks):
         self.code, self.table = code, table
         self._kinds: dict[Type, frozenset[str]] = {}
+        self._uses: dict[int, Use | None] = {}
 
     @cached_property
     def uses(self) -> list[Use]:
@@ -70,6 +71,12 @@ class Calls:
         rows = self.table.calls.get(tail(call.callee))
         if not rows:
             return None
+        key = id(call)
+        if key not in self._uses:
+            self._uses[key] = self._find_use(fn, call, rows)
+        return self._uses[key]
+
+    def _find_use(self, fn: Fn, call: Call, rows: list[Row]) -> Use | None:
         language = fn.source.facts.language
         receiver, kinds, free = self._receiver(fn, call)
         weak = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from ...facts.flow import Alias, Assignment, Call, Class, Expr, FlowFile, Function, Parameter
@@ -21,10 +21,15 @@ class Source(NamedTuple):
 class Fn:
     """A function with the file it stands in."""
 
-    __slots__ = ("assigned", "facts", "locals", "source")
+    __slots__ = ("assigned", "facts", "is_lambda", "locals", "name", "owner", "scope", "source")
 
     def __init__(self, source: Source, facts: Function):
         self.source, self.facts = source, facts
+        self.name = facts.name
+        # Namespaces and class around the function, joined as its language does.
+        self.scope = around(facts.name)
+        self.owner = parts_of(facts.owner)
+        self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(tail(facts.name)))
         self.assigned: dict[str, list[Assignment]] = {}
         for each in facts.assignments:
             self.assigned.setdefault(each.target, []).append(each)
@@ -38,19 +43,6 @@ class Fn:
 
     def __repr__(self) -> str:
         return f"Fn({self.source.path}:{self.facts.line} {self.facts.name})"
-
-    @property
-    def name(self) -> str:
-        return self.facts.name
-
-    @property
-    def scope(self) -> str:
-        """Namespaces and class around the function, joined as its language does."""
-        return around(self.facts.name)
-
-    @property
-    def is_lambda(self) -> bool:
-        return "lambda@" in self.facts.name.rpartition("::" if self.source.facts.language == "cpp" else ".")[2]
 
 
 class Cls(NamedTuple):
@@ -73,11 +65,13 @@ class Variable(NamedTuple):
     name: str
 
 
-def parts_of(name: str) -> list[str]:
+@lru_cache(maxsize=100_000)
+def parts_of(name: str) -> tuple[str, ...]:
     """The parts of a path or qualified name of either language."""
-    return [part for part in name.replace("::", ".").split(".") if part]
+    return tuple(part for part in name.replace("::", ".").split(".") if part)
 
 
+@lru_cache(maxsize=100_000)
 def tail(name: str) -> str:
     """The last part of a path or qualified name."""
     return parts_of(name)[-1] if name else ""
@@ -113,7 +107,12 @@ class Code:
                 self.by_tail.setdefault(tail(facts.name), []).append(fn)
                 self.by_name.setdefault((source.path, facts.name), fn)
         self._bases: dict[str, list[Cls]] = {}
-        self._types: dict[tuple[str, int, str], Type] = {}
+        self._class_of: dict[tuple[str, str, str], Cls | None] = {}
+        self._owner_of: dict[int, Cls | None] = {}
+        self._methods_of: dict[tuple[str, str, str], list[Fn]] = {}
+        self._overrides: dict[tuple[str, str], list[Fn]] = {}
+        self._targets: dict[tuple[str, int], list[Fn]] = {}
+        self._identities: dict[tuple[str, int], Variable] = {}
 
     # Names
 
@@ -164,6 +163,14 @@ class Code:
 
     def class_of(self, name: str, source: Source, scope: str = "") -> Cls | None:
         """The class that a name means in a file and scope; None when there is none, or several that fit as well."""
+        key = (name, source.path, scope)
+        try:
+            return self._class_of[key]
+        except KeyError:
+            found = self._class_of[key] = self._find_class(name, source, scope)
+            return found
+
+    def _find_class(self, name: str, source: Source, scope: str) -> Cls | None:
         name = self.meant(parsed(name).name if "<" in name else name, source, scope)
         if not name:
             return None
@@ -213,26 +220,42 @@ class Code:
 
     def owner_of(self, fn: Fn) -> Cls | None:
         """The class a function belongs to; that of the function around it for a lambda."""
-        if not fn.facts.owner:
+        if not fn.owner:
             return None
-        return self.class_of(fn.facts.owner, fn.source, fn.scope)
+        key = id(fn)
+        if key not in self._owner_of:
+            self._owner_of[key] = self.class_of(fn.facts.owner, fn.source, fn.scope)
+        return self._owner_of[key]
 
     def method(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method, of the nearest class that has some; overloads are several."""
-        for one in self.bases(cls):
-            found = [fn for fn in self.by_tail.get(name, ()) if self._is_of(fn, one)]
-            if found:
-                return found
-        return []
+        if name not in self.by_tail:
+            return []
+        key = (cls.source.path, cls.name, name)
+        known = self._methods_of.get(key)
+        if known is None:
+            known = []
+            for one in self.bases(cls):
+                known = [fn for fn in self.by_tail[name] if self._is_of(fn, one)]
+                if known:
+                    break
+            self._methods_of[key] = known
+        return known
 
     def _is_of(self, fn: Fn, cls: Cls) -> bool:
-        return bool(fn.facts.owner) and not fn.is_lambda and self._owned(fn, cls, parts_of(cls.name))
+        return bool(fn.owner) and not fn.is_lambda and self._owned(fn, cls, parts_of(cls.name))
 
     def overrides(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method in classes that derive from a class."""
-        return [
-            fn for one in self.derived.get(cls.name, ()) for fn in self.by_tail.get(name, ()) if self._is_of(fn, one)
-        ]
+        derived = self.derived.get(cls.name)
+        if not derived or name not in self.by_tail:
+            return []
+        key = (cls.name, name)
+        known = self._overrides.get(key)
+        if known is None:
+            known = [fn for one in derived for fn in self.by_tail[name] if self._is_of(fn, one)]
+            self._overrides[key] = known
+        return known
 
     def enclosing(self, fn: Fn) -> Fn | None:
         """The function that a lambda stands in."""
@@ -282,11 +305,16 @@ class Code:
         """The variable that a whole path means: that of its last part, in the class of what stands before it.
 
         depth: how far types are followed already; from 5 on only declared ones count."""
+        key = (path, id(fn))
+        if depth == 0 and key in self._identities:
+            return self._identities[key]
         found, rest = self.variable(path, fn)
         for part in rest:
             kind = self.type_of_variable(found, fn, depth)
             cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
             found = Variable("member", cls.name if cls else f"{found.owner}.{found.name}", part)
+        if depth == 0:
+            self._identities[key] = found
         return found
 
     def functions_of_class(self, name: str) -> list[Fn]:
@@ -298,8 +326,8 @@ class Code:
         wanted = parts_of(cls.name)
         return [fn for fn in self._by_owner.get(wanted[-1], ()) if self._owned(fn, cls, wanted)]
 
-    def _owned(self, fn: Fn, cls: Cls, wanted: list[str]) -> bool:
-        own = parts_of(fn.facts.owner)
+    def _owned(self, fn: Fn, cls: Cls, wanted: tuple[str, ...]) -> bool:
+        own = fn.owner
         if own[-len(wanted) :] != wanted and wanted[-len(own) :] != own:
             return False
         return fn.source.path == cls.source.path or fn.source.package == cls.source.package
@@ -406,6 +434,15 @@ class Code:
 
     def targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
         """The functions of the code that a call may reach; none when it leaves the code or cannot be told."""
+        key = (callee, id(fn))
+        known = self._targets.get(key)
+        if known is None:
+            known = self._find_targets(callee, fn, depth)
+            if depth == 0:
+                self._targets[key] = known
+        return known
+
+    def _find_targets(self, callee: str, fn: Fn, depth: int) -> list[Fn]:
         last = tail(callee)
         candidates = self.by_tail.get(last)
         if not candidates and last not in self.classes:

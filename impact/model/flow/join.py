@@ -31,7 +31,7 @@ from .graph import (
 )
 from .nodes import Built, Program, Reach
 from .qos import qos_of
-from .sites import Site, Sites, Statement
+from .sites import Site, Sites, Statement, shown
 from .started import Instance, instances
 from .types import Type
 from .values import Value, Values
@@ -257,7 +257,7 @@ class Join:
                     resolved += 1
                     by_default += all(value.how == "default" for value in site.names)
             for owner in those:
-                node = owner.node if isinstance(owner, Running) else owner
+                node = _node_of(owner)
                 if node is not None:
                     used.add(node.id)
                 for value in self._names(site, owner):
@@ -280,13 +280,13 @@ class Join:
                 resolved += 1
                 by_default += all(value.how == "default" for site in statement.sites for value in site.names)
             for owner in those:
-                node = owner.node if isinstance(owner, Running) else owner
+                node = _node_of(owner)
                 if node is not None:
                     used.add(node.id)
                 publishes.extend(self._publishes(statement, owner))
         for timer in self.sites.timers:
             for owner in owners(timer.use):
-                node = owner.node if isinstance(owner, Running) else owner
+                node = _node_of(owner)
                 callback = _callback(timer.callbacks)
                 timers.append(Timer(node.id if node else "", timer.period, callback, *_place(timer.use)))
         for use in self.calls.uses:
@@ -356,7 +356,7 @@ class Join:
 
     def _endpoint(self, site: Site, value: Value, owner: Owner) -> Endpoint:
         use = site.use
-        node = owner.node if isinstance(owner, Running) else owner
+        node = _node_of(owner)
         topic, how, reason = self.name(site, value, owner)
         qos = qos_of(self.calls, self.values, use)
         return Endpoint(
@@ -367,7 +367,7 @@ class Join:
 
     def name(self, site: Site, value: Value, owner: Owner) -> tuple[str, How, str]:
         """The full name that a site has in a node, how it is known, and why not."""
-        node = owner.node if isinstance(owner, Running) else owner
+        node = _node_of(owner)
         instance = owner.instance if isinstance(owner, Running) else None
         if value.text is None:
             return "", "unresolved", value.reason
@@ -401,7 +401,7 @@ class Join:
 
     def _publishes(self, statement: Statement, owner: Owner) -> Iterator[Publish]:
         use = statement.use
-        node = owner.node if isinstance(owner, Running) else owner
+        node = _node_of(owner)
         functions = owner.functions if isinstance(owner, Running) else None
         own = self.guards(use.fn, use.call.guard)
         ways = [Way(way.trigger, (*way.guards, *own)) for way in self.ways(use.fn, functions)]
@@ -420,17 +420,19 @@ class Join:
                 topic, _, reason = self.name(site, value, owner)
                 yield Publish(topic=topic, type=site.type, reason=reason, **common)
 
-    def _parameters(self, use: Use, owners: list) -> Iterator[ParameterUse]:
+    def _parameters(self, use: Use, owners: list[Owner]) -> Iterator[ParameterUse]:
         values = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
-        default = self.calls.argument(use, use.row.default) if use.row.default else None
-        from .sites import shown
-
+        default = shown(self.calls.argument(use, use.row.default)) if use.row.default else ""
+        kind = "declared" if use.row.declares else "read"
+        nodes = {node.id if node else "": None for node in (_node_of(owner) for owner in owners)}
         for value in values:
-            for owner in owners:
-                node = owner.node if isinstance(owner, Running) else owner
-                if value.text:
-                    kind = "declared" if use.row.declares else "read"
-                    yield ParameterUse(node.id if node else "", value.text, kind, *_place(use), shown(default))
+            if value.text:
+                for node in nodes:
+                    yield ParameterUse(node, value.text, kind, *_place(use), default)
+
+
+def _node_of(owner: Owner) -> Node | None:
+    return owner.node if isinstance(owner, Running) else owner
 
 
 def _place(use: Use) -> tuple[str, int]:
