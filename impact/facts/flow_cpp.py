@@ -91,7 +91,8 @@ def errors(root: Node) -> set[tuple[int, int]]:
     waiting = [root] if root.has_error else []
     while waiting:
         node = waiting.pop()
-        if node.kind_id == ERROR:
+        # A semicolon after a macro is often missing, and nothing is lost by it.
+        if node.kind_id == ERROR or (node.is_missing and node.kind_id != SEMICOLON):
             found.add((node.start_point[0] + 1, node.end_point[0] + 1))
         elif node.has_error:
             waiting += node.children
@@ -341,6 +342,9 @@ class _File(Statements):
     def local_type(self, node: Node) -> None:
         self.class_(node, self.name or self.owner, "", ())
 
+    def local_name(self, node: Node) -> None:
+        SCOPED[node.kind_id](self, node, self.name, "", ())
+
     def line_of_end(self, node: Node) -> int:
         return node.end_point[0] + 1
 
@@ -414,6 +418,7 @@ class _File(Statements):
         guard = self.guarded(conditions)
         line = self.line(node)
         parameters = self.parameters(listed, guard)
+        state = self.state()
         try:
             if initializers is not None:
                 self.initializers(initializers, guard)
@@ -422,6 +427,7 @@ class _File(Statements):
         except RecursionError:
             self.problems.append(Problem(line, "nested too deeply to be read in full"))
             self.nesting = 0
+            self.restore(state)
         self.close(parameters, line, self.line_of_end(node), returns, virtual)
 
     def initializers(self, node: Node, guard: int) -> None:
@@ -465,6 +471,7 @@ def guards_file(node: Node, statements: list[Node]) -> bool:
     return asked.text == defined.text
 
 
+SEMICOLON = kind(";", False)
 DEFINE = kind("preproc_def")
 ENUM = kind("enum_specifier")
 BASES = kind("base_class_clause")

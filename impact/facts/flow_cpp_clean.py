@@ -211,7 +211,7 @@ def _flattened(
         regions.append(Region(first_end, kept_end, condition, line))
         blank.append((kept_end, directives[-1][1]))
         if len(directives) > 2:
-            hidden.append((bisect_right(starts, directives[1][1]), bisect_right(starts, directives[-1][0]) - 1))
+            hidden.append((bisect_right(starts, directives[1][1]) + 1, bisect_right(starts, directives[-1][0]) - 1))
     for start, end in blank:
         source = source[:start] + _NOT_NEWLINE.sub(_blank, source[start:end]) + source[end:]
     return source, tuple(sorted(regions)), tuple(hidden)

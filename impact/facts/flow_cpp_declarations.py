@@ -29,6 +29,7 @@ from .flow_cpp_grammar import (
     PARAMETERS,
     POINTER_DECLARATOR,
     REFERENCE,
+    RVALUE,
     TRAILING_RETURN,
     TYPE_QUALIFIER,
     TYPES,
@@ -97,6 +98,8 @@ class Declarations(Values):
                 if number == FUNCTION_DECLARATOR:
                     self.constructed(child, guard, kind_)
                     continue
+                if number == REFERENCE and self.called_after(child, guard, kind_):
+                    continue
                 given = children[index + 1] if index + 1 < len(children) else None
                 if given is not None and given.kind_id == EQUALS and index + 2 < len(children):
                     # `if (auto x = f())` has no init_declarator.
@@ -119,6 +122,9 @@ class Declarations(Values):
 
     def local_type(self, node: Node) -> None:
         """A class inside a function; who reads files says what is done with it."""
+
+    def local_name(self, node: Node) -> None:
+        """Another name for something inside a function; the same."""
 
     def initialised(self, node: Node, guard: int, kind_: str) -> Expr:
         children = node.children
@@ -189,6 +195,26 @@ class Declarations(Values):
         self.assignments.append(
             Assignment(variable, Expr("make", kind_, tuple(parts)), self.line(name), guard, kind_ + marks)
         )
+
+    def called_after(self, node: Node, guard: int, asked: str) -> bool:
+        """`a && g(b);`, which the grammar takes for the declaration of a function that gives an `a &&`."""
+        children = grammatical(node)
+        if len(children) != 2 or children[0].kind_id != RVALUE or children[1].kind_id != FUNCTION_DECLARATOR:
+            return False
+        name, listed = children[1].children[0], children[1].children[-1]
+        if listed.kind_id != PARAMETERS:
+            return False
+        line, column = self.place(name.start_byte)
+        inner = self.guard("if", asked, line, guard)
+        callee = bare(self.text[name.start_byte : name.end_byte])
+        parts: list[Expr] = []
+        for child in listed_in(listed):
+            part = self.taken_for_parameter(child, inner, ("pass", callee, len(parts)))
+            if part is None:
+                return True
+            parts.append(part)
+        self.calls.append(Call(callee, tuple(parts), line, column, inner))
+        return True
 
     def taken_for_parameter(self, node: Node, guard: int, position: Position) -> Expr | None:
         """An argument that the grammar took for a parameter's type; None when it is a parameter."""

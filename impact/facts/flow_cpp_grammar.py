@@ -57,6 +57,7 @@ STORAGE = kind("storage_class_specifier")
 TYPE_QUALIFIER = kind("type_qualifier")
 CAPTURES = kind("lambda_capture_specifier")
 CAPTURE_INITIALIZER = kind("lambda_capture_initializer")
+LISTS = (ARGUMENTS, BRACES)
 ERROR = LANGUAGE.id_for_node_kind("ERROR", True) or 65535
 TYPE_FIELD = LANGUAGE.field_id_for_name("type")
 BODY_FIELD = LANGUAGE.field_id_for_name("body")
@@ -77,6 +78,7 @@ NAMES = frozenset(
 
 BRACKETS = (kind("[", False), kind("]", False))
 EQUALS = kind("=", False)
+RVALUE = kind("&&", False)
 TRAILING_RETURN = kind("trailing_return_type")
 DECLARATORS = NAMES | frozenset(
     kind(name)

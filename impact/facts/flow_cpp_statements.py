@@ -35,11 +35,12 @@ from .flow_cpp_values import ESCAPE, READ, RETURN, VALUES, flat
 
 
 class Condition(NamedTuple):
-    """What must hold for what follows a statement to run."""
+    """What must hold for what follows a statement to run. code: the text in C++, where that is another."""
 
     kind: str
     text: str
     line: int
+    code: str = ""
 
 
 STAYS = 0
@@ -67,8 +68,10 @@ ENDIF = kind("#endif", False)
 ALTERNATIVES = (PREPROC_ELSE, PREPROC_ELIF, PREPROC_ELIFDEF)
 LABELED = kind("labeled_statement")
 
-_LOOSE = re.compile(r"\|\||\?|,|[^=!<>]=[^=]")
-LONGEST_COMPOSED = 1000
+_MARKS = re.compile(r"[()\[\]{}]|\|\||\?|,|(?<![=!<>])=(?!=)")
+LONGEST_COMPOSED = 3000
+MOST_CONDITIONS = 500
+MOST_VALUES = 64
 
 
 def negated(conditions: tuple[Condition, ...]) -> str | None:
@@ -76,18 +79,26 @@ def negated(conditions: tuple[Condition, ...]) -> str | None:
     pieces: list[str] = []
     for condition in conditions:
         if condition.kind == "unless":
-            if condition.text.startswith("catch "):
-                return None
             pieces.append(condition.text)
-        elif condition.kind == "if":
-            pieces.append(f"!({condition.text})")
+        elif condition.kind in ("if", "case"):
+            pieces.append(f"!({condition.code or condition.text})")
         else:
             return None
     return " || ".join(grouped(piece) for piece in pieces) if len(pieces) > 1 else pieces[0]
 
 
 def grouped(text: str) -> str:
-    return f"({text})" if _LOOSE.search(text) else text
+    """A condition that may stand beside `&&`."""
+    depth = 0
+    for mark in _MARKS.finditer(text):
+        sign = mark[0]
+        if sign in "([{":
+            depth += 1
+        elif sign in ")]}":
+            depth -= 1
+        elif depth == 0:
+            return f"({text})"
+    return text
 
 
 class Statements(Declarations):
@@ -111,11 +122,13 @@ class Statements(Declarations):
 
     def regional(self, node: Node, guard: int) -> int:
         """Adds the conditions of blanked directives that a statement, but not the one around it, stands under."""
-        start, end = node.start_byte, node.end_byte
+        start = node.start_byte
         parent = node.parent
+        if parent is not None and parent.kind_id == ELSE:
+            parent = parent.parent
         for region in self.regions:
-            if region.start <= start and end <= region.end:
-                if parent is not None and region.start <= parent.start_byte and parent.end_byte <= region.end:
+            if region.start <= start < region.end:
+                if parent is not None and region.start <= parent.start_byte:
                     continue
                 guard = self.guard("cpp", region.condition, region.line, guard)
         return guard
@@ -127,7 +140,7 @@ class Statements(Declarations):
         """Statements one after the other."""
         base = guard
         ended = STAYS
-        conditions: tuple[Condition, ...] = ()
+        conditions: list[Condition] = []
         headed: Node | None = None
         regions = self.regions
         for child in children:
@@ -145,7 +158,7 @@ class Statements(Declarations):
                     self.value(headed, guard)
                     continue
             elif number == LABELED:
-                guard, conditions, ended = base, (), STAYS
+                guard, conditions, ended = base, [], STAYS
             if regions:
                 leaving = self.statement(child, guard)
             else:
@@ -159,7 +172,7 @@ class Statements(Declarations):
             conditions += leaving
             for condition in leaving:
                 guard = self.guard(condition.kind, condition.text, condition.line, guard, True)
-        return ended or conditions or STAYS
+        return ended or tuple(conditions) or STAYS
 
     def heads(self, node: Node, children: list[Node]) -> bool:
         """Whether `NAME(...)` without a semicolon is the head of the statement that follows it: one on the same line,
@@ -234,10 +247,14 @@ class Statements(Declarations):
         if yes_ends and no_ends:
             return yes if yes == no else BREAKS
         if yes_ends:
-            return (asked,) if no == STAYS else (asked, *no)  # type: ignore[misc]
+            return (asked, *no) if isinstance(no, tuple) and len(no) < MOST_CONDITIONS else (asked,)
         if no_ends:
             holds = Condition("if", asked.text, asked.line)
-            return (holds,) if yes == STAYS else (holds, *yes)  # type: ignore[misc]
+            return (holds, *yes) if isinstance(yes, tuple) and len(yes) < MOST_CONDITIONS else (holds,)
+        if yes == STAYS and isinstance(no, tuple) and len(no) == 1 and no[0].kind == "if":
+            # Branches that go on, before an else that does not.
+            text = f"{asked.text} || {no[0].text}"
+            return (Condition("if", text, asked.line),) if len(text) < LONGEST_COMPOSED else STAYS
         result: list[Condition] = []
         for head, leaving in ((grouped(asked.text), yes), (f"!({asked.text})", no)):
             if isinstance(leaving, tuple):
@@ -271,7 +288,7 @@ class Statements(Declarations):
             if number == SEMICOLON:
                 semicolons += 1
             elif not child.is_named:
-                closed = closed or self.text[child.start_byte] == ")"
+                closed = closed or child.kind_id == RIGHT_ROUND
             elif closed:
                 body = child
             elif number in (DECLARATION, INIT_STATEMENT):
@@ -401,8 +418,12 @@ class Statements(Declarations):
     @staticmethod
     def case_text(subject: str, falling: list[str], other: bool, named: list[str]) -> str:
         if other:
+            if len(named) > MOST_CONDITIONS:
+                return f"{subject} other than {len(named)} values"
             rest = [value for value in named if value not in falling]
             return f"{subject} other than {', '.join(rest)}" if rest else ""
+        if len(falling) > MOST_VALUES:
+            return f"{subject} == one of {len(falling)} values"
         return f"{subject} == {' or '.join(falling)}"
 
     def after_switch(self, subject: str, leavings: list[tuple[str | None, Leaving]], line: int) -> Leaving:
@@ -419,9 +440,12 @@ class Statements(Declarations):
         if None in jumping:
             if not staying:
                 return JUMPS
-            return (Condition("case", f"{subject} == {' or '.join(str(value) for value in reversed(staying))}", line),)
-        others = ", ".join(str(value) for value in reversed(jumping))
-        return (Condition("case", f"{subject} other than {others}", line),)
+            values = [str(value) for value in reversed(staying)]
+            code = " || ".join(f"{subject} == {value}" for value in values)
+            return (Condition("case", f"{subject} == {' or '.join(values)}", line, code),)
+        values = [str(value) for value in reversed(jumping)]
+        code = " && ".join(f"{subject} != {value}" for value in values)
+        return (Condition("case", f"{subject} other than {', '.join(values)}", line, code),)
 
     # Exceptions, jumps
 
@@ -579,6 +603,10 @@ class Statements(Declarations):
         self.local_type(node)
         return STAYS
 
+    def named(self, node: Node, guard: int) -> Leaving:
+        self.local_name(node)
+        return STAYS
+
     def nothing(self, node: Node, guard: int) -> Leaving:
         return STAYS
 
@@ -609,6 +637,10 @@ STATEMENTS = {
     PREPROC_IFDEF: Statements.preprocessor,
     ERROR: Statements.unknown,
     COMMENT: Statements.nothing,
+    **{
+        kind(name): Statements.named
+        for name in ("alias_declaration", "type_definition", "using_declaration", "namespace_alias_definition")
+    },
     **{number: Statements.local for number in DECLARED_TYPES},
     **{
         kind(name): Statements.nothing

@@ -35,6 +35,7 @@ from .flow_cpp_grammar import (
     FIELD_IDENTIFIER,
     IDENTIFIER,
     JOINING,
+    LISTS,
     LOOKS,
     MAKES,
     OPERATORS,
@@ -428,8 +429,7 @@ class Values:
         logs = noise(callee)
         self.nesting += 1
         arguments: tuple[Expr, ...] = ()
-        number = listed.kind_id
-        if number == ARGUMENTS or number == BRACES:
+        if listed.kind_id in LISTS:
             if listed.end_byte - listed.start_byte > 2:
                 arguments = self.arguments(listed, guard, "" if logs else callee)
         else:
@@ -501,13 +501,13 @@ class Values:
     def pointer(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
         children = grammatical(node)
         inner = children[-1]
-        if self.text[node.start_byte] == "&":
+        if self.text.startswith("&", node.start_byte):
             number = inner.kind_id
             if number in (QUALIFIED, TEMPLATE_FUNCTION):
                 return Expr("function", bare(self.text[inner.start_byte : inner.end_byte]))
             if number == IDENTIFIER:
                 name = self.text[inner.start_byte : inner.end_byte]
-                if name not in self.known and name[-1] != "_":
+                if name and name not in self.known and not name.endswith("_"):
                     return Expr("function", name)
         return self.value(inner, guard, position, target)
 
@@ -609,7 +609,7 @@ class Values:
             self.touch(path, left, guard, WRITE)
         operator = self.text[sign.start_byte : sign.end_byte]
         followed = operator != "=" or path in self.known
-        value = self.value(right, guard, READ if followed else ESCAPE, path)
+        value = self.value(right, guard, READ if followed else ("escape", path, -1), path)
         self.assignments.append(Assignment(path, value, self.line(node), guard, "", operator))
         return value
 
