@@ -13,7 +13,7 @@ import ast
 import math
 import posixpath
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from ..facts.flow_launch import (
@@ -755,6 +755,7 @@ class _Launch:
         if (found.generation or self.generation) == 1:
             self.scope = self.scope1(action)
         else:
+            # One after the other: the value of one argument may name an argument given before it.
             for name, text in self.passed(action):
                 self.scope.arguments[name] = text
         self.chain.append(self.at(action.line))
@@ -766,9 +767,8 @@ class _Launch:
         scope, self.package, self.path = outer
         self.scope = scope
 
-    def passed(self, action: Action) -> list[tuple[str, Text]]:
-        """The arguments given to an include, in order; all are filled in before any is set."""
-        given: list[tuple[str, Text]] = []
+    def passed(self, action: Action) -> Iterator[tuple[str, Text]]:
+        """The arguments given to an include, in order, each filled in when it is asked for."""
         for child in action.children:
             if child.kind == "unknown":
                 self.do_unknown(child)
@@ -783,8 +783,7 @@ class _Launch:
             text = self.text(value if value is not None else default if default is not None else literal(""))
             if verdict is None:
                 text = unknown(text.shown, f"`{name}` is given only if {open_[-1]}")
-            given.append((name, text))
-        return given
+            yield name, text
 
     def scope1(self, action: Action) -> _Scope:
         """The scope of a file that roslaunch includes: namespace and remappings are passed on, arguments only as
@@ -795,7 +794,7 @@ class _Launch:
         self.clear(action, scope.namespace)
         all_ = action.get("pass-all")
         scope.arguments = dict(self.scope.arguments) if all_ is not None and _truth(self.text(all_)) else {}
-        scope.arguments.update(self.passed(action))
+        scope.arguments.update(list(self.passed(action)))
         # With pass_all_args, a constant of the included file replaces what is passed without complaint
         scope.constants = set(scope.arguments) if all_ is not None else set()
         return scope
@@ -1099,8 +1098,11 @@ class _Launch:
         rest = words
         if [w.value for w in words[:2]] == ["ros2", "run"] and len(words) >= 4:
             package, executable, rest = words[2], words[3], words[4:]
-        elif words and words[0].value is not None:
-            executable = words[0]
+        elif words:
+            installed = _INSTALLED.match(words[0].value or "")
+            executable, rest = words[0], words[1:]
+            if installed is not None:
+                package, executable = (known(part, words[0].assumed) for part in installed.groups())
         remaps, settings, name, namespace = self.ros_arguments(rest, action.line)
         self.begin(
             action,
@@ -1210,7 +1212,7 @@ class _Launch:
         if piece.kind == "other":
             return unknown(piece.text, "it is only known when it runs")
         maker = _FILLING.get(piece.kind)
-        if maker is None:
+        if maker is None or len(piece.parts) < _PARTS.get(piece.kind, 0):
             return unknown(piece.kind, f"`{piece.kind}` is not filled in")
         return maker(self, piece)
 
@@ -1416,6 +1418,7 @@ class _Arguments(dict):
 
 
 _PLACE = re.compile(r"\$\(find ([\w.-]+)\)(/.*|)\Z", re.DOTALL)
+_INSTALLED = re.compile(r"\$\(prefix ([\w.-]+)\)/lib/\1/([^/]+)\Z")
 _TEXTS = ("package", "executable", "plugin", "container", "name", "namespace")
 _OF_NODE = frozenset(("remap", "parameter", "parameter-file", "unknown"))
 _STARTING = frozenset(("node", "lifecycle", "test", "container", "composable", "load", "include", "group", "process"))
@@ -1463,6 +1466,11 @@ _FILLING = {
     "has-node": _Launch.fill_has_node,
     "eval": _Launch.fill_eval,
 }
+
+
+# How many parts a piece needs before it can be filled in.
+_PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewritten": 2, "replaced": 1, "has-node": 2,
+          "eval": 1}  # fmt: skip
 
 
 def _truth(text: Text) -> bool | None:

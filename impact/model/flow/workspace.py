@@ -41,13 +41,24 @@ def linked(tree, store, jobs: int | None = None, progress: Progress | None = Non
     return link(tree, gathered, store, None, Watched(), jobs)
 
 
-def code_of(workspace: Workspace) -> dict[str, str]:
-    """The code of the packages, by path the package it belongs to; tests are left out."""
+def read_beside(workspace: Workspace, jobs: int | None = None, progress: Progress | None = None) -> Gathered:
+    """The flow facts of a workspace that was linked for other ends."""
+    main = workspace.gathered
+
+    def wanted(path: str) -> str | None:
+        kind = kind_of(path)
+        return kind if kind in _CODE else None
+
+    return gather(main.tree, main.store, jobs=jobs, progress=progress, kind_of=wanted)
+
+
+def code_of(workspace: Workspace, gathered: Gathered) -> dict[str, str]:
+    """The code of the packages, by path the package it belongs to; tests are left out. gathered: holds flow facts."""
     found: dict[str, str] = {}
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in package.digest.files:
-            if workspace.gathered.kinds.get(path) in _CODE and role_of_folder(path[start:]) != "test":
+            if gathered.kinds.get(path) in _CODE and role_of_folder(path[start:]) != "test":
                 found[path] = package.name
     return found
 
@@ -105,9 +116,10 @@ def _runs(file: FlowFile) -> bool:
     return asks or any(call.callee == "rospy.init_node" for function in top for call in function.calls)
 
 
-def joined(workspace: Workspace) -> Join:
-    """The code of a workspace, joined."""
-    gathered, packages = workspace.gathered, code_of(workspace)
+def joined(workspace: Workspace, gathered: Gathered | None = None) -> Join:
+    """The code of a workspace, joined. gathered: its flow facts, those that it was linked from when left out."""
+    gathered = gathered or workspace.gathered
+    packages = code_of(workspace, gathered)
     gathered.preload(packages)
     facts = {path: gathered.facts(path).facts for path in packages}
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
@@ -116,25 +128,26 @@ def joined(workspace: Workspace) -> Join:
 
 def graph_of(
     workspace: Workspace, store, root: str = "", rev: str = "", launch: str = "",
-    arguments: Mapping[str, str] | None = None,
+    arguments: Mapping[str, str] | None = None, gathered: Gathered | None = None,
 ) -> Graph:  # fmt: skip
-    """The message-flow graph of a workspace. store: remembers it by the content it was joined from.
+    """The message-flow graph of a workspace. store: remembers it by the content it was joined from. gathered: as for
+    joined().
 
     launch: the path of a launch file, relative to the workspace's root: then the graph of what it starts; arguments:
     the launch file's arguments.
     """
     if launch:
         start = launched(workspace, launch, arguments or {})
-        join = joined(workspace)
+        join = joined(workspace, gathered)
         return join.graph(root, rev, _unread(join), start)
-    key = _key(workspace)
+    key = _key(workspace, gathered or workspace.gathered)
     known = store.memo("graph", key) if store is not None else None
     if known is not None:
         try:
             return msgspec.structs.replace(msgspec.msgpack.decode(known, type=Graph), root=root, rev=rev)
         except msgspec.MsgspecError:
             pass  # of another version: made anew
-    join = joined(workspace)
+    join = joined(workspace, gathered)
     graph = join.graph(unread=_unread(join))
     if store is not None:
         store.remember("graph", [(key, msgspec.msgpack.encode(graph))])
@@ -145,8 +158,7 @@ def _unread(join: Join) -> list[str]:
     return [source.path for source in join.code.sources if source.facts.unread]
 
 
-def _key(workspace: Workspace) -> bytes:
-    gathered: Gathered = workspace.gathered
+def _key(workspace: Workspace, gathered: Gathered) -> bytes:
     stamp = hashlib.sha1(workspace.identity + code_stamp().encode())
     for path in sorted(gathered.kinds):
         if gathered.kinds[path] in _CODE:
