@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator
 from .flow import Access, Alias, Assignment, Expr, FlowFile
 from .flow_python_body import Body, ClassBody
 from .flow_python_conditions import EXITS, JUMPS, STAYS, Condition, Leaving, Test, breaks, either, test, within
-from .flow_python_expressions import ANY, Expressions
+from .flow_python_expressions import Expressions
+from .flow_python_reading import ANY
 from .place import Problem
 from .python import Source, read
 

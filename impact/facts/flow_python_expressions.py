@@ -13,15 +13,13 @@ import ast
 from collections.abc import Callable
 from itertools import pairwise
 
-from .flow import Access, Assignment, Call, Expr, Guard, Member, Parameter
+from .flow import Access, Assignment, Call, Expr, Member, Parameter
 from .flow_python_body import Body, ClassBody
-from .flow_python_text import Text, format_pieces, percent_pieces, printable
+from .flow_python_reading import ANY, LONGEST_OTHER
+from .flow_python_strings import Strings
 
-LONGEST_OTHER = 120
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500
-ANY = Expr("other")
-_NUMBERS = {None: Expr("number", "None"), True: Expr("number", "True"), False: Expr("number", "False")}
 _PLACES = tuple(Expr("number", str(number)) for number in range(16))
 _PARTIAL = frozenset(("partial", "functools.partial"))
 # Builtins that keep nothing of what they are given.
@@ -50,47 +48,8 @@ _CHILDREN = _children()
 _PATHS = (ast.Name, ast.Attribute, ast.Subscript)
 
 
-class Expressions(Text):
-    """The reader of expressions. It reads for one body at a time, into whose lists it writes."""
-
-    body: Body
-    guard: int
-    this: str
-    locals: set[str]
-    guards: list[Guard]
-    calls: list[Call]
-    assignments: list[Assignment]
-    accesses: list[Access]
-
-    def __init__(self, text: str) -> None:
-        super().__init__(text)
-        self.module_functions: set[str] = set()
-        self.class_bodies: dict[str, ClassBody] = {}
-        # Names that a class's own body knows without its object.
-        self.own: set[str] = set()
-        self.constants: list[Member] = []
-        # Functions whose bodies are still to be read, since they see all variables of the one they stand in.
-        self.waiting: list[tuple[Body, list[ast.stmt] | ast.expr]] = []
-        # Whether names are bound in the body of a class.
-        self.in_class = False
-
-    def enter(self, body: Body) -> None:
-        self.body = body
-        self.guard = -1
-        self.this = body.this
-        self.locals = body.locals
-        self.guards = body.guards
-        self.calls = body.calls
-        self.assignments = body.assignments
-        self.accesses = body.accesses
-        self.own = set()
-        self.in_class = False
-        self.unplaced = False
-
-    def push(self, kind: str, text: str, line: int, early: bool = False) -> None:
-        """A new guard around what follows."""
-        self.guards.append(Guard(kind, text, line, self.guard, early))
-        self.guard = len(self.guards) - 1
+class Expressions(Strings):
+    """The reader of expressions, of which it visits some and makes values of others."""
 
     # Visiting, for calls and uses alone
 
@@ -156,9 +115,6 @@ class Expressions(Text):
         if node.value is not None:
             self.value(node.value, "escape")
 
-    def sees(self, name: str) -> bool:
-        return self.body.outer is not None and self.body.sees(name)
-
     # Paths
 
     def reach(self, node) -> tuple[str, bool]:
@@ -200,25 +156,9 @@ class Expressions(Text):
         parts.reverse()
         return ".".join(parts), local
 
-    def spelt(self, node) -> str:
-        """The path of what is assigned to, nothing visited; empty for several."""
-        cls = node.__class__
-        if cls is ast.Name:
-            if node.id == self.this:
-                return "this"
-            return "this." + node.id if node.id in self.own or self.in_class else node.id
-        if cls is ast.Attribute:
-            return f"{self.spelt(node.value)}.{node.attr}"
-        if cls is ast.Subscript:
-            inner = self.spelt(node.value)
-            return inner if node.slice.__class__ is ast.Slice else f"{inner}.[]"
-        return "" if cls in (ast.Tuple, ast.List, ast.Starred) else "()"
-
     # Values
 
     def value(self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = "") -> Expr:
-        """An expression. use, to, position, keyword: the Access that it is if it is a path; target: what it is kept
-        in, `return` for what the function returns."""
         cls = node.__class__
         if cls is ast.Constant:
             return self.constant(node)
@@ -248,32 +188,6 @@ class Expressions(Text):
         if maker is not None:
             return maker(self, node, use, to, position, keyword, target)
         self.visit(node)
-        return self.other(node)
-
-    def other(self, node) -> Expr:
-        return Expr("other", self.source(node)[:LONGEST_OTHER])
-
-    def member(self, path: str, name: str) -> Expr:
-        cls = self.body.cls
-        return Expr("function" if cls is not None and name in cls.callbacks else "name", path)
-
-    def is_function(self, name: str) -> bool:
-        body = self.body
-        while body is not None:
-            if name in body.functions:
-                return True
-            body = body.outer
-        return name in self.module_functions
-
-    def constant(self, node: ast.Constant) -> Expr:
-        value = node.value
-        cls = value.__class__
-        if cls is str:
-            return Expr("text", value if value.isascii() else printable(value))  # type: ignore[union-attr]
-        if value is None or cls is bool:
-            return _NUMBERS[value]  # type: ignore[index]
-        if cls is int or cls is float or cls is complex:
-            return Expr("number", self.source(node))
         return self.other(node)
 
     def subscript(self, node: ast.Subscript, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
@@ -336,110 +250,6 @@ class Expressions(Text):
             asked = Expr("other", texts.pop()[:LONGEST_OTHER])
             result = Expr("choice", "", (asked, result, first) if both else (asked, first, result))
         return result
-
-    def operation(self, node: ast.BinOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
-        op = node.op.__class__
-        if op is ast.Add:
-            # Long sums lean to the left.
-            operands = [node.right]
-            left = node.left
-            while left.__class__ is ast.BinOp and left.op.__class__ is ast.Add:  # type: ignore[attr-defined]
-                operands.append(left.right)  # type: ignore[attr-defined]
-                left = left.left  # type: ignore[attr-defined]
-            operands.append(left)
-            operands.reverse()
-            return Expr("join", "+", tuple(self.value(operand, "read") for operand in operands))
-        if op is ast.Mod and node.left.__class__ is ast.Constant and node.left.value.__class__ is str:  # type: ignore[attr-defined]
-            return self.percent(node)
-        if op is ast.Div:
-            left = self.value(node.left, "read")
-            right = self.value(node.right, "read")
-            if (
-                "text" in (left.kind, right.kind)
-                or left.text.endswith("Path")
-                or (left.kind, left.text) == ("join", "/")
-            ):
-                parts = left.parts if (left.kind, left.text) == ("join", "/") else (left,)
-                return Expr("join", "/", (*parts, right))
-            return self.other(node)
-        self.visit(node.left)
-        self.visit(node.right)
-        return self.other(node)
-
-    def percent(self, node: ast.BinOp) -> Expr:
-        pieces = percent_pieces(node.left.value)  # type: ignore[attr-defined]
-        right = node.right
-        values: dict[int | str, Expr] = {}
-        if right.__class__ is ast.Tuple:
-            for place, element in enumerate(right.elts):  # type: ignore[attr-defined]
-                values[place] = self.value(element, "read")
-        elif right.__class__ is ast.Dict and None not in right.keys:  # type: ignore[attr-defined]
-            for key, element in zip(right.keys, right.values, strict=False):  # type: ignore[attr-defined]
-                known = key.value if key.__class__ is ast.Constant else ""
-                values[known if known.__class__ is str else ""] = self.value(element, "read")
-        else:
-            values[0] = self.value(right, "read")
-        return self.put_together(node, pieces, values)
-
-    def put_together(self, node, pieces: list[str | int | tuple[str]] | None, values: dict[int | str, Expr]) -> Expr:
-        """The join of literal pieces and values; other when a value is not told apart."""
-        if pieces is None:
-            return self.other(node)
-        parts: list[Expr] = []
-        for piece in pieces:
-            if piece.__class__ is str:
-                parts.append(Expr("text", printable(piece)))  # type: ignore[arg-type]
-            elif piece.__class__ is int:
-                if piece not in values:
-                    return self.other(node)
-                parts.append(values[piece])  # type: ignore[index]
-            else:
-                key = piece[0]  # type: ignore[index]
-                parts.append(values[key] if key in values else Expr("other", printable(key)[:LONGEST_OTHER]))
-        if len(parts) == 1 and parts[0].kind == "text":
-            return parts[0]
-        return Expr("join", "", tuple(parts))
-
-    def formatted(self, node: ast.Call) -> Expr:
-        """`"...".format(...)`."""
-        values: dict[int | str, Expr] = {}
-        unpacked = False
-        for place, argument in enumerate(node.args):
-            unpacked = unpacked or argument.__class__ is ast.Starred
-            values[place] = self.value(argument, "read")
-        for keyword in node.keywords:
-            value = self.value(keyword.value, "read")
-            if keyword.arg is not None:
-                values[keyword.arg] = value
-        if unpacked:
-            return self.other(node)
-        return self.put_together(node, format_pieces(node.func.value.value), values)  # type: ignore[attr-defined]
-
-    def joined(self, node: ast.JoinedStr, use: str, *_: object) -> Expr:
-        outermost = not self.unplaced and node.lineno != node.end_lineno
-        if outermost:
-            # Where things stand in a string of several lines, interpreters before 3.12 do not know.
-            self.unplaced = True
-            for inner in ast.walk(node):
-                if hasattr(inner, "lineno"):
-                    inner.lineno, inner.end_lineno = node.lineno, node.lineno  # type: ignore[attr-defined]
-                    inner.col_offset = inner.end_col_offset = node.col_offset  # type: ignore[attr-defined]
-        parts: list[Expr] = []
-        for piece in node.values:
-            if piece.__class__ is ast.Constant:
-                parts.append(self.constant(piece))  # type: ignore[arg-type]
-            elif piece.__class__ is ast.FormattedValue:
-                parts.append(self.value(piece.value, "read"))  # type: ignore[attr-defined]
-                if piece.format_spec is not None:  # type: ignore[attr-defined]
-                    self.visit(piece.format_spec)  # type: ignore[attr-defined]
-            else:
-                self.visit(piece)
-                parts.append(ANY)
-        if outermost:
-            self.unplaced = False
-        if not parts:
-            return Expr("text", "")
-        return parts[0] if len(parts) == 1 and parts[0].kind == "text" else Expr("join", "", tuple(parts))
 
     def minus(self, node: ast.UnaryOp, *_: object) -> Expr:
         operand = node.operand
@@ -526,14 +336,6 @@ class Expressions(Text):
         if arguments.kwarg is not None:
             found.append(Parameter("**" + arguments.kwarg.arg, self.annotation(arguments.kwarg.annotation)))
         return tuple(found)
-
-    def annotation(self, node) -> str:
-        """A type as written, quotes around it left out."""
-        if node is None:
-            return ""
-        if node.__class__ is ast.Constant and node.value.__class__ is str:
-            return printable(node.value)
-        return self.source(node)
 
     def comprehension(
         self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = ""
