@@ -868,6 +868,9 @@ class _Walker:
                 place = first.value if isinstance(first, _Constant) and isinstance(first.value, int) else 0
                 receiver.items.insert(place, self.guarded(arguments[1], receiver.depth))
                 return _Constant(None)
+            if name == "remove" and first in receiver.items:
+                receiver.items.remove(first)
+                return _Constant(None)
             if name == "copy":
                 return _List(list(receiver.items), len(self.conditions), receiver.kind)
         elif isinstance(receiver, _Dict):
@@ -1528,7 +1531,7 @@ def _parts(kind: str, is_str: bool) -> Callable[[_Walker, _Call], Any]:
     """A substitution of several values, given each or as one list."""
 
     def make(walker: _Walker, call: _Call) -> Any:
-        given = call.arguments
+        given = [*call.arguments, *call.keywords.values()]
         if len(given) == 1 and isinstance(given[0], _List):
             given = given[0].items
         return _Text((Piece(kind, "", tuple(walker.text(value, call.node) for value in given)),), is_str)
@@ -1585,6 +1588,11 @@ def _environment(walker: _Walker, call: _Call) -> Any:
         return _Unknown(_source(call.node))
     given = [walker.text(value, call.node) for value in (key, default) if value not in (None, _Constant(None))]
     return _Text((named("env", *given),))
+
+
+def _executable(walker: _Walker, call: _Call) -> Any:
+    given = (call.get(0, "executable"), call.get(1, "package"))
+    return _Text((Piece("executable", "", tuple(walker.text(value, call.node) for value in given)),), False)
 
 
 def _expression(walker: _Walker, call: _Call) -> Any:
@@ -1781,7 +1789,7 @@ _CALLS: dict[str, Callable[[_Walker, _Call], Any]] = {
     "get_package_share_directory": _share,
     "get_package_share_path": _share,
     "get_package_prefix": _share,
-    "ExecutableInPackage": _parts("executable", False),
+    "ExecutableInPackage": _executable,
     "PathJoinSubstitution": _parts("join", False),
     "ThisLaunchFileDir": lambda walker, call: _Text((Piece("dirname"),), False),
     "ThisLaunchFile": lambda walker, call: _Text((Piece("filename"),), False),

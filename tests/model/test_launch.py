@@ -253,6 +253,16 @@ def test_includes_of_ros2():
     assert [(a.name, a.value.value) for a in launch.arguments] == [("robot", "r1"), ("name", "r1"), ("left", "over")]
 
 
+def test_one_argument_given_may_name_another():
+    files = {
+        "p/a.launch": """<launch><arg name="id" default="1"/>
+            <include file="$(find-pkg-share p)/b.launch"><arg name="n" value="$(eval '1 + int(\\'$(var id)\\')')"/>
+              <arg name="ns" value="uas_$(var n)"/></include></launch>""",
+        "p/b.launch": '<launch><node pkg="k" exec="e" name="n" namespace="$(var ns)"/></launch>',
+    }
+    assert names(launched(files)) == ["/uas_2/n"]
+
+
 def test_circles_end():
     files = {"p/a.launch.py": python("IncludeLaunchDescription([ThisLaunchFileDir(), '/a.launch.py'])")}
     launch = launched(files, "p/a.launch.py")
