@@ -260,6 +260,45 @@ def _progress() -> Callable[[int, int], None] | None:
     return show
 
 
+GRAPH_FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
+
+
+def graph(
+    path: Path, *, launch, arguments, nodes, topics, packages, around, hops, rev, base, format, output, everything,
+    jobs, quiet,
+) -> int:  # fmt: skip
+    """Draws the message-flow graph. Returns the exit status: 0, or 2 (failed)."""
+    try:
+        with told(path):
+            if format not in GRAPH_FORMATS:
+                raise Failed(f"--format {format}: unknown; choose one of {', '.join(GRAPH_FORMATS)}")
+            given = dict(argument.partition(":=")[::2] for argument in arguments)
+            if any(":=" not in argument for argument in arguments):
+                raise Failed("--set: write NAME:=VALUE")
+            if given and not launch:
+                raise Failed("--set: arguments belong to a launch file; name it with --launch")
+            from .flow.drawing import draw
+            from .graph import graphs
+
+            found = graphs(
+                path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
+                progress=None if quiet else _progress(),
+            )  # fmt: skip
+            for note in found.notes:
+                say(f"rosimpact: {note}")
+            text = draw(
+                found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
+                hops=hops, everything=everything, plain=output is not None,
+            )  # fmt: skip
+            _deliver(text, output)
+    except Failed as error:
+        return failed(str(error))
+    except KeyboardInterrupt:
+        say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
+        return 130
+    return 0
+
+
 def explain(name: str | None) -> int:
     """Prints a rule's documentation, or the list of rules."""
     from .rules.rule import all_rules
