@@ -43,9 +43,9 @@ class Guard(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     text: the condition as written, white space as single blanks. line: of the statement that asks.
 
-    What follows a jump in a branch of a branch is under the conditions of both, joined (`unless a and b`); what follows
-    a handler that jumps is `unless` `except E` or `catch (E)`. The else of a Python loop that `break` leaves is `unless`
-    `break`. A jump in a loop tells nothing of what follows the loop.
+    What follows a jump in a branch of a branch is under the conditions of both, joined (`unless a and b`); what
+    follows a handler that jumps is `unless` `except E` or `catch (E)`. The else of a Python loop that `break` leaves is
+    `unless` `break`. A jump in a loop tells nothing of what follows the loop.
 
     | kind | holds |
     |---|---|
