@@ -40,6 +40,8 @@ class Fn:
             for each in facts.assignments
             if "." not in each.target and (each.type or (python and each.operator == "="))
         }
+        # What a module of Python assigns is everybody's in it.
+        self.locals = set() if python and not facts.name else self.locals - set(facts.outside)
 
     def __repr__(self) -> str:
         return f"Fn({self.source.path}:{self.facts.line} {self.facts.name})"
@@ -258,8 +260,14 @@ class Code:
         return known
 
     def enclosing(self, fn: Fn) -> Fn | None:
-        """The function that a lambda stands in."""
-        return self.by_name.get((fn.source.path, fn.scope)) if fn.is_lambda else None
+        """The function that a lambda, or a function of Python, stands in."""
+        if not fn.scope or (not fn.is_lambda and (fn.source.path, fn.scope) in self._class_bodies):
+            return None
+        return self.by_name.get((fn.source.path, fn.scope))
+
+    @cached_property
+    def _class_bodies(self) -> set[tuple[str, str]]:
+        return {(source.path, cls.name) for source in self.sources for cls in source.facts.classes}
 
     def chain(self, fn: Fn) -> Iterator[Fn]:
         """The function, and for a lambda those around it."""

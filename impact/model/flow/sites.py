@@ -236,6 +236,10 @@ class Sites:
         meant = self.code.meant(value.text, fn.source)
         if interface_of(meant):
             return meant
+        if "." not in value.text:
+            for alias in self.code.aliases[fn.source.path].get("*", ()):
+                if alias.target.endswith((".msg", ".srv", ".action")):
+                    return f"{alias.target}.{value.text}"
         for one in self.values.of(value, fn):
             if one.text and interface_of(one.text):
                 return one.text
