@@ -9,6 +9,8 @@ What follows a try whose handler jumps is under `unless` with the text `catch (.
 
 from __future__ import annotations
 
+from bisect import bisect_right
+
 from tree_sitter import Node, Parser
 
 from .cpp import _exports, scan
@@ -48,15 +50,15 @@ def extract(data: bytes) -> FlowFile:
     """The flow of one C or C++ file. Never raises; what did not parse is in `unread`, what went wrong in `problems`."""
     source = cleaned(data)
     root = PARSER.parse(source.source).root_node
-    wrong = errors(root)
+    wrong = errors(root, source.starts)
     reader = None if wrong else read(source, root)
     if reader is None or reader.misread:
         further = cleaned_further(data, source)
         if further.source != source.source:
-            source = further
-            root = PARSER.parse(source.source).root_node
-            wrong = errors(root)
-            reader = None
+            again = PARSER.parse(further.source).root_node
+            still_wrong = errors(again, further.starts)
+            if len(still_wrong) <= len(wrong):
+                source, root, wrong, reader = further, again, still_wrong, None
     if reader is None:
         reader = read(source, root)
     reader.leave_outside()
@@ -85,7 +87,7 @@ def read(source: Cleaned, root: Node) -> _File:
     return reader
 
 
-def errors(root: Node) -> set[tuple[int, int]]:
+def errors(root: Node, starts: list[int]) -> set[tuple[int, int]]:
     """Lines, first and last, of what the grammar did not understand."""
     found: set[tuple[int, int]] = set()
     waiting = [root] if root.has_error else []
@@ -93,7 +95,7 @@ def errors(root: Node) -> set[tuple[int, int]]:
         node = waiting.pop()
         # A semicolon after a macro is often missing, and nothing is lost by it.
         if node.kind_id == ERROR or (node.is_missing and node.kind_id != SEMICOLON):
-            found.add((node.start_point[0] + 1, node.end_point[0] + 1))
+            found.add((bisect_right(starts, node.start_byte), bisect_right(starts, node.end_byte)))
         elif node.has_error:
             waiting += node.children
     return found
@@ -346,7 +348,7 @@ class _File(Statements):
         SCOPED[node.kind_id](self, node, self.name, "", ())
 
     def line_of_end(self, node: Node) -> int:
-        return node.end_point[0] + 1
+        return bisect_right(self.starts, node.end_byte)
 
     # Functions
 

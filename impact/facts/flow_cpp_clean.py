@@ -156,7 +156,52 @@ def _each(source: str) -> str:
     return "".join(pieces) + source[position:]
 
 
+def _blank_group(match: re.Match[str]) -> str:
+    """What a pattern calls `gone` as blanks."""
+    start, (first, last) = match.start(), match.span("gone")
+    return match[0][: first - start] + " " * (last - first) + match[0][last - start :]
+
+
+def _word_group(match: re.Match[str]) -> str:
+    """What a pattern calls `gone` as one word."""
+    start, (first, last) = match.start(), match.span("gone")
+    return match[0][: first - start] + "x" * (last - first) + match[0][last - start :]
+
+
+def _rounded(match: re.Match[str]) -> str:
+    """`= {a, b}` as `= (a, b)`, and `= {}` as `= 0 `."""
+    inner = match["inner"]
+    return f"={match['blanks']}({inner})" if inner.strip() else f"={match['blanks']}0{' ' * (len(inner) + 1)}"
+
+
+def _ended(match: re.Match[str]) -> str:
+    return match["macro"] + ";"
+
+
+# What the grammar does not know, and what it does that means the same: (words to look for, pattern, stand-in).
+_HAS_INCLUDE = re.compile(r"__has_include(?:_next)?\s*\(\s*(?P<gone>[<\"][^>\"\n]*[>\"])")
+_COMPARED = re.compile(r"^[ \t]*#[ \t]*(?:el)?if\b[^\n]*?\(\s*(?P<gone>[<>=!]=?)(?=\s*,)", re.MULTILINE)
+_NEW_POINTERS = re.compile(r"\bnew\s+[\w:]+\s*(?P<gone>\*+)(?=\s*\[)")
+_DEFAULT_BRACES = re.compile(r"=(?P<blanks>\s*)\{(?P<inner>[^{};]*)\}(?=\s*[,)])")
+_TYPENAME = re.compile(r"(?:=|\breturn)\s*(?P<gone>typename)\b")
+_TEMPLATE = re.compile(r"(?:->|\.)\s*(?P<gone>template)(?=\s+\w+\s*\()")
+_SIGNATURE = re.compile(r"\b(?:SIGNAL|SLOT)\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)")
+_EACH_LIKE = re.compile(r"\b\w*(?:[Ee]ach|EACH)\w*\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)(?=\s*\{)")
+_STATEMENT_MACRO = re.compile(
+    r"^(?P<macro>(?P<blanks>[ \t]*)[A-Z][A-Z0-9_]{3,}\([^()\n]*\))[ \n]"
+    r"(?![ \t]*[{;.,=#?:&|+<*)\]-])(?!(?P=blanks)[ \t]+\S)",
+    re.MULTILINE,
+)
 _FURTHER = (
+    (("__has_include",), _HAS_INCLUDE, _word_group),
+    (("(<", "(>", "(=", "(!"), _COMPARED, _word_group),
+    (("new ",), _NEW_POINTERS, _blank_group),
+    (("{",), _DEFAULT_BRACES, _rounded),
+    (("typename",), _TYPENAME, _blank_group),
+    (("template",), _TEMPLATE, _blank_group),
+    (("SIGNAL", "SLOT"), _SIGNATURE, _blank_group),
+    (("ach", "EACH"), _EACH_LIKE, _blank_group),
+    ((")",), _STATEMENT_MACRO, _ended),
     (("class ", "struct "), _CLASS_MACRO, _blank_macro),
     (("_DECL", "_VISIBILITY", "_IMPORT", "_HIDDEN"), _RARE_VISIBILITY, _unless_directive),
     (_BARE, _BARE_WORD, _unless_directive),
@@ -227,8 +272,8 @@ def _cuts(visible: str, directives: list[tuple[int, int, str, str]]) -> bool:
             break
         before = stripped[:line]
     last = stripped[-1:]
-    if last in ",(=<+-&|?":
-        return bool(last)
+    if last and last in ",(=<+-&|?":
+        return True
     for (_, start, _, _), (end, _, _, _) in pairwise(directives):
         body = visible[start:end]
         depth = round_depth = 0

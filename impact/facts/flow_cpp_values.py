@@ -610,8 +610,15 @@ class Values:
         operator = self.text[sign.start_byte : sign.end_byte]
         followed = operator != "=" or path in self.known
         value = self.value(right, guard, READ if followed else ("escape", path, -1), path)
-        self.assignments.append(Assignment(path, value, self.line(node), guard, "", operator))
+        self.assignments.append(Assignment(path, value, self.line(node), guard, "", operator, self.key(left, guard)))
         return value
+
+    def key(self, node: Node, guard: int) -> Expr | None:
+        """The literal in the brackets of an element's path."""
+        if node.kind_id != SUBSCRIPT:
+            return None
+        inner = listed_in(grammatical(node)[1])
+        return self.value(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
 
     def conditional(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
         children = grammatical(node)

@@ -402,6 +402,29 @@ def test_a_header_guard_is_no_condition_and_others_are():
     assert (guards(first), guards(second)) == ([], ["cpp defined(B)"])
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "#if __has_include(<a/b.hpp>)\n#include <a/b.hpp>\n#endif\n",
+        "#if PCL_VERSION_COMPARE(>=, 1, 12, 0)\n#include <a>\n#endif\n",
+        '#ifdef __cplusplus\nextern "C" {\n#endif\nint f(int a);\n#ifdef __cplusplus\n}\n#endif\n',
+        "void k() { x = new double *[3]; }",
+        'struct K { void k(const std::vector<P> & p = {}, const S & s = {"a"}, int i = 1); };',
+        "void k() { x = typename A::B(); }",
+        'void k() { a->template set("b", 1); }',
+        "void k() { connect(a, SIGNAL(b(const C *, int)), this, SLOT(d(E<F> *))); }",
+        "void k() {\n  CHECK_THIS(a)  // so\n  const A & b = c();\n}",
+        "class K { Q_OBJECT\npublic Q_SLOTS:\n  void a();\nsignals:\n  void b();\n};",
+        "class FOO_EXPORT K : public B { FOO_EXPORT K(); FOO_EXPORT static int a(); };",
+        'void k() { printf("a %" PRIu64 " b", c); }',
+    ],
+)
+def test_macros_and_what_the_grammar_does_not_know_hide_nothing(text):
+    facts = extract(f"{text}\nvoid f() {{ g(); }}\n".encode())
+    assert not facts.unread
+    assert guards(next(f for f in facts.functions if f.name == "f")) == []
+
+
 def test_what_did_not_parse_is_said():
     facts = extract(b"void f() { g(); }\n\nint x = = 3 ] ;\n\nvoid h() { g(); }\n")
     assert facts.unread and all(3 <= first <= last <= 4 for first, last in facts.unread)
