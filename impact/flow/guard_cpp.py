@@ -22,6 +22,7 @@ from .guard_terms import (
     negation,
     number,
     owner_of,
+    reading,
 )
 
 _WORDS = {"and": "&&", "or": "||", "not": "!", "not_eq": "!=", "compl": "~", "bitand": "&", "bitor": "|", "xor": "^"}
@@ -55,7 +56,7 @@ def condition(text: str, holds: bool) -> Reading:
     node = reader.clause()
     if node is None:
         return Reading((opaque_piece(text, holds),))
-    return Reading(tuple(reader.pieces(node, holds)), tuple(reader.names))
+    return reading(reader.pieces(node, holds), reader.names)
 
 
 def expression(text: str) -> Term:
@@ -416,6 +417,7 @@ _READ = {
     "subscript_expression": _Reader.index,
     "conditional_expression": _Reader.choice,
     "number_literal": _Reader.number,
+    "user_defined_literal": _Reader.number,
     "string_literal": _Reader.string,
     "raw_string_literal": _Reader.string,
     "concatenated_string": _Reader.string,

@@ -21,6 +21,7 @@ from .guard_terms import (
     member,
     negation,
     number,
+    reading,
 )
 
 _COMPARED = {ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
@@ -45,7 +46,7 @@ def condition(text: str, holds: bool) -> Reading:
     node = parsed(text)
     if node is None:
         return Reading((opaque_piece(text, holds),))
-    return Reading(tuple(reader.pieces(node, holds)), tuple(reader.names))
+    return reading(reader.pieces(node, holds), reader.names)
 
 
 def expression(text: str) -> Term:

@@ -19,7 +19,7 @@ _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]+|k[A-Z]\w*")
 _COUNTS = frozenset(
     ("count", "getNumSubscribers", "get_subscription_count", "get_num_connections", "getNumPublishers", "use_count")
 ) | {"get_intra_process_subscription_count", "get_publisher_count", "get_subscriber_count", "qsize"}
-_RESOURCES_PER_MILLISECOND = 6000
+_RESOURCES_PER_MILLISECOND = 500
 
 
 class Undecided(Exception):
@@ -29,8 +29,8 @@ class Undecided(Exception):
 class Solver:
     """Compares two conditions of one language.
 
-    types: of names, as they are written where they are declared. milliseconds: for all questions together, turned into
-    an amount of work that is the same on every machine.
+    types: of names, as they are written where they are declared. milliseconds: for each question, turned into an amount
+    of work that is the same on every machine.
     """
 
     def __init__(self, language: Language, types: Mapping[str, str], milliseconds: int) -> None:
@@ -44,7 +44,9 @@ class Solver:
         self.script: list[str] = []
         self.valued: set[Term] = set()
         self.counted: set[Term] = set()
+        # Told to be less than something that is a number; told to be less than anything, or calculated with.
         self.ordered: set[Term] = set()
+        self.measured: set[Term] = set()
         self.fractional: set[Term] = set()
         self.signed: set[Term] = set()
         self.equated: dict[Term, set[Term]] = {}
@@ -147,8 +149,11 @@ class Solver:
         self.look(right, True)
         bases = {base for part in term.parts for base in self.bases(part)}
         literals = [literal for part in term.parts for literal in self.literals(part)]
-        if term.text != "==" and (literals or self.is_arithmetic(left) or self.is_arithmetic(right)):
+        calculated = self.is_arithmetic(left) or self.is_arithmetic(right)
+        if term.text != "==" and (literals or calculated):
             self.ordered |= bases
+        if term.text != "==" or calculated:
+            self.measured |= bases
         if any(literal.kind == "real" for literal in literals):
             self.fractional |= bases
         if any(Fraction(literal.text) < 0 for literal in literals) or any(part.kind == "-" for part in term.parts):
@@ -359,7 +364,8 @@ class Solver:
                 continue
             if term.kind == "name" and _CONSTANT.fullmatch(term.text):
                 constants.append(value)
-            if term not in self.fractional:
+            # Whether numbers are whole does not matter where they are only said to be equal or not.
+            if term in self.measured and term not in self.fractional:
                 result.append(f"(is_int {value})")
                 if term not in self.signed and self.type_of(term) != "integer":
                     result.append(f"(>= {value} 0.0)")

@@ -172,6 +172,16 @@ def substituted(term: Term, names: Mapping[str, Term]) -> Term:
     return rewrite(term, change)
 
 
+def reading(pieces: Iterable[Piece], names: Iterable[tuple[str, Term]]) -> Reading:
+    """A condition with the variables that it makes put back into what they stand for."""
+    known: dict[str, Term] = {}
+    for name, value in names:
+        known[name] = substituted(value, known)
+    if not known:
+        return Reading(tuple(pieces))
+    return Reading(tuple(piece._replace(term=substituted(piece.term, known)) for piece in pieces), tuple(known.items()))
+
+
 def names_in(term: Term) -> Iterable[str]:
     """The paths named in a term."""
     if term.kind == "name":

@@ -24,7 +24,7 @@ Guards = Sequence[GuardAt]
 Ways = Sequence[Guards]
 _Side = tuple[tuple[Piece, ...], ...]
 
-MILLISECONDS = 200
+MILLISECONDS = 100
 _NOTHING: Mapping[str, str] = {}
 _NO_MEANINGS = (_NOTHING, _NOTHING)
 
@@ -45,7 +45,8 @@ def compare(
     whether `n > 0` is `n >= 1` and `n != 0`. meanings: local variables of the old and of the new revision that are
     assigned once, with the expression they are assigned: `if (n)` after `n = v.size()` is `if (v.size())`; namespaces
     with what they are short for.
-    milliseconds: what it may take; `changed` when that is not enough.
+    milliseconds: what each of the few questions to z3 may take, on any machine the same work; `changed` when that is
+    not enough.
     """
     return compare_ways((old,), (new,), renames, language, types, meanings, milliseconds)
 
