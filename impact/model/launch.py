@@ -9,518 +9,58 @@ node.py, load_composable_nodes.py and push_ros_namespace.py.
 
 from __future__ import annotations
 
-import ast
-import math
 import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any
 
-from ..facts.flow_launch import (
-    Action,
-    Condition,
-    Entry,
-    LaunchFile,
-    ParameterFile,
-    Piece,
-    Value,
-    literal,
-    parameters,
-    plain,
-    scalar,
-    substitutions,
+from ..facts.flow_launch import Action, Condition, Entry, LaunchFile, literal, parameters, plain
+from .launch_fill import Filling, Scope
+from .launch_result import (
+    Argument,
+    At,
+    Launched,
+    Remap,
+    Setting,
+    SettingFile,
+    Skipped,
+    Sources,
+    Started,
+    Unresolved,
+    file_values,
 )
-from .names_ros import canonical, joined, ros2_rule
+from .launch_text import (
+    Text,
+    every,
+    known,
+    ros1_value,
+    show,
+    show_condition,
+    truth_of,
+    unknown,
+    within,
+    yaml_value,
+)
+from .names_ros import canonical, ros2_rule
 
-
-class Sources(Protocol):
-    """Where launch and parameter files come from. package and path: as in `$(find package)/path`, the path normal and
-    without a leading slash. None for what is not there."""
-
-    def launch(self, package: str, path: str) -> LaunchFile | None:
-        """The facts of a launch file."""
-        ...
-
-    def parameters(self, package: str, path: str) -> ParameterFile | None:
-        """The facts of a file of parameters."""
-        ...
-
-
-class At(NamedTuple):
-    """A line of a file in a package's share folder."""
-
-    package: str
-    path: str
-    line: int
-
-
-class Text(NamedTuple):
-    """A text as far as it is known. value: None where it is not. shown: what is known of it, the rest as `<...>`.
-    reasons: why it is not known. assumed: launch arguments, and `$VARIABLE`s of the environment, on whose defaults it
-    rests."""
-
-    value: str | None
-    shown: str
-    reasons: tuple[str, ...] = ()
-    assumed: tuple[str, ...] = ()
-
-
-class Remap(NamedTuple):
-    """A remapping as given; in ROS 2 old may have a node's name before it (`node:old`). conditions: as in Started."""
-
-    old: Text
-    new: Text
-    at: At
-    conditions: tuple[str, ...] = ()
-
-
-class Setting(NamedTuple):
-    """A parameter. name: private to its node (`scan_topic`), or global on ROS 1's parameter server (`/robot/scan`).
-    value: bool, int, float, str, None or list, if text.value is known. conditions: as in Started."""
-
-    name: str
-    value: Any
-    text: Text
-    at: At
-    conditions: tuple[str, ...] = ()
-
-
-class SettingFile(NamedTuple):
-    """A parameter file given to a node of ROS 2. entries: None where it could not be had. plain: its entries are
-    parameters by themselves, without the name of a node above them."""
-
-    file: Text
-    entries: tuple[Entry, ...] | None
-    at: At
-    conditions: tuple[str, ...] = ()
-    plain: bool = False
-
-
-class Started(NamedTuple):
-    """A node, or another program, that the launch starts.
-
-    kind: `node`, `lifecycle`, `test`, `container`, `composable` (ROS 1: a nodelet that is loaded) or `process`.
-    executable or plugin: what runs. container: full name of where a composable is loaded. name: empty where it is left
-    to the program. namespace: absolute; empty where it is left to the program, which then means `/`.
-    remaps, settings: in the order in which they are given to the node; of remaps ROS 1 takes the last for a name, ROS 2
-    the first; of settings the last holds. settings of ROS 1 are on the server: Launched.values().
-    conditions: those that could not be decided, as text. assumed: launch arguments whose defaults decided the others.
-    after: events or times it waits for. at: the line that starts it. chain: the lines of the includes that lead there,
-    outermost first.
-    """
-
-    kind: str
-    generation: int
-    package: Text
-    executable: Text
-    plugin: Text
-    container: Text
-    name: Text
-    namespace: Text
-    remaps: tuple[Remap, ...]
-    settings: tuple[Setting | SettingFile, ...]
-    arguments: tuple[Text, ...]
-    conditions: tuple[str, ...]
-    assumed: tuple[str, ...]
-    after: tuple[str, ...]
-    at: At
-    chain: tuple[At, ...]
-
-    @property
-    def full_name(self) -> Text:
-        """Namespace and name together; unknown where either is, or where the name is left to the program."""
-        if self.name.value == "":
-            return Text(None, joined(self.namespace.shown or "/", "<its own>"), ("the name is left to the program",))
-        return within(self.namespace if self.namespace.value != "" else known("/"), self.name)
-
-
-class Skipped(NamedTuple):
-    """Something not started because a condition is false. assumed: the arguments whose defaults made it so; empty when
-    it is false whatever the arguments."""
-
-    kind: str
-    at: At
-    conditions: tuple[str, ...]
-    assumed: tuple[str, ...]
-
-
-class Unresolved(NamedTuple):
-    """Something that could not be followed or filled in: what, and why."""
-
-    at: At
-    what: str
-    reasons: tuple[str, ...]
-
-
-class Argument(NamedTuple):
-    """A launch argument as declared. value: what it has in this launch."""
-
-    name: str
-    value: Text
-    at: At
-
-
-class Launched(NamedTuple):
-    """All that a launch does. server: ROS 1's parameters by their global names. files: (package, path) of the launch
-    files read."""
-
-    started: tuple[Started, ...]
-    server: Mapping[str, Setting]
-    arguments: tuple[Argument, ...]
-    skipped: tuple[Skipped, ...]
-    unresolved: tuple[Unresolved, ...]
-    files: tuple[tuple[str, str], ...]
-
-    def values(self, started: Started, name: str = "") -> dict[str, Setting]:
-        """The private parameters of a node. name: its full name where the launch leaves it to the program; without one
-        only what holds for any node is given."""
-        full = name or started.full_name.value or ""
-        if started.generation == 1:
-            below = f"{full}/"
-            return {
-                key[len(below) :]: setting for key, setting in self.server.items() if full and key.startswith(below)
-            }
-        found: dict[str, Setting] = {}
-        for setting in started.settings:
-            if isinstance(setting, Setting):
-                found.pop(setting.name, None)
-                found[setting.name] = setting
-                continue
-            for key, entry in file_values(setting, full).items():
-                found.pop(key, None)
-                shown = str(entry.value)
-                text = Text(shown, shown, (), setting.file.assumed)
-                found[key] = Setting(key, entry.value, text, setting.at, setting.conditions)
-        return found
-
+__all__ = [
+    "Argument",
+    "At",
+    "Launched",
+    "Remap",
+    "Setting",
+    "SettingFile",
+    "Skipped",
+    "Sources",
+    "Started",
+    "Text",
+    "Unresolved",
+    "file_values",
+    "follow",
+]
 
 DEEPEST = 30
 MOST_ACTIONS = 20_000
-LONGEST = 100_000
-
-
-def known(value: str, assumed: tuple[str, ...] = ()) -> Text:
-    """A text that is known."""
-    return Text(value, value, (), assumed)
-
-
-def unknown(shown: str, *reasons: str, assumed: tuple[str, ...] = ()) -> Text:
-    """A text that is not."""
-    return Text(None, f"<{shown}>", reasons, assumed)
-
-
-def together(texts: Sequence[Text], between: str = "") -> Text:
-    """Texts one after the other as one."""
-    value = None if any(t.value is None for t in texts) else between.join(t.value or "" for t in texts)
-    if value is not None and len(value) > LONGEST:
-        return unknown("...", "is too long")
-    shown = value if value is not None else between.join(t.shown for t in texts)[:LONGEST]
-    return Text(value, shown, _all(t.reasons for t in texts), _all(t.assumed for t in texts))
-
-
-def within(namespace: Text, name: Text) -> Text:
-    """A name put into a namespace."""
-    if name.value is not None and name.value[:1] == "/":
-        return name
-    if namespace.value is None or name.value is None:
-        both = together((namespace, name), "/")
-        return both._replace(value=None, shown=both.shown.replace("//", "/"))
-    return Text(joined(namespace.value, name.value), joined(namespace.value, name.value), (),
-                _all((namespace.assumed, name.assumed)))  # fmt: skip
-
-
-def _all(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
-    """All of several tuples, each once, in order."""
-    return tuple(dict.fromkeys(item for group in groups for item in group))
-
-
-def show(value: Value) -> str:
-    """A value as a person would write it."""
-    return "".join(_show_piece(piece) for piece in value)
-
-
-def _show_piece(piece: Piece) -> str:
-    if piece.kind == "text":
-        return piece.text
-    if piece.kind == "other":
-        return f"<{piece.text}>"
-    parts = [show(part) for part in piece.parts]
-    if piece.kind == "eval":
-        return f"$(eval {parts[0]})"
-    if piece.kind == "equals" and len(parts) == 2:
-        return f"{parts[0]} == {parts[1]}"
-    if piece.kind in ("and", "or"):
-        return f" {piece.kind} ".join(f"({part})" for part in parts)
-    if piece.kind == "not":
-        return f"not ({parts[0]})" if parts else "not"
-    if piece.kind == "in":
-        return f"{parts[0]} in ({', '.join(parts[1:])})"
-    if piece.kind == "choose":
-        return f"({parts[1]} if {parts[0]} else {parts[2]})"
-    if piece.kind == "join":
-        return "/".join(parts)
-    return f"$({' '.join([piece.kind, *([piece.text] if piece.text else []), *parts])})"
-
-
-def _show_condition(condition: Condition) -> str:
-    text = show(condition.value)
-    return f"not ({text})" if condition.kind == "unless" else text
-
-
-# Parameter files
-
-
-def file_values(setting: SettingFile, full_name: str) -> dict[str, Entry]:
-    """The entries of a ROS 2 parameter file that hold for a node, later ones over earlier ones. full_name: empty for a
-    node whose name is not known: then only what is for every node."""
-    found: dict[str, Entry] = {}
-    for entry in setting.entries or ():
-        if setting.plain:
-            found[".".join(entry.path)] = entry
-            continue
-        if "ros__parameters" not in entry.path:
-            continue
-        split = entry.path.index("ros__parameters")
-        name = ".".join(entry.path[split + 1 :])
-        if name and _names_node("/".join(entry.path[:split]), full_name):
-            found.pop(name, None)
-            found[name] = entry
-    return found
-
-
-def _names_node(pattern: str, full_name: str) -> bool:
-    """Whether the keys above `ros__parameters` mean a node: `/**` any, `*` one part of a name, `**` any number."""
-    pattern = canonical("/" + pattern)
-    if pattern == "/**":
-        return True
-    if not full_name:
-        return False
-    parts = [r"(?:/\w+)*" if part == "**" else r"/\w+" if part == "*" else "/" + re.escape(part)
-             for part in pattern.split("/")[1:]]  # fmt: skip
-    return re.fullmatch("".join(parts), full_name) is not None
-
-
-# Expressions
-
-
-class _CannotTell(Exception):
-    """An expression that is not evaluated; the message says why."""
-
-
-_FUNCTIONS: dict[str, Any] = {
-    "str": str, "int": int, "float": float, "bool": bool, "abs": abs, "min": min, "max": max, "len": len,
-    "round": round, "any": any, "all": all,
-}  # fmt: skip
-_METHODS = frozenset(
-    ("lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "replace", "capitalize", "title", "split",
-     "removeprefix", "removesuffix", "isdigit", "find", "count"),
-)  # fmt: skip
-
-
-def evaluate(expression: str, names: Mapping[str, Any], functions: Mapping[str, Any]) -> Any:
-    """The value of a small Python expression: constants, comparisons, sums, methods of str, and the names and functions
-    given. Raises _CannotTell for anything else."""
-    if len(expression) > 10_000:
-        raise _CannotTell("is too long")
-    try:
-        tree = ast.parse(expression.strip(), mode="eval")
-        return _Evaluator(names, functions).value(tree.body)
-    except _CannotTell:
-        raise
-    except (SyntaxError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
-        raise _CannotTell(f"`{expression[:80]}` fails: {error}") from error
-    except (RecursionError, MemoryError) as error:
-        raise _CannotTell("is nested too deeply") from error
-
-
-class _Evaluator:
-    def __init__(self, names: Mapping[str, Any], functions: Mapping[str, Any]):
-        self.names = names
-        self.functions = functions
-
-    def value(self, node: ast.expr) -> Any:
-        if isinstance(node, ast.Constant):
-            return node.value
-        if isinstance(node, ast.Name):
-            if node.id in self.names:
-                found = self.names[node.id]
-                if isinstance(found, _CannotTell):
-                    raise found
-                return found
-            raise _CannotTell(f"`{node.id}` is no name an expression may use")
-        if isinstance(node, ast.BoolOp):
-            result: Any = None
-            for part in node.values:
-                result = self.value(part)
-                if bool(result) == isinstance(node.op, ast.Or):
-                    break
-            return result
-        if isinstance(node, ast.UnaryOp):
-            operand = self.value(node.operand)
-            if isinstance(node.op, ast.Not):
-                return not operand
-            if isinstance(node.op, ast.USub):
-                return -operand
-            if isinstance(node.op, ast.UAdd):
-                return +operand
-        if isinstance(node, ast.BinOp):
-            return self.sum(node)
-        if isinstance(node, ast.Compare):
-            left = self.value(node.left)
-            for op, right_node in zip(node.ops, node.comparators, strict=True):
-                right = self.value(right_node)
-                if not _COMPARISONS[type(op)](left, right):
-                    return False
-                left = right
-            return True
-        if isinstance(node, ast.IfExp):
-            return self.value(node.body if self.value(node.test) else node.orelse)
-        if isinstance(node, (ast.List, ast.Tuple)):
-            return [self.value(element) for element in node.elts]
-        if isinstance(node, ast.Subscript):
-            return self.value(node.value)[self.index(node.slice)]
-        if isinstance(node, ast.Call) and not node.keywords:
-            return self.call(node)
-        raise _CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
-
-    def index(self, node: ast.expr) -> Any:
-        if not isinstance(node, ast.Slice):
-            return self.value(node)
-        return slice(*(None if bound is None else self.value(bound) for bound in (node.lower, node.upper, node.step)))
-
-    def sum(self, node: ast.BinOp) -> Any:
-        left, right = self.value(node.left), self.value(node.right)
-        calculate = _SUMS.get(type(node.op))
-        if calculate is None:
-            raise _CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
-        if isinstance(node.op, (ast.Mult, ast.Mod)) and (
-            isinstance(left, (str, list)) or isinstance(right, (str, list))
-        ):
-            raise _CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
-        result = calculate(left, right)
-        if isinstance(result, int) and abs(result) > 2**63:
-            raise _CannotTell("is too large a number")
-        return result
-
-    def call(self, node: ast.Call) -> Any:
-        arguments = [self.value(argument) for argument in node.args]
-        if isinstance(node.func, ast.Name):
-            function = self.functions.get(node.func.id) or _FUNCTIONS.get(node.func.id)
-            if function is not None:
-                return function(*arguments)
-        if isinstance(node.func, ast.Attribute):
-            if isinstance(node.func.value, ast.Name) and node.func.value.id == "math":
-                function = getattr(math, node.func.attr, None)
-                if callable(function) and node.func.attr in (
-                    "sqrt",
-                    "sin",
-                    "cos",
-                    "radians",
-                    "degrees",
-                    "floor",
-                    "ceil",
-                ):
-                    return function(*arguments)
-            if node.func.attr in _METHODS:
-                receiver = self.value(node.func.value)
-                if isinstance(receiver, str):
-                    return getattr(receiver, node.func.attr)(*arguments)
-        raise _CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
-
-
-_SUMS = {
-    ast.Add: lambda a, b: a + b,
-    ast.Sub: lambda a, b: a - b,
-    ast.Mult: lambda a, b: a * b,
-    ast.Div: lambda a, b: a / b,
-    ast.FloorDiv: lambda a, b: a // b,
-    ast.Mod: lambda a, b: a % b,
-}
-_COMPARISONS = {
-    ast.Eq: lambda a, b: a == b,
-    ast.NotEq: lambda a, b: a != b,
-    ast.Lt: lambda a, b: a < b,
-    ast.LtE: lambda a, b: a <= b,
-    ast.Gt: lambda a, b: a > b,
-    ast.GtE: lambda a, b: a >= b,
-    ast.In: lambda a, b: a in b,
-    ast.NotIn: lambda a, b: a not in b,
-    ast.Is: lambda a, b: a is b or a == b,
-    ast.IsNot: lambda a, b: not (a is b or a == b),
-}
-
-
-def ros1_value(text: str, type_: str = "auto") -> Any:
-    """A parameter of ROS 1 from its text, as roslaunch's convert_value() makes it; the text where that would fail."""
-    kind = type_.lower().strip() or "auto"
-    try:
-        if kind == "auto":
-            if "." in text:
-                return float(text)
-            if "_" not in text:
-                return int(text)
-        elif kind == "int":
-            return int(text)
-        elif kind == "double":
-            return float(text)
-    except ValueError:
-        pass
-    if kind in ("auto", "bool", "boolean"):
-        word = text.lower().strip()
-        if word in ("true", "false"):
-            return word == "true"
-        if kind != "auto" and word in ("1", "0"):
-            return word == "1"
-    if kind == "yaml":
-        return _yaml_value(text)
-    return text
-
-
-def _yaml_value(text: str) -> Any:
-    """What a text is by YAML's rules; mappings stay text."""
-    if text[:1] not in ("[", "'", '"', "-", "!", "&", "{", ">", "|"):
-        return scalar(text.strip())
-    entries = parameters(text).entries
-    return entries[0].value if len(entries) == 1 and entries[0].path == () else scalar(text)
-
-
-# Following a launch
-
-
-class _Scope:
-    """What holds where an action runs. open: how many undecided conditions stood when it began."""
-
-    __slots__ = ("arguments", "constants", "environment", "namespace", "open", "private", "remaps", "settings")
-
-    def __init__(self, arguments: dict[str, Text], environment: dict[str, Text], open_: int):
-        self.arguments = arguments
-        self.environment = environment
-        self.namespace = known("")
-        self.remaps: list[Remap] = []
-        self.settings: list[Setting | SettingFile] = []
-        self.private: list[Action] = []
-        self.constants: set[str] = set()
-        self.open = open_
-
-    def inner(self, open_: int) -> _Scope:
-        """A copy, whose changes do not reach this one."""
-        scope = _Scope(dict(self.arguments), dict(self.environment), open_)
-        scope.namespace = self.namespace
-        scope.remaps = list(self.remaps)
-        scope.settings = list(self.settings)
-        scope.private = list(self.private)
-        scope.constants = set(self.constants)
-        return scope
-
-
-class _Rewrite(NamedTuple):
-    """A parameter file that is changed before it is read. root: the key all is put below. changes: values by the key
-    they replace; replaced: texts by what they replace."""
-
-    source: Text
-    root: Text
-    changes: tuple[tuple[Text, Text], ...]
-    is_text: bool
 
 
 def follow(
@@ -550,27 +90,21 @@ def follow(
     )
 
 
-class _Launch:
+class _Launch(Filling):
     """One launch under way."""
 
     def __init__(self, sources: Sources, arguments: dict[str, Text], environment: dict[str, Text], generation: int):
-        self.sources = sources
-        self.generation = generation or 2
-        self.scope = _Scope(arguments, environment, 0)
-        self.package = ""
-        self.path = ""
+        super().__init__(sources, Scope(arguments, environment, 0), generation or 2)
         self.chain: list[At] = []
         self.open: list[str] = []
         self.assumed: list[str] = []
         self.after: list[str] = []
         self.container = known("")
         self.budget = MOST_ACTIONS
-        self.rewrites: dict[str, _Rewrite] = {}
         self.started: list[Started] = []
         self.server: dict[str, Setting] = {}
         self.declared: list[Argument] = []
         self.skipped: list[Skipped] = []
-        self.unresolved: list[Unresolved] = []
         self.files: list[tuple[str, str]] = []
 
     def top(self, package: str, path: str) -> None:
@@ -590,20 +124,6 @@ class _Launch:
         self.run(file.actions)
         self.generation = before
 
-    def at(self, line: int) -> At:
-        return At(self.package, self.path, line)
-
-    def miss(self, line: int, what: str, *reasons: str) -> None:
-        unresolved = Unresolved(self.at(line), what, reasons)
-        if unresolved not in self.unresolved[-20:]:
-            self.unresolved.append(unresolved)
-
-    def told(self, text: Text, line: int, what: str) -> Text:
-        """The text; where it is not known that is listed."""
-        if text.value is None:
-            self.miss(line, f"{what} `{text.shown}`", *text.reasons)
-        return text
-
     # Actions
 
     def run(self, actions: Iterable[Action]) -> None:
@@ -616,7 +136,7 @@ class _Launch:
             verdict, open_, assumed, after = self.decide(action.conditions)
             if verdict is False:
                 if action.kind in _STARTING:
-                    texts = tuple(_show_condition(c) for c in action.conditions)
+                    texts = tuple(show_condition(c) for c in action.conditions)
                     self.skipped.append(Skipped(action.kind, self.at(action.line), texts, assumed))
                 continue
             marks = len(self.open), len(self.assumed), len(self.after)
@@ -639,16 +159,16 @@ class _Launch:
                 open_.append(show(condition.value))
                 continue
             text = self.text(condition.value)
-            truth = _truth(text)
+            truth = truth_of(text)
             if truth is None:
-                open_.append(_show_condition(condition))
+                open_.append(show_condition(condition))
                 reasons = text.reasons or (f"`{text.value}` is neither true nor false",)
-                self.miss(condition.line, f"condition `{_show_condition(condition)}`", *reasons)
+                self.miss(condition.line, f"condition `{show_condition(condition)}`", *reasons)
                 continue
             assumed.append(text.assumed)
             if truth == (condition.kind == "unless"):
-                return False, open_, _all(assumed), after
-        return (None if open_ else True), open_, _all(assumed), after
+                return False, open_, every(assumed), after
+        return (None if open_ else True), open_, every(assumed), after
 
     def uncertain(self) -> bool:
         """Whether what is set here may not be set at all, as seen by what follows."""
@@ -684,7 +204,7 @@ class _Launch:
                 self.scope.arguments[name] = unknown(f"{name}", reason)
             else:
                 text = self.text(default)
-                self.set(name, text._replace(assumed=_all((text.assumed, (name,)))))
+                self.set(name, text._replace(assumed=every((text.assumed, (name,)))))
         self.declared.append(Argument(name, self.scope.arguments[name], self.at(action.line)))
 
     def do_let(self, action: Action) -> None:
@@ -699,13 +219,13 @@ class _Launch:
 
     def do_group(self, action: Action) -> None:
         scoped = action.get("scoped")
-        if self.generation == 2 and scoped is not None and _truth(self.text(scoped)) is False:
+        if self.generation == 2 and scoped is not None and truth_of(self.text(scoped)) is False:
             self.run(action.children)
             return
         outer, self.scope = self.scope, self.scope.inner(len(self.open))
         forwarding = action.get("forwarding")
-        if forwarding is not None and _truth(self.text(forwarding)) is False:
-            self.scope = _Scope({}, {}, len(self.open))
+        if forwarding is not None and truth_of(self.text(forwarding)) is False:
+            self.scope = Scope({}, {}, len(self.open))
         if action.get("namespace") is not None:
             self.scope.namespace = self.inside(self.text(action.get("namespace") or literal("")))
         self.clear(action, self.scope.namespace)
@@ -785,7 +305,7 @@ class _Launch:
                 text = unknown(text.shown, f"`{name}` is given only if {open_[-1]}")
             yield name, text
 
-    def scope1(self, action: Action) -> _Scope:
+    def scope1(self, action: Action) -> Scope:
         """The scope of a file that roslaunch includes: namespace and remappings are passed on, arguments only as
         given."""
         scope = self.scope.inner(len(self.open))
@@ -793,7 +313,7 @@ class _Launch:
             scope.namespace = self.inside(self.text(action.get("namespace") or literal("")))
         self.clear(action, scope.namespace)
         all_ = action.get("pass-all")
-        scope.arguments = dict(self.scope.arguments) if all_ is not None and _truth(self.text(all_)) else {}
+        scope.arguments = dict(self.scope.arguments) if all_ is not None and truth_of(self.text(all_)) else {}
         scope.arguments.update(list(self.passed(action)))
         # With pass_all_args, a constant of the included file replaces what is passed without complaint
         scope.constants = set(scope.arguments) if all_ is not None else set()
@@ -801,7 +321,7 @@ class _Launch:
 
     def clear(self, action: Action, namespace: Text) -> None:
         clear = action.get("clear")
-        if clear is not None and namespace.value and _truth(self.text(clear)):
+        if clear is not None and namespace.value and truth_of(self.text(clear)):
             self.forget(namespace.value)
 
     def forget(self, name: str) -> None:
@@ -845,7 +365,7 @@ class _Launch:
         type_ = plain(action.get("type")) or ""
         value: Any = text.value
         if value is not None and type_ not in ("str", "string"):
-            value = _yaml_value(value)
+            value = yaml_value(value)
         return Setting(name, value, text, self.at(action.line), tuple(self.open[self.scope.open :]))
 
     def setting_file(self, action: Action) -> SettingFile:
@@ -872,45 +392,6 @@ class _Launch:
                 if list(entry.path[: len(below)]) == below
             )
         return SettingFile(file, entries, at, conditions, True)
-
-    def substituted(self, entry: Entry) -> Entry:
-        """An entry whose keys or values hold substitutions, filled in where that can be done."""
-        path = tuple(self.filled(part) if "$(" in part else part for part in entry.path)
-        return Entry(path, self.filled_value(entry.value), entry.line)
-
-    def filled(self, text: str) -> str:
-        made = self.text(substitutions(text, self.generation))
-        return text if made.value is None else made.value
-
-    def filled_value(self, value: Any) -> Any:
-        if isinstance(value, str) and "$(" in value:
-            return _yaml_value(self.filled(value))
-        if isinstance(value, list):
-            return [self.filled_value(item) for item in value]
-        if isinstance(value, dict):
-            return {self.filled(key): self.filled_value(item) for key, item in value.items()}
-        return value
-
-    def entries(self, file: str, line: int) -> tuple[Entry, ...] | None:
-        """The entries of a parameter file, changed as it is before it is read; None where it cannot be had."""
-        rewrite = self.rewrites.get(file)
-        if rewrite is not None:
-            if rewrite.source.value is None:
-                self.miss(line, f"parameters `{rewrite.source.shown}`", *rewrite.source.reasons)
-                return None
-            entries = self.entries(rewrite.source.value, line)
-            return None if entries is None else _rewritten(entries, rewrite)
-        place = self.place(file)
-        if place is None:
-            self.miss(line, f"parameters `{file}`", "the file lies in no package that is named")
-            return None
-        found = self.sources.parameters(*place)
-        if found is None:
-            self.miss(line, f"parameters `{file}`", "the file is not in the workspace")
-            return None
-        for problem in found.problems:
-            self.miss(line, f"parameters `{file}`, line {problem.line}", problem.message)
-        return found.entries
 
     def serve(self, action: Action, namespace: Text) -> None:
         """Puts a <param> of ROS 1 on the server, below a namespace."""
@@ -954,7 +435,7 @@ class _Launch:
         if command != "load":
             return
         substitute = action.get("substitute")
-        fill = substitute is not None and _truth(self.text(substitute)) is True
+        fill = substitute is not None and truth_of(self.text(substitute)) is True
         file, content = action.get("file"), action.get("text")
         if file is not None:
             text = self.told(self.text(file), action.line, "parameters")
@@ -1024,7 +505,7 @@ class _Launch:
             **texts,
             **lists,
             conditions=tuple(self.open),
-            assumed=_all([tuple(self.assumed)]),
+            assumed=every([tuple(self.assumed)]),
             after=tuple(self.after),
             at=self.at(action.line),
             chain=tuple(self.chain),
@@ -1064,7 +545,7 @@ class _Launch:
                     else:
                         remaps.append(Remap(known(old), known(new, text.assumed), self.at(line)))
                 elif option in ("-p", "--param"):
-                    settings.append(Setting(old, _yaml_value(new), known(new, text.assumed), self.at(line)))
+                    settings.append(Setting(old, yaml_value(new), known(new, text.assumed), self.at(line)))
                 elif option == "--params-file":
                     settings.append(SettingFile(text, self.entries(word, line), self.at(line)))
                 option = ""
@@ -1190,234 +671,7 @@ class _Launch:
             return [text]
         return [known(word, text.assumed) for word in text.value.split()] if " " in text.value else [text]
 
-    # Substitutions
 
-    def place(self, path: str) -> tuple[str, str] | None:
-        """Package and path in it of a file below a package's share folder."""
-        m = _PLACE.match(path)
-        if m is None:
-            return None
-        inner = posixpath.normpath(m[2].lstrip("/")) if m[2].strip("/") else ""
-        return None if inner.startswith("..") or not inner else (m[1], inner)
-
-    def text(self, value: Value) -> Text:
-        """A value with its substitutions filled in."""
-        if len(value) == 1:
-            return self.piece(value[0])
-        return together([self.piece(piece) for piece in value])
-
-    def piece(self, piece: Piece) -> Text:
-        if piece.kind == "text":
-            return known(piece.text)
-        if piece.kind == "other":
-            return unknown(piece.text, "it is only known when it runs")
-        maker = _FILLING.get(piece.kind)
-        if maker is None or len(piece.parts) < _PARTS.get(piece.kind, 0):
-            return unknown(piece.kind, f"`{piece.kind}` is not filled in")
-        return maker(self, piece)
-
-    def named(self, piece: Piece) -> tuple[Text, tuple[Value, ...]]:
-        """A piece's name, and its other parts."""
-        if piece.text:
-            return known(piece.text), piece.parts
-        return (self.text(piece.parts[0]), piece.parts[1:]) if piece.parts else (known(""), ())
-
-    def fill_arg(self, piece: Piece) -> Text:
-        name, rest = self.named(piece)
-        if name.value is None:
-            return unknown(name.shown, *name.reasons)
-        text = self.scope.arguments.get(name.value)
-        if text is not None:
-            return text._replace(assumed=_all((text.assumed, name.assumed)))
-        if rest:
-            default = self.text(rest[0])
-            return default._replace(assumed=_all((default.assumed, (name.value,))))
-        return unknown(name.value, f"argument `{name.value}` has no value")
-
-    def fill_env(self, piece: Piece) -> Text:
-        name, rest = self.named(piece)
-        if name.value is None:
-            return unknown(name.shown, *name.reasons)
-        text = self.scope.environment.get(name.value)
-        if text is not None:
-            return text
-        if rest:
-            default = self.text(rest[0])
-            return default._replace(assumed=_all((default.assumed, (f"${name.value}",))))
-        return unknown(f"${name.value}", f"the environment variable `{name.value}` is not known")
-
-    def fill_package(self, piece: Piece) -> Text:
-        name, _ = self.named(piece)
-        if name.value is None:
-            return unknown(f"$({piece.kind} {name.shown})", *name.reasons)
-        return known(f"$({piece.kind} {name.value})", name.assumed)
-
-    def fill_executable(self, piece: Piece) -> Text:
-        name, package = (self.text(part) for part in piece.parts[:2])
-        return together((known("$(prefix "), package, known(")/lib/"), package, known("/"), name))
-
-    def fill_program(self, piece: Piece) -> Text:
-        return self.named(piece)[0]
-
-    def fill_dirname(self, piece: Piece) -> Text:
-        folder = posixpath.dirname(self.path)
-        return known(f"$(find {self.package})" + (f"/{folder}" if folder else ""))
-
-    def fill_filename(self, piece: Piece) -> Text:
-        return known(f"$(find {self.package})/{self.path}")
-
-    def fill_anon(self, piece: Piece) -> Text:
-        name, _ = self.named(piece)
-        return Text(None, f"{name.shown}_<anonymous>", ("an anonymous name is made up at every start",))
-
-    def fill_command(self, piece: Piece) -> Text:
-        return unknown(show((piece,)), "it is the output of a command")
-
-    def fill_content(self, piece: Piece) -> Text:
-        return unknown(show((piece,)), "it is the content of a file")
-
-    def fill_join(self, piece: Piece) -> Text:
-        texts: list[Text] = []
-        for part in piece.parts:
-            text = self.text(part)
-            if (text.value is not None and text.value[:1] == "/") or (text.value or "").startswith("$("):
-                texts = []
-            texts.append(text)
-        if not texts:
-            return known("")
-        done = [t._replace(value=t.value.rstrip("/") if t.value is not None else None, shown=t.shown.rstrip("/"))
-                for t in texts[:-1]]  # fmt: skip
-        return together([*done, texts[-1]], "/")
-
-    def fill_equals(self, piece: Piece) -> Text:
-        left, right = (self.text(part) for part in piece.parts[:2])
-        both = together((left, right))
-        if both.value is None:
-            return both._replace(shown=show((piece,)))
-        return known(_flag(left.value == right.value), both.assumed)
-
-    def fill_in(self, piece: Piece) -> Text:
-        texts = [self.text(part) for part in piece.parts]
-        both = together(texts)
-        if both.value is None:
-            return both._replace(shown=show((piece,)))
-        return known(_flag(texts[0].value in [t.value for t in texts[1:]]), both.assumed)
-
-    def fill_not(self, piece: Piece) -> Text:
-        text = self.text(piece.parts[0]) if piece.parts else known("")
-        truth = _truth(text)
-        if truth is None:
-            return unknown(show((piece,)), *(text.reasons or (f"`{text.value}` is neither true nor false",)))
-        return known(_flag(not truth), text.assumed)
-
-    def fill_logic(self, piece: Piece) -> Text:
-        """`and` and `or`: what decides them alone is enough."""
-        deciding = piece.kind == "or"
-        texts = [self.text(part) for part in piece.parts]
-        truths = [_truth(text) for text in texts]
-        for text, truth in zip(texts, truths, strict=True):
-            if truth is deciding:
-                return known(_flag(deciding), text.assumed)
-        if None in truths:
-            return unknown(show((piece,)), *_all(t.reasons for t in texts))
-        return known(_flag(not deciding), _all(t.assumed for t in texts))
-
-    def fill_choose(self, piece: Piece) -> Text:
-        asked = self.text(piece.parts[0])
-        truth = _truth(asked)
-        if truth is None:
-            yes, no = (self.text(part) for part in piece.parts[1:3])
-            if yes.value is not None and yes.value == no.value:
-                return yes
-            reasons = asked.reasons or (f"`{asked.value}` is neither true nor false",)
-            return unknown(f"{yes.shown} or {no.shown}", *reasons)
-        text = self.text(piece.parts[1 if truth else 2])
-        return text._replace(assumed=_all((text.assumed, asked.assumed)))
-
-    def fill_method(self, piece: Piece) -> Text:
-        texts = [self.text(part) for part in piece.parts]
-        both = together(texts)
-        if both.value is None or piece.text not in _METHODS:
-            return unknown(show((piece,)), *both.reasons)
-        try:
-            result = getattr(texts[0].value, piece.text)(*(t.value for t in texts[1:]))
-        except (TypeError, ValueError) as error:
-            return unknown(show((piece,)), f"`{piece.text}` fails: {error}")
-        return known(_flag(result) if isinstance(result, bool) else str(result), both.assumed)
-
-    def fill_rewritten(self, piece: Piece) -> Text:
-        """A changed parameter file: its name stands for it until it is read."""
-        texts = [self.text(part) for part in piece.parts]
-        is_text = piece.kind == "replaced"
-        source, rest = texts[0], texts[1:] if is_text else texts[2:]
-        pairs = tuple(zip(rest[::2], rest[1::2], strict=False))
-        rewrite = _Rewrite(source, known("") if is_text else texts[1], pairs, is_text)
-        name = f"$({piece.kind} {source.shown} {len(self.rewrites)})"
-        self.rewrites[name] = rewrite
-        return known(name, source.assumed)
-
-    def fill_has_node(self, piece: Piece) -> Text:
-        file, node = (self.text(part) for part in piece.parts[:2])
-        both = together((file, node))
-        entries = self.entries(file.value, 0) if both.value is not None and file.value is not None else None
-        if entries is None:
-            return unknown(show((piece,)), *(both.reasons or ("the file is not in the workspace",)))
-        return known(_flag(any(node.value in entry.path[:-1] for entry in entries)), both.assumed)
-
-    def fill_eval(self, piece: Piece) -> Text:
-        expression = self.text(piece.parts[0])
-        if expression.value is None:
-            return unknown(f"$(eval {expression.shown})", *expression.reasons, assumed=expression.assumed)
-        used: list[tuple[str, ...]] = [expression.assumed]
-
-        def argument(name: str) -> Any:
-            text = self.fill_arg(Piece("arg", name))
-            if text.value is None:
-                raise _CannotTell(*text.reasons)
-            used.append(text.assumed)
-            return ros1_value(text.value)
-
-        def variable(name: str, *default: str) -> str:
-            text = self.fill_env(Piece("env", name, tuple(literal(d) for d in default)))
-            if text.value is None:
-                raise _CannotTell(*text.reasons)
-            used.append(text.assumed)
-            return text.value
-
-        functions: dict[str, Any] = {}
-        names: Any = {"True": True, "False": False, "None": None, "pi": math.pi}
-        if piece.text == "roslaunch":
-            functions = {
-                "arg": argument,
-                "env": variable,
-                "optenv": lambda name, default="": variable(name, default),
-                "find": lambda package: f"$(find {package})",
-                "dirname": lambda: self.fill_dirname(piece).value,
-            }
-            names = _Arguments(self.scope.arguments, argument)
-        try:
-            result = evaluate(expression.value, names, functions)
-        except _CannotTell as error:
-            return unknown(f"$(eval {expression.value[:80]})", str(error), assumed=_all(used))
-        return known(str(result), _all(used))
-
-
-class _Arguments(dict):
-    """The names that an expression of roslaunch sees: launch arguments, and a few constants."""
-
-    def __init__(self, arguments: Mapping[str, Text], look: Any):
-        super().__init__(true=True, false=False, True_=True, pi=math.pi)
-        self.arguments = arguments
-        self.look = look
-
-    def __contains__(self, name: object) -> bool:
-        return super().__contains__(name) or name in self.arguments
-
-    def __getitem__(self, name: str) -> Any:
-        return super().__getitem__(name) if super().__contains__(name) else self.look(name)
-
-
-_PLACE = re.compile(r"\$\(find ([\w.-]+)\)(/.*|)\Z", re.DOTALL)
 _INSTALLED = re.compile(r"\$\(prefix ([\w.-]+)\)/lib/\1/([^/]+)\Z")
 _TEXTS = ("package", "executable", "plugin", "container", "name", "namespace")
 _OF_NODE = frozenset(("remap", "parameter", "parameter-file", "unknown"))
@@ -1441,47 +695,6 @@ _DOING = {
     "process": _Launch.do_process,
     "pass": _Launch.do_nothing,
 }
-_FILLING = {
-    "arg": _Launch.fill_arg,
-    "env": _Launch.fill_env,
-    "find": _Launch.fill_package,
-    "prefix": _Launch.fill_package,
-    "executable": _Launch.fill_executable,
-    "program": _Launch.fill_program,
-    "dirname": _Launch.fill_dirname,
-    "filename": _Launch.fill_filename,
-    "anon": _Launch.fill_anon,
-    "command": _Launch.fill_command,
-    "content": _Launch.fill_content,
-    "join": _Launch.fill_join,
-    "equals": _Launch.fill_equals,
-    "in": _Launch.fill_in,
-    "not": _Launch.fill_not,
-    "and": _Launch.fill_logic,
-    "or": _Launch.fill_logic,
-    "choose": _Launch.fill_choose,
-    "method": _Launch.fill_method,
-    "rewritten": _Launch.fill_rewritten,
-    "replaced": _Launch.fill_rewritten,
-    "has-node": _Launch.fill_has_node,
-    "eval": _Launch.fill_eval,
-}
-
-
-# How many parts a piece needs before it can be filled in.
-_PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewritten": 2, "replaced": 1, "has-node": 2,
-          "eval": 1}  # fmt: skip
-
-
-def _truth(text: Text) -> bool | None:
-    """What roslaunch and launch make of a text that is asked: True, False, or None for what they refuse."""
-    if text.value is None:
-        return None
-    return {"true": True, "1": True, "false": False, "0": False}.get(text.value.strip().lower())
-
-
-def _flag(value: bool) -> str:
-    return "true" if value else "false"
 
 
 def _without_earlier(remaps: list[Remap]) -> list[Remap]:
@@ -1492,35 +705,3 @@ def _without_earlier(remaps: list[Remap]) -> list[Remap]:
             kept = [k for k in kept if k.old.value is None or canonical(k.old.value) != canonical(remap.old.value)]
         kept.append(remap)
     return kept
-
-
-def _rewritten(entries: Sequence[Entry], rewrite: _Rewrite) -> tuple[Entry, ...]:
-    """Entries as RewrittenYaml or ReplaceString of nav2_common would leave them."""
-    if rewrite.is_text:
-        return tuple(_replaced(entry, rewrite.changes) for entry in entries)
-    changes = {old.value: new for old, new in rewrite.changes if old.value is not None}
-    root = (rewrite.root.value,) if rewrite.root.value else ()
-    made: list[Entry] = []
-    for entry in entries:
-        new = changes.get(".".join(entry.path), changes.get(entry.path[-1] if entry.path else ""))
-        value = entry.value
-        if new is not None:
-            value = scalar(new.value) if new.value else new.shown
-        made.append(Entry((*root, *entry.path), value, entry.line))
-    return tuple(made)
-
-
-def _replaced(entry: Entry, changes: tuple[tuple[Text, Text], ...]) -> Entry:
-    def change(text: str) -> str:
-        for old, new in changes:
-            if old.value:
-                text = text.replace(old.value, new.value if new.value is not None else new.shown)
-        return text
-
-    value = entry.value
-    if isinstance(value, str):
-        value = change(value)
-    elif isinstance(value, list):
-        value = [change(item) if isinstance(item, str) else item for item in value]
-    path = tuple(part for key in entry.path for part in [change(key)] if part)
-    return Entry(path, value, entry.line)
