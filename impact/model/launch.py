@@ -113,7 +113,10 @@ class _Launch(Filling):
         if file is None:
             self.unresolved.append(Unresolved(At(package, path, 0), path, ("the launch file is not there",)))
             return
-        self.file(file)
+        try:
+            self.file(file)
+        except RecursionError:
+            self.miss(0, "the rest of the launch", "it is nested too deeply to be followed")
 
     def file(self, file: LaunchFile) -> None:
         self.files.append((self.package, self.path))

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 from ..facts.flow_launch import Action, Entry, Piece, Value, literal, scalar, substitutions
 from .launch_result import At, Remap, Setting, SettingFile, Sources, Unresolved
 from .launch_text import (
-    METHODS,
     CannotTell,
     Text,
     evaluate,
@@ -20,6 +19,7 @@ from .launch_text import (
     known,
     ros1_value,
     show,
+    text_method,
     together,
     truth_of,
     unknown,
@@ -274,12 +274,12 @@ class Filling:
     def fill_method(self, piece: Piece) -> Text:
         texts = [self.text(part) for part in piece.parts]
         both = together(texts)
-        if both.value is None or piece.text not in METHODS:
+        if both.value is None:
             return unknown(show((piece,)), *both.reasons)
         try:
-            result = getattr(texts[0].value, piece.text)(*(t.value for t in texts[1:]))
-        except (TypeError, ValueError) as error:
-            return unknown(show((piece,)), f"`{piece.text}` fails: {error}")
+            result = text_method(texts[0].value or "", piece.text, [t.value for t in texts[1:]])
+        except CannotTell as error:
+            return unknown(show((piece,)), str(error))
         return known(flag(result) if isinstance(result, bool) else str(result), both.assumed)
 
     def fill_rewritten(self, piece: Piece) -> Text:

@@ -123,6 +123,17 @@ METHODS = frozenset(
 )  # fmt: skip
 
 
+def text_method(receiver: str, name: str, arguments: Sequence[Any]) -> Any:
+    """What one of METHODS gives. Raises CannotTell for other methods, wrong arguments and long results."""
+    longest = max((len(a) for a in arguments if isinstance(a, str)), default=0)
+    if name not in METHODS or len(receiver) * longest > LONGEST:
+        raise CannotTell(f"`{name}` is not evaluated")
+    try:
+        return getattr(receiver, name)(*arguments)
+    except (TypeError, ValueError) as error:
+        raise CannotTell(f"`{name}` fails: {error}") from error
+
+
 def evaluate(expression: str, names: Mapping[str, Any], functions: Mapping[str, Any]) -> Any:
     """The value of a small Python expression: constants, comparisons, sums, methods of str, and the names and functions
     given. Raises CannotTell for anything else."""
@@ -230,7 +241,7 @@ class _Evaluator:
             if node.func.attr in METHODS:
                 receiver = self.value(node.func.value)
                 if isinstance(receiver, str):
-                    return getattr(receiver, node.func.attr)(*arguments)
+                    return text_method(receiver, node.func.attr, arguments)
         raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
 
 

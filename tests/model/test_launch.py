@@ -1,8 +1,11 @@
 """What launch files start, told on small workspaces."""
 
 import textwrap
+from xml.sax.saxutils import quoteattr
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from rosimpact.impact.facts.flow_launch import extract, parameters
 from rosimpact.impact.model.launch import Setting, SettingFile, Text, file_values, follow
 from rosimpact.impact.model.launch_text import CannotTell, evaluate, ros1_value
@@ -366,12 +369,63 @@ def test_expressions(expression, expected):
 
 @pytest.mark.parametrize(
     "expression",
-    ["__import__('os')", "'a' * 10**9", "2 ** 99", "().__class__", "[x for x in y]", "unknown", "1 +", "'a'.format()",
-     "1 / 0", "'%9999999s' % 1", "(" * 500, "9" * 5000],
+    ["__import__('os')", "'a' * 10**9", "2 ** 99", "().__class__", "[x for x in y]", "unknown", "1 +",
+     "'a'.format()",
+     "'a'.replace('a', 1)", "'" + "a" * 900 + "'.replace('a', '" + "b" * 900 + "')", "1 / 0",
+     "'%9999999s' % 1", "(" * 500, "9" * 5000],
 )  # fmt: skip
 def test_expressions_that_are_not_evaluated(expression):
     with pytest.raises(CannotTell):
         evaluate(expression, {}, {})
+
+
+def test_deep_and_wide_launches_end():
+    deep = "<launch>" + "<group>" * 55 + '<include file="$(find p)/{}.launch"/>' + "</group>" * 55 + "</launch>"
+    launch = launched({f"p/{n}.launch": deep.format(n + 1) for n in range(40)}, "p/0.launch")
+    assert any("deep" in reason for u in launch.unresolved for reason in u.reasons)
+    wide = "<launch>" + '<include file="$(find p)/{}.launch"/>' * 10 + "</launch>"
+    launch = launched({f"p/{n}.launch": wide.replace("{}", str(n + 1)) for n in range(9)}, "p/0.launch")
+    assert "more than" in launch.unresolved[-1].reasons[0]
+    doubled = '<arg name="a" default="x"/>' + '<let name="a" value="$(var a)$(var a)"/>' * 40
+    launch = launched(f'<launch>{doubled}<node pkg="k" exec="e" name="$(var a)"/></launch>')
+    assert launch.started[0].name.reasons == ("is too long",)
+
+
+PIECES = st.sampled_from(
+    ["$(arg a)", "$(var a)", "$(eval 1 + )", "$(eval '$(var a)')", "$(find p)", "$(dirname)", "$(not x)", "$(if 1 2 3)",
+     "$(and)", "$(equals a b)", "$(command x)", "$(env A)", "$(exec-in-pkg a b)", "a", "/", "~", "", "true", ":="],
+)  # fmt: skip
+ATTRIBUTES = st.sampled_from(
+    ["name", "value", "default", "if", "unless", "ns", "namespace", "pkg", "type", "exec", "args", "file", "from", "to",
+     "plugin", "target", "param", "command", "subst_value", "scoped", "cmd", "period", "clear_params"],
+)  # fmt: skip
+TAGS = st.sampled_from(
+    ["node", "group", "arg", "let", "include", "param", "rosparam", "remap", "composable_node", "node_container",
+     "load_composable_node", "push_ros_namespace", "executable", "env", "set_parameter", "test", "timer", "odd"],
+)  # fmt: skip
+ELEMENTS = st.recursive(
+    st.tuples(TAGS, st.dictionaries(ATTRIBUTES, st.lists(PIECES, max_size=3).map("".join), max_size=5), st.just([])),
+    lambda inner: st.tuples(
+        TAGS, st.dictionaries(ATTRIBUTES, st.lists(PIECES, max_size=3).map("".join), max_size=5), st.lists(inner)
+    ),
+    max_leaves=12,
+)
+
+
+def written(element):
+    tag, attributes, children = element
+    values = "".join(f" {name}={quoteattr(value)}" for name, value in attributes.items())
+    return f"<{tag}{values}>{''.join(map(written, children))}</{tag}>"
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(ELEMENTS, max_size=6), st.sampled_from([1, 2]))
+def test_following_never_raises(elements, generation):
+    text = f"<launch>{''.join(map(written, elements))}</launch>"
+    launch = launched(text, generation=generation)
+    for started in launch.started:
+        launch.values(started)
+        assert started.full_name.value is None or started.full_name.value.startswith("/")
 
 
 def test_no_launch_file():
