@@ -1,4 +1,4 @@
-"""What a change reaches downstream: from a node or topic along publishers, subscribers and what their callbacks publish."""
+"""What a change reaches downstream: from a node or topic to subscribers, and on to what their callbacks publish."""
 
 from __future__ import annotations
 
@@ -80,8 +80,8 @@ class Reach:
     def _sent(self, node: str, came: Step | None) -> Iterator[tuple[str, str]]:
         """What a node sends on: everything, or what may be published because of what came in.
 
-        A publish statement that a timer or loop triggers may send what a callback has stored, so it counts too; one that
-        another subscriber's callback alone triggers does not.
+        A publish statement that a timer or loop triggers may send what a callback has stored, so it counts too; one
+        that another subscriber's callback alone triggers does not.
         """
         seen = set()
         for publish in self._publishes.get(node, ()):

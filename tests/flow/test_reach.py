@@ -24,9 +24,13 @@ def by(node: str, line: int, kind: str = "subscriber") -> Trigger:
 
 
 CHAIN = graph(
-    [says("driver", "/scan"), says("filter", "/clean", by("filter", 1)), says("planner", "/plan", by("planner", 5, "timer"))],
+    [
+        says("driver", "/scan"),
+        says("filter", "/clean", by("filter", 1)),
+        says("planner", "/plan", by("planner", 5, "timer")),
+    ],
     [hears("filter", "/scan"), hears("planner", "/clean"), hears("mover", "/plan")],
-)  # fmt: skip
+)
 
 
 def test_a_chain_is_walked_with_its_path():
