@@ -36,7 +36,7 @@ _VISIBILITY_ENDS = ("_PUBLIC", "_EXPORT", "_API", "_LOCAL")
 _VISIBILITY = re.compile(r"_(?:PUBLIC|EXPORTS?|LOCAL|API)(?:_TYPE)?\b(?=\s+(?:[A-Za-z_~]|::|\[\[))")
 _LAST_WORD = re.compile(r"[A-Z][A-Z0-9_]*\Z")
 _CLASS_MACRO = re.compile(
-    r"\b(?:class|struct)\s+(?P<macro>[A-Z][A-Z0-9_]{5,}(?:\([^()\n]*\))?)(?=\s+\w+\s*(?:final\s*)?[:{])"
+    r"(?:class|struct)\s+(?P<macro>[A-Z][A-Z0-9_]{5,}(?:\([^()\n]*\))?)(?=\s+\w+\s*(?:final\s*)?[:{])"
 )
 # Words that stand where the grammar knows none; gone, what is around them is plain C++.
 _BARE = (
@@ -186,7 +186,7 @@ _DEFAULT_BRACES = re.compile(r"=(?P<blanks>\s*)\{(?P<inner>[^{};]*)\}(?=\s*[,)])
 _TYPENAME = re.compile(r"(?:=|\breturn)\s*(?P<gone>typename)\b")
 _TEMPLATE = re.compile(r"(?:->|\.)\s*(?P<gone>template)(?=\s+\w+\s*\()")
 _SIGNATURE = re.compile(r"\b(?:SIGNAL|SLOT)\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)")
-_EACH_LIKE = re.compile(r"\b\w*(?:[Ee]ach|EACH)\w*\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)(?=\s*\{)")
+_EACH_LIKE = re.compile(r"(?:[Ee]ach|EACH)\w*\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)(?=\s*\{)")
 _STATEMENT_MACRO = re.compile(
     r"^(?P<macro>(?P<blanks>[ \t]*)[A-Z][A-Z0-9_]{3,}\([^()\n]*\))[ \n]"
     r"(?![ \t]*[{;.,=#?:&|+<*)\]-])(?!(?P=blanks)[ \t]+\S)",

@@ -136,7 +136,10 @@ class Values:
 
     def said(self, node: Node) -> str:
         """The source of a node on one line."""
-        return flat(self.text[node.start_byte : node.end_byte])
+        text = self.text[node.start_byte : node.end_byte]
+        if "\n" in text or "  " in text or "/" in text or "\t" in text:
+            return flat(text)
+        return text
 
     def line(self, node: Node) -> int:
         return bisect_right(self.starts, node.start_byte)
@@ -190,6 +193,9 @@ class Values:
         return Expr("name", "this")
 
     def string(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        text = self.text[node.start_byte : node.end_byte]
+        if text[0:1] == '"' and "\\" not in text:
+            return Expr("text", text[1:-1])
         return Expr("text", self.literal(node))
 
     def literal(self, node: Node) -> str:
@@ -427,14 +433,14 @@ class Values:
             else:
                 self.touch(receiver, node, guard, ("pass", callee, -1))
         logs = noise(callee)
-        self.nesting += 1
         arguments: tuple[Expr, ...] = ()
-        if listed.kind_id in LISTS:
-            if listed.end_byte - listed.start_byte > 2:
+        if listed.end_byte - listed.start_byte > 2:
+            self.nesting += 1
+            if listed.kind_id in LISTS:
                 arguments = self.arguments(listed, guard, "" if logs else callee)
-        else:
-            self.value(listed, guard, ESCAPE)
-        self.nesting -= 1
+            else:
+                self.value(listed, guard, ESCAPE)
+            self.nesting -= 1
         if callee in BINDS and arguments and (callee != "bind" or arguments[0].kind == "function"):
             return Expr("bind", "", arguments)
         if not logs and not (method in SILENT and method):
