@@ -9,7 +9,7 @@ from typing import Literal
 
 from ..model.flow.graph import GuardAt
 from . import guard_cpp, guard_python
-from .guard_terms import Piece, Reading, Term, join, names_in, negation, rebuilt, renamed, substituted
+from .guard_terms import Piece, Reading, Term, define, join, names_in, negation, rebuilt, renamed, substituted
 
 Language = Literal["cpp", "python"]
 
@@ -41,7 +41,7 @@ def pieces_of(
             if term.kind != "true":
                 result.append(Piece(piece.text, term, place))
         for name, value in reading.names:
-            known[name] = substituted(value, known) if known else value
+            define(known, name, value)
     return tuple(result)
 
 

@@ -67,6 +67,7 @@ _IDENTIFIER = re.compile(r"[^\W\d]\w*")
 _FIRST = re.compile(r"([^\W\d]\w*)(::|\.|$)")
 _LONGEST_NUMBER = 80
 _LARGEST_EXPONENT = 99
+_LARGEST = 500
 
 
 def join(kind: str, parts: Iterable[Term]) -> Term:
@@ -172,11 +173,23 @@ def substituted(term: Term, names: Mapping[str, Term]) -> Term:
     return rewrite(term, change)
 
 
+def define(known: dict[str, Term], name: str, value: Term) -> None:
+    """Lets a name stand for a value, with what is known put into it; for itself where that would grow too large."""
+    value = substituted(value, known)
+    known.pop(name, None)
+    if _weight(value) <= _LARGEST:
+        known[name] = value
+
+
+def _weight(term: Term) -> int:
+    return 1 + sum(map(_weight, term.parts))
+
+
 def reading(pieces: Iterable[Piece], names: Iterable[tuple[str, Term]]) -> Reading:
     """A condition with the variables that it makes put back into what they stand for."""
     known: dict[str, Term] = {}
     for name, value in names:
-        known[name] = substituted(value, known)
+        define(known, name, value)
     if not known:
         return Reading(tuple(pieces))
     return Reading(tuple(piece._replace(term=substituted(piece.term, known)) for piece in pieces), tuple(known.items()))

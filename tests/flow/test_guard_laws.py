@@ -264,3 +264,8 @@ def test_hostile_text_comes_back(language, text):
     assert compare(old, new) in ("tightened", "changed")
     assert compare(new, new) == "equivalent"
     explain(old, new)
+
+
+def test_variables_that_double_each_other_come_back():
+    old = guards("cpp", *(("if", f"auto a{place + 1} = f(a{place}, a{place})") for place in range(60)))
+    assert compare(old, guards("cpp", *((guard.kind, guard.text) for guard in old), ("if", "b"))) == "tightened"
