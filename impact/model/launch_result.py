@@ -98,7 +98,10 @@ class Started(NamedTuple):
         """Namespace and name together; unknown where either is, or where the name is left to the program."""
         if self.name.value == "":
             return Text(None, joined(self.namespace.shown or "/", "<its own>"), ("the name is left to the program",))
-        return within(self.namespace if self.namespace.value != "" else known("/"), self.name)
+        full = within(self.namespace if self.namespace.value != "" else known("/"), self.name)
+        if full.value is not None and full.value[:1] != "/":
+            return Text(None, full.shown, (f"`{full.value}` is no name of a node",), full.assumed)
+        return full
 
 
 class Skipped(NamedTuple):
