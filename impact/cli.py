@@ -170,6 +170,31 @@ def graph(
 
 
 @app.command()
+def logic(
+    repository: Annotated[Path, typer.Argument(help="Git repository, bare or not, or a folder in one.")] = Path("."),
+    range: Annotated[str, typer.Option(help="Commits A..B, or all up to B; all of HEAD's when left out.")] = "",
+    commits: Annotated[int | None, typer.Option(min=1, help="Only the newest so many of them.")] = None,
+    since: Annotated[str, typer.Option(help="Only those since this day, 2024-03-01.")] = "",
+    package: Annotated[list[str] | None, typer.Option(help="Only this package. May be repeated.")] = None,
+    topic: Annotated[list[str] | None, typer.Option(help="Only this topic. May be repeated.")] = None,
+    all: Annotated[bool, typer.Option("--all", help="Also list conditions that were merely reworded.")] = False,
+    format: Annotated[str, typer.Option("--format", "-f", help="text, json or html (a timeline).")] = "text",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to work with.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+) -> None:
+    """Say at which commits the logic of publishing changed: which condition or trigger, how, and whom it reaches."""
+    from . import run
+
+    raise typer.Exit(
+        run.logic(
+            repository, range=range, number=commits, since=since, packages=_names(package), topics=_names(topic),
+            everything=all, format=format, output=output, jobs=jobs, quiet=quiet,
+        )
+    )  # fmt: skip
+
+
+@app.command()
 def explain(
     rule: Annotated[str | None, typer.Argument(help="A rule's name; without one, all rules are listed.")] = None,
 ) -> None:

@@ -288,7 +288,7 @@ def graph(
                 say(f"rosimpact: {note}")
             text = draw(
                 found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
-                hops=hops, everything=everything, plain=output is not None,
+                hops=hops, everything=everything,
             )  # fmt: skip
             _deliver(text, output)
     except Failed as error:
@@ -297,6 +297,52 @@ def graph(
         say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
         return 130
     return 0
+
+
+LOGIC_FORMATS = ("text", "json", "html")
+
+
+def logic(
+    path: Path, *, range, number, since, packages, topics, everything, format, output, jobs, quiet
+) -> int:  # fmt: skip
+    """Prints where the logic of publishing changed. Returns the exit status: 0, or 2 (failed)."""
+    try:
+        with told(path):
+            if format not in LOGIC_FORMATS:
+                raise Failed(f"--format {format}: unknown; choose one of {', '.join(LOGIC_FORMATS)}")
+            from .facts.store import Store
+            from .flow import logic as history
+            from .flow import logic_report, timeline
+
+            with Store() as store:
+                try:
+                    asked = history.Range(range, number, since)
+                    found = history.read(os.fspath(path), asked, store, jobs, None if quiet else steps())
+                except ValueError as error:
+                    raise Failed(f"--since: {error}") from None
+                for note in store.notes:
+                    say(f"rosimpact: {note}")
+            found = history.chosen(found, packages, topics, everything)
+            if format == "html":
+                text = timeline.render(found, __version__)
+            elif format == "json":
+                text = logic_report.as_json(found, __version__)
+            else:
+                coloured = output is None and _coloured()
+                text = logic_report.text(found, logic_report.COLOURED if coloured else logic_report.PLAIN)
+            _deliver(text, output)
+    except Failed as error:
+        return failed(str(error))
+    except KeyboardInterrupt:
+        say("rosimpact: interrupted; what was read is kept, and the next run goes on from there")
+        return 130
+    return 0
+
+
+def _coloured() -> bool:
+    from .report.text import style_for
+
+    return bool(style_for(sys.stdout).colours)
 
 
 def explain(name: str | None) -> int:

@@ -21,8 +21,8 @@ _WANTED = frozenset(("cpp", "python", "cmake", "setup_py"))
 
 
 class Commit(NamedTuple):
-    """A commit that is compared with its parent. parent: empty for the first of a history. date: of the commit, ISO 8601
-    in UTC; summary: the first line of its message."""
+    """A commit that is compared with its parent. parent: empty for the first of a history. date: of the commit, ISO
+    8601 in UTC; summary: the first line of its message."""
 
     id: str
     parent: str
@@ -39,9 +39,9 @@ class File(NamedTuple):
 
 
 class State(NamedTuple):
-    """A package as one commit has it. path: of its folder in the repository; ros: the generation its manifest is written
-    for. files: those that tell of the flow of messages, tests left out. key: the same for packages of one name and
-    generation that hold the same files, wherever they lie."""
+    """A package as one commit has it. path: of its folder in the repository; ros: the generation its manifest is
+    written for. files: those that tell of the flow of messages, tests left out. key: the same for packages of one name
+    and generation that hold the same files, wherever they lie."""
 
     name: str
     path: str
@@ -66,8 +66,8 @@ class _Found(NamedTuple):
 class History:
     """The commits of a repository.
 
-    repository: it, or a folder in it: then only the packages below that folder are looked at. Raises TreeError when there
-    is no such repository.
+    repository: it, or a folder in it: then only the packages below that folder are looked at. Raises TreeError when
+    there is no such repository.
     """
 
     def __init__(self, repository: str | os.PathLike[str]):
@@ -89,16 +89,17 @@ class History:
         """The commits that are compared with their parent, newest first; merges are left out, each side's commits are
         there by themselves.
 
-        range: `A..B`, those of B that A has not; `B` alone: all of its history; HEAD's when empty. number: the newest so
-        many of them. since: a day or time in ISO 8601. Raises TreeError for what git does not know, ValueError for a
-        time that cannot be read.
+        range: `A..B`, those of B that A has not; `B` alone: all of its history; HEAD's when empty. number: the newest
+        so many of them. since: a day or time in ISO 8601. Raises TreeError for what git does not know, ValueError for
+        a time that cannot be read.
         """
         import pygit2
 
         start, dots, end = range.partition("..")
         if not dots:
             start, end = "", range
-        walker = self.repo.walk(self._commit(end.lstrip(".") or "HEAD"), pygit2.enums.SortMode.TOPOLOGICAL | pygit2.enums.SortMode.TIME)
+        order = pygit2.enums.SortMode.TOPOLOGICAL | pygit2.enums.SortMode.TIME
+        walker = self.repo.walk(self._commit(end.lstrip(".") or "HEAD"), order)
         if dots:
             walker.hide(self._commit(start or "HEAD"))
         oldest = _time(since) if since else None

@@ -3,8 +3,8 @@
     logic = read("repo", Range(text="v1.0..main"), store)
     for commit, change in logic.changes: ...
 
-Nothing is checked out. What a package says at a commit is kept by the content of its files, and what a commit changed by
-the commit, so that a second run reads neither.
+Nothing is checked out. What a package says at a commit is kept by the content of its files, and what a commit changed
+by the commit, so that a second run reads neither.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ..facts import kinds
 from ..facts.store import Store, fact_key, pack, unpack
 from .history import Commit, File, History, State
 from .logic_changes import Change, Reached, Side, changes, settled
-from .logic_match import SAME, Names
+from .logic_match import Names
 from .statements import EMPTY, Digest, digest, kind_of_facts
 
 Progress = Callable[[str, int, int], None]
@@ -40,9 +40,9 @@ class Range(NamedTuple):
 
 
 class Coverage(msgspec.Struct, frozen=True):
-    """commits: looked at; compared: those that changed C++ or Python of a package; cut_off: those whose parent is not in
-    the repository. packages: at the newest commit. statements: publish statements there; unresolved: those of them whose
-    topic is not known; unread: files there with spans that did not parse."""
+    """commits: looked at; compared: those that changed C++ or Python of a package; cut_off: those whose parent is not
+    in the repository. packages: at the newest commit. statements: publish statements there; unresolved: those of them
+    whose topic is not known; unread: files there with spans that did not parse."""
 
     commits: int = 0
     compared: int = 0
@@ -85,6 +85,20 @@ def read(
     found = [(commit, change) for commit in commits for change in results[commit.id].changes]
     coverage = _coverage(history, commits, results, store)
     return Logic(history.name, _range_text(range), tuple(commits), tuple(found), coverage)
+
+
+def chosen(logic: Logic, packages: Sequence[str] = (), topics: Sequence[str] = (), everything: bool = False) -> Logic:
+    """The changes of some packages and topics alone, all when none are given. A topic is named as the code has it or in
+    full. everything: conditions that were merely reworded too."""
+    wanted = {topic.lstrip("~/") for topic in topics}
+    found = tuple(
+        (commit, change)
+        for commit, change in logic.changes
+        if (everything or change.kind != "equivalent")
+        and (not packages or change.package in packages)
+        and (not wanted or wanted & {name.lstrip("~/") for name in (*change.topics, *change.topic.split(", "))})
+    )
+    return msgspec.structs.replace(logic, changes=found)
 
 
 def _silent(what: str, done: int, total: int) -> None:
@@ -177,7 +191,8 @@ class _Run:
         found: dict[str, list[Reached]] = {}
         for state in self.history.packages(commit).values():
             for inlet in self.digests.inlets(state.key):
-                reached = Reached(state.name, inlet.node, inlet.topic, inlet.callback, state.whole(inlet.path), inlet.line)
+                path = state.whole(inlet.path)
+                reached = Reached(state.name, inlet.node, inlet.topic, inlet.callback, path, inlet.line)
                 found.setdefault(inlet.topic, []).append(reached)
         return found
 
@@ -189,8 +204,8 @@ class _Run:
                 yield chunk, task(*what, chunk)
 
     def _remember(self, rows: Iterable[tuple[str, _Result]]) -> None:
-        folder = self.history.folder
-        self.store.remember("logic", [(_commit_key(commit, folder), msgspec.msgpack.encode(row)) for commit, row in rows])
+        encode, folder = msgspec.msgpack.encode, self.history.folder
+        self.store.remember("logic", [(_commit_key(commit, folder), encode(row)) for commit, row in rows])
 
 
 def _reaching(change: Change, listeners: Mapping[str, list[Reached]]) -> Change:
@@ -265,8 +280,8 @@ def _renamed_files(history: History, step: _Step) -> dict[str, str]:
 
 def _renamed_words(history: History, step: _Step, files: Mapping[str, str]) -> dict[str, str]:
     """Identifiers that are called otherwise in the files that a commit changed."""
-    from .guards import Language
     from .guard_renames import propose_renames
+    from .guards import Language
 
     old = {state.whole(file.path): file for state in step.old for file in state.files}
     new = {state.whole(file.path): file for state in step.new for file in state.files}
@@ -337,7 +352,9 @@ def _chunked(states: Iterable[State]) -> list[list[State]]:
     for state in states:
         by_name.setdefault(state.name, []).append(state)
     chunks = [
-        mine[start : start + _STATES_AT_ONCE] for mine in by_name.values() for start in range(0, len(mine), _STATES_AT_ONCE)
+        mine[start : start + _STATES_AT_ONCE]
+        for mine in by_name.values()
+        for start in range(0, len(mine), _STATES_AT_ONCE)
     ]
     return sorted(chunks, key=lambda chunk: -sum(len(state.files) for state in chunk))
 
@@ -406,9 +423,7 @@ def _stamp(*folders: str) -> bytes:
     return stamp.digest()[:8]
 
 
-def _coverage(
-    history: History, commits: Sequence[Commit], results: Mapping[str, _Result], store: Store
-) -> Coverage:
+def _coverage(history: History, commits: Sequence[Commit], results: Mapping[str, _Result], store: Store) -> Coverage:
     compared = sum(result.compared for result in results.values())
     cut_off = sum(result.cut_off for result in results.values())
     if not commits:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
@@ -20,6 +21,7 @@ _MOST_WAYS = 16
 """As many ways as the join follows; where there are so many, some may be missing."""
 _UNSAID = frozenset(("unknown", "start"))
 _LONGEST = 400
+_DENIED = re.compile(r"(?:!\s*|not )([\w.:]+(?:->[\w.]+)*(?:\([\w.,: ]*\))?)")
 
 
 class Reached(msgspec.Struct, frozen=True):
@@ -36,11 +38,11 @@ class Reached(msgspec.Struct, frozen=True):
 class Change(msgspec.Struct, frozen=True):
     """A change of the logic of publishing.
 
-    path, line: of the publish statement (or the publisher, where its queue or topic changed) in the commit; in its parent
-    where it is gone. node: that runs it, several joined by `, `. topic: as the node's code knows it, the publisher's name
-    where that is not known. topics: its full names, before and after. old, new: what it was and is published under, None
-    where there is no statement; empty for no condition. why: what differs, in one clause. reaches: subscribers at the
-    commit.
+    path, line: of the publish statement (or the publisher, where its queue or topic changed) in the commit; in its
+    parent where it is gone. node: that runs it, several joined by `, `. topic: as the node's code knows it, the
+    publisher's name where that is not known. topics: its full names, before and after. old, new: what it was and is
+    published under, None where there is no statement; empty for no condition. why: what differs, in one clause.
+    reaches: subscribers at the commit.
     """
 
     kind: Kind
@@ -109,16 +111,24 @@ def changes(old: Side, new: Side, names: Names = SAME) -> Iterator[Change]:
             yield from _outlet_changes(one, other, at)
 
 
-def _change(
-    kind: Kind, at: At, outlets: Iterable[Outlet], old: str | None, new: str | None, why: str, line: int = 0, path: str = ""
-) -> Change:
+def _change(kind: Kind, at: At, outlets: Iterable[Outlet], old: str | None, new: str | None, why: str) -> Change:
     said = at.said
     topics = tuple(dict.fromkeys(topic for outlet in outlets for topic in outlet.full))
     near = ", ".join(sorted(at.topics)) or said.variable
     return Change(
-        kind, at.package, path or at.path, line or said.line, said.function, ", ".join(said.nodes), near, topics, said.type,
-        old, new, why,
-    )  # fmt: skip
+        kind,
+        at.package,
+        at.path,
+        said.line,
+        said.function,
+        ", ".join(said.nodes),
+        near,
+        topics,
+        said.type,
+        old,
+        new,
+        why,
+    )
 
 
 # A statement
@@ -186,9 +196,7 @@ def _together(kinds: Iterable[guards.Kind]) -> guards.Kind:
     return found.pop() if len(found) == 1 else "changed"
 
 
-def _verdict(
-    old: Sequence[Path], new: Sequence[Path], names: Names, language: str
-) -> tuple[guards.Kind, str]:
+def _verdict(old: Sequence[Path], new: Sequence[Path], names: Names, language: str) -> tuple[guards.Kind, str]:
     """What happened to the guards of some ways, and the clause that says it. Names for conditions are put back into the
     conditions first; where that is more than can be compared, what is written decides."""
     speech: guards.Language = "python" if language == "python" else "cpp"
@@ -214,9 +222,7 @@ def _guards(ways: Iterable[Path], meant: bool = False) -> Ways:
 # What makes it run
 
 
-def _starts_of(
-    first: Said, second: Said, names: Names
-) -> Iterator[tuple[frozenset[Start], frozenset[Start]]]:
+def _starts_of(first: Said, second: Said, names: Names) -> Iterator[tuple[frozenset[Start], frozenset[Start]]]:
     """What makes a statement run, before and after, as far as one took the other's place; empty where nothing did."""
     old = _grouped(first, names)
     new = _grouped(second, SAME)
@@ -267,7 +273,7 @@ def _start_differs(old: Start, new: Start, names: Names) -> str:
         if old.kind in _UNSAID or _plain(names.text(old.detail)) == _plain(new.detail):
             return ""
         if not old.detail or not new.detail:
-            return f"{new.kind} {'has no pace' if old.detail else 'has a pace'} now: {_named(new if new.detail else old)}"
+            return f"{_named(new)}, was without pace" if new.detail else f"{new.kind} without pace, was `{old.detail}`"
         return f"{_named(new)}, was `{old.detail}`"
     if "unknown" in (old.kind, new.kind):
         return ""
@@ -285,11 +291,15 @@ def _named(start: Start) -> str:
 def _outlet_changes(one: OutletAt, other: OutletAt, at: At) -> Iterator[Change]:
     old, new = one.outlet, other.outlet
     both = [new, old]
+
+    def change(kind: Kind, was: str, is_now: str, why: str) -> Change:
+        found = _change(kind, at, both, was, is_now, why)
+        return msgspec.structs.replace(found, path=other.path, line=new.line, function=new.function)
+
     if old.topic and new.topic and old.topic.lstrip("/") != new.topic.lstrip("/"):
-        why = f"published on `{new.topic}`, was `{old.topic}`"
-        yield _change("changed", at, both, old.topic, new.topic, why, new.line, other.path)
+        yield change("changed", old.topic, new.topic, f"published on `{new.topic}`, was `{old.topic}`")
     if old.type and new.type and old.type != new.type:
-        yield _change("changed", at, both, old.type, new.type, f"type `{new.type}` was `{old.type}`", new.line, other.path)
+        yield change("changed", old.type, new.type, f"type `{new.type}` was `{old.type}`")
     before, after = dict(old.offers), dict(new.offers)
     clauses: list[str] = []
     for name in dict.fromkeys((*before, *after)):
@@ -299,7 +309,7 @@ def _outlet_changes(one: OutletAt, other: OutletAt, at: At) -> Iterator[Change]:
             label = "queue" if name == "depth" else name
             clauses.append(f"{label} `{is_now or 'volatile'}` was `{was or 'volatile'}`")
     if clauses:
-        yield _change("trigger changed", at, both, _offer(old), _offer(new), "; ".join(clauses), new.line, other.path)
+        yield change("trigger changed", _offer(old), _offer(new), "; ".join(clauses))
 
 
 def _of_ros1(*outlets: Outlet) -> bool:
@@ -338,6 +348,9 @@ def _shown(ways: Sequence[Path], said: Said) -> str:
 def _condition(gate: Gate, python: bool) -> str:
     text = gate.text
     if gate.kind == "unless":
+        denied = _DENIED.fullmatch(text)
+        if denied:
+            return denied[1]
         return f"not ({text})" if python else f"!({text})"
     if gate.kind in ("if", "while"):
         needs = (" or " in text) if python else ("||" in text)

@@ -64,7 +64,7 @@ class Meaning:
 
     def _local(self, name: str, fn: Fn, depth: int) -> str | None:
         """What a local variable was initialised with, when it is never assigned again."""
-        made = fn.assigned.get(name, ())
+        made = fn.assigned.get(name, [])
         if len(made) != 1 or made[0].operator != "=" or any(p.name == name for p in fn.facts.parameters):
             return None
         python = fn.source.facts.language == "python"
@@ -81,7 +81,7 @@ class Meaning:
         if len(targets) != 1:
             return None
         target = targets[0].facts
-        rows = target.assignments
+        rows = list(target.assignments)
         if not rows or rows[-1].operator != "return" or any(row.operator == "return" for row in rows[:-1]):
             return None
         if rows[-1].guard != -1 or len(rows) > 4:
@@ -162,7 +162,7 @@ def _split(text: str) -> list[str]:
 
 
 def conjuncts(text: str) -> list[str]:
-    """What a condition asks for at once, split at its outermost `&&` or `and`; the whole where there is an `||` or `or`."""
+    """What a condition asks for at once, split at its outermost `&&` or `and`; the whole where an `||` stands there."""
     found: list[str] = []
     depth = start = place = 0
     while place < len(text):

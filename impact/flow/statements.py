@@ -12,7 +12,7 @@ import msgspec
 from ..facts import kinds
 from ..facts.flow import Call, FlowFile
 from ..model.flow.code import Fn, tail
-from ..model.flow.graph import GuardAt, Node, Trigger
+from ..model.flow.graph import GuardAt, Node, Trigger, Way
 from ..model.flow.join import Join, Owner
 from ..model.flow.nodes import Built
 from ..model.flow.qos import qos_of
@@ -30,8 +30,8 @@ _LOOPS = frozenset(("while", "do"))
 
 
 class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A guard. kind, text and of as in GuardAt; meaning: the text with local variables and predicates of the package put
-    back into what they stand for, empty where that is the text."""
+    """A guard. kind, text and of as in GuardAt; meaning: the text with local variables and predicates of the package
+    put back into what they stand for, empty where that is the text."""
 
     kind: str
     text: str
@@ -40,8 +40,8 @@ class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Start(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What makes a statement run. kind: as in Trigger, `loop` where a loop in main or a thread does; detail: the period,
-    topic or service, the rate of a loop."""
+    """What makes a statement run. kind: as in Trigger, `loop` where a loop in main or a thread does; detail: the
+    period, topic or service, the rate of a loop."""
 
     kind: str
     detail: str = ""
@@ -55,9 +55,9 @@ class Path(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Outlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A publisher. path: relative to the package. topic: as the node knows it (`~name` for a private one), empty when it
-    is not known. full: its names in a running system, for each node that has it. offers: (setting, value) of its queue
-    and quality of service as far as they are known; written: the expression of it."""
+    """A publisher. path: relative to the package. topic: as the node knows it (`~name` for a private one), empty when
+    it is not known. full: its names in a running system, for each node that has it. offers: (setting, value) of its
+    queue and quality of service as far as they are known; written: the expression of it."""
 
     path: str
     line: int
@@ -124,6 +124,12 @@ class _Digester:
         self.join, self.state = join, state
         self.running = join.running()
         self.meaning = Meaning(join.code)
+        # What a framework subscribes to by itself (a transform listener) makes nothing run.
+        self.implied = {
+            (site.use.fn.source.path, site.use.call.line)
+            for site in join.sites.endpoints
+            if site.implied and site.role == "subscriber"
+        }
 
     def digest(self) -> Digest:
         join = self.join
@@ -157,7 +163,8 @@ class _Digester:
 
     def _library(self, fn: Fn) -> Node:
         path = fn.source.path
-        name = next((name for name, files in self.join.built[0].libraries.items() if path in files), path.rpartition("/")[2])
+        made = self.join.built[0].libraries
+        name = next((name for name, files in made.items() if path in files), path.rpartition("/")[2])
         return Node(f"{self.state.name}/{name}", "", self.state.name, "library")
 
     def _outlet(self, site: Site) -> Outlet:
@@ -171,8 +178,9 @@ class _Digester:
             if name != "written" and setting not in ("", -1, None):
                 offers.append((name, str(setting)))
         written = " ".join(found.written.split()) if found is not None else ""
+        variable = use.call.target or (site.variable.name if site.variable else "")
         return Outlet(
-            use.fn.source.path, use.call.line, use.fn.name, use.call.target or (site.variable.name if site.variable else ""),
+            use.fn.source.path, use.call.line, use.fn.name, variable,
             _near(site, value), full, site.type, tuple(offers), written,
         )  # fmt: skip
 
@@ -204,19 +212,28 @@ class _Digester:
         use, join = statement.use, self.join
         fn = use.fn
         own = join.guards(fn, use.call.guard)
-        ways = [self._path(way.trigger, (*way.guards, *own)) for way in join.ways(fn)]
-        nodes = tuple(sorted({owner.id if isinstance(owner, Node) else owner.node.id for owner in self._owners(fn) if owner}))
+        found = [way for way in join.ways(fn) if not self._is_implied(way.trigger)]
+        found = found or [Way(Trigger("unknown", "", "", 0))]
+        ways = [self._path(way.trigger, (*way.guards, *own)) for way in found]
+        owners = [owner for owner in self._owners(fn) if owner is not None]
+        nodes = tuple(sorted({owner.id if isinstance(owner, Node) else owner.node.id for owner in owners}))
         return Said(
             fn.source.path, use.call.line, fn.name, join.calls.receiver_of(use), outlets, statement.type,
             statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
         )  # fmt: skip
 
+    def _is_implied(self, trigger: Trigger) -> bool:
+        return trigger.kind == "subscriber" and (trigger.path, trigger.line) in self.implied
+
     def _path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
         start = Start(trigger.kind, trigger.detail)
         gates: list[Gate] = []
         for guard in guards:
+            unsaid = trigger.kind in ("start", "unknown")
             asked, lives = _without_life(guard.text) if guard.kind in _LOOPS else (guard.text, False)
-            if trigger.kind in ("start", "unknown") and guard.kind in _LOOPS and (lives or trigger.kind == "start"):
+            if unsaid and guard.kind == "if" and _is_live(guard.text):
+                asked, lives = "", True  # what stands in the loop's condition itself
+            if unsaid and (lives or (guard.kind in _LOOPS and trigger.kind == "start")):
                 start = Start("loop", self._pace(guard) or (start.detail if start.kind == "loop" else ""))
             if asked:
                 meaning = self.meaning.of(guard) if asked == guard.text else ""
