@@ -571,7 +571,14 @@ def _rewritten(walker: Walker, call: Call) -> Any:
         for key, value in rewrites.items:
             held = value.value if isinstance(value, Guarded) else value
             parts += (walker.text(key, call.node), walker.text(held, call.node))
-    return Text((Piece("rewritten", "", tuple(parts)),), False)
+    value = (Piece("rewritten", "", tuple(parts)),)
+    # Values that stand for others, wherever they are
+    values = call.get(-1, "value_rewrites")
+    pairs = values.items if isinstance(values, Pairs) else []
+    if pairs:
+        replaced = [walker.text(item, call.node) for pair in pairs for item in pair]
+        value = (Piece("replaced", "", (value, *replaced)),)
+    return Text(value, False)
 
 
 def _replaced(walker: Walker, call: Call) -> Any:

@@ -410,7 +410,9 @@ def _replaced(entry: Entry, changes: tuple[tuple[Text, Text], ...]) -> Entry:
 
     value = entry.value
     if isinstance(value, str):
-        value = change(value)
+        # The text is changed before it is read as YAML, so that what comes of it may be a number or a bool.
+        changed = change(value)
+        value = value if changed == value else scalar(changed)
     elif isinstance(value, list):
         value = [change(item) if isinstance(item, str) else item for item in value]
     path = tuple(part for key in entry.path for part in [change(key)] if part)
