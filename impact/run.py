@@ -278,6 +278,7 @@ def graph(
             if given and not launch:
                 raise Failed("--set: arguments belong to a launch file; name it with --launch")
             from .flow.drawing import draw
+            from .flow.select import NothingSelected
             from .graph import graphs
 
             found = graphs(
@@ -286,10 +287,13 @@ def graph(
             )  # fmt: skip
             for note in found.notes:
                 say(f"rosimpact: {note}")
-            text = draw(
-                found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
-                hops=hops, everything=everything,
-            )  # fmt: skip
+            try:
+                text = draw(
+                    found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
+                    hops=hops, everything=everything,
+                )  # fmt: skip
+            except NothingSelected as error:
+                raise Failed(str(error)) from None
             _deliver(text, output)
     except Failed as error:
         return failed(str(error))
