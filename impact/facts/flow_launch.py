@@ -772,12 +772,13 @@ def parameters(data: bytes | str) -> ParameterFile:
     """The values of a YAML file of parameters. Never raises; what cannot be read is a problem, the rest is kept."""
     root, problems = _tree(decode(data) if isinstance(data, bytes) else _clean(data).lstrip("\ufeff"))
     entries: list[Entry] = []
-    if root is not None:
-        if root.kind != "map":
-            if root.kind == "list" or root.value is not None:
-                entries.append(Entry((), _plain_value(root, [MOST_ENTRIES]), root.line))
-        elif not _flatten(root, (), entries, [MOST_ENTRIES]):
-            problems.append(Problem(root.line, f"has more than {MOST_ENTRIES} values"))
+    budget = [MOST_ENTRIES]
+    if root is not None and root.kind == "map":
+        _flatten(root, (), entries, budget)
+    elif root is not None and (root.kind == "list" or root.value is not None):
+        entries.append(Entry((), _plain_value(root, budget), root.line))
+    if budget[0] <= 0:
+        problems.append(Problem(1, f"has more than {MOST_ENTRIES} values"))
     return ParameterFile(tuple(entries), tuple(problems))
 
 
@@ -820,7 +821,10 @@ def _launch_yaml(data: bytes) -> LaunchFile:
     if body is None:
         return LaunchFile("yaml", 2, (), (*problems, Problem(1, "has no `launch:` list")))
     reader = _Reader(2)
-    actions = reader.actions(_entities(body, [MOST_ENTRIES]))
+    budget = [MOST_ENTRIES]
+    actions = reader.actions(_entities(body, budget))
+    if budget[0] <= 0:
+        problems.append(Problem(1, f"has more than {MOST_ENTRIES} elements"))
     return LaunchFile("yaml", 2, actions, (*problems, *reader.problems))
 
 

@@ -264,6 +264,7 @@ def test_generation(text, generation):
         ("launch_yaml", b"a: b", "has no `launch:` list"),
         ("launch_yaml", b"launch:\n- [", "not readable as YAML"),
         ("launch_yaml", b"launch: " + b"[" * 5000, "nested more than"),
+        ("launch_yaml", b"launch:\n" + b"- let: {name: a}\n" * 60_000, "has more than"),
     ],
 )
 def test_what_cannot_be_read_is_said(kind, data, problem):
@@ -327,6 +328,11 @@ def test_scalars(text, expected):
 def test_degrees_are_radians():
     entries = parameters("a: !degrees 180\nb: !radians 2.0\nc: !!str 5").entries
     assert [e.value for e in entries] == [pytest.approx(3.141592653589793), 2.0, "5"]
+
+
+@pytest.mark.parametrize("line", ["- 1", "- {b: 1}"])
+def test_long_parameter_files_say_so(line):
+    assert parameters("a:\n" + f"{line}\n" * 60_000).problems[0].message == "has more than 50000 values"
 
 
 @pytest.mark.parametrize(
