@@ -42,7 +42,7 @@ class Range(NamedTuple):
 class Coverage(msgspec.Struct, frozen=True):
     """commits: looked at; compared: those that changed C++ or Python of a package; cut_off: those whose parent is not
     in the repository. packages: at the newest commit. statements: publish statements there; unresolved: those of them
-    whose topic is not known; unread: files there with spans that did not parse."""
+    whose topic is not known; unread: files there that were not read in full."""
 
     commits: int = 0
     compared: int = 0

@@ -98,7 +98,7 @@ class Inlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A package at one commit. unread: files with spans that did not parse."""
+    """A package at one commit. unread: files that were not read, or not in full."""
 
     statements: tuple[Said, ...] = ()
     outlets: tuple[Outlet, ...] = ()
@@ -115,8 +115,12 @@ def digest(state: State, facts: Mapping[str, Any]) -> Digest:
     sources = {f.path: facts[f.path] for f in state.files if isinstance(facts.get(f.path), FlowFile)}
     join = Join(sources, lambda _: state.name, (built(state, facts),), state.ros)
     if not join.calls.uses:
-        return Digest(unread=tuple(sorted(path for path, one in sources.items() if one.unread)))
+        return Digest(unread=_unread(join))
     return _Digester(join, state).digest()
+
+
+def _unread(join: Join) -> tuple[str, ...]:
+    return tuple(sorted(one.path for one in join.code.sources if one.facts.unread or one.facts.problems))
 
 
 class _Digester:
@@ -154,8 +158,7 @@ class _Digester:
                     outlets.append(self._outlet(site))
                 numbers.append(known[site])
             said.append(self._said(statement, tuple(dict.fromkeys(numbers))))
-        unread = tuple(sorted(source.path for source in join.code.sources if source.facts.unread))
-        return Digest(tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), unread)
+        return Digest(tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), _unread(join))
 
     def _owners(self, fn: Fn) -> list[Owner]:
         found: list[Owner] = [one for one in self.running if id(fn) in one.functions]
