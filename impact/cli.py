@@ -43,6 +43,13 @@ def _print_schema(value: bool) -> None:
         raise typer.Exit(run.schema())
 
 
+def _print_graph_schema(value: bool) -> None:
+    if value:
+        from . import run
+
+        raise typer.Exit(run.graph_schema())
+
+
 @app.command()
 def check(
     path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
@@ -154,6 +161,12 @@ def graph(
     ] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the graph to this file.")] = None,
     all: Annotated[bool, typer.Option("--all", help="Show what is hidden, and all that was not resolved.")] = False,
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema", callback=_print_graph_schema, is_eager=True, help="Print the JSON schema of --format json."
+        ),
+    ] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:

@@ -263,6 +263,14 @@ def _progress() -> Callable[[int, int], None] | None:
 GRAPH_FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
 
 
+def graph_schema() -> int:
+    """Prints the JSON schema of the graph's JSON."""
+    from .flow.drawing.json import schema as text
+
+    _write(text())
+    return 0
+
+
 def graph(
     path: Path, *, launch, arguments, nodes, topics, packages, around, hops, rev, base, format, output, everything,
     jobs, quiet,

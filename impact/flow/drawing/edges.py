@@ -15,7 +15,8 @@ _OUT = frozenset(("publisher", "client", "action client"))
 class Edge(NamedTuple):
     """Endpoints of one role between a node and a name, and the publish statements there.
 
-    kind: topic, service or action. mark: how it differs from the base; why: in which of type, QoS, guards or triggers a changed one does.
+    kind: topic, service or action. mark: how it differs from the base; why: in which of type, QoS, guards or triggers a
+    changed one does.
     """
 
     node: str

@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from ....corpus import __version__
-from ...model.flow.graph import Endpoint, Graph
+from ...model.flow.graph import Coverage, Endpoint, Graph, Node, ParameterUse, Publish, Timer
 from ..select import Selection, endpoints_of
 from .edges import edges
 
@@ -53,6 +53,54 @@ def render(selection: Selection, base: Graph | None, everything: bool) -> str:
             if edge.mark
         ]  # fmt: skip
     return json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+
+
+def schema() -> str:
+    """The JSON schema (draft 2020-12) of what render() gives; docs/graph.schema.json holds it."""
+    kinds = [Node, Endpoint, Publish, Timer, ParameterUse, Coverage]
+    (node, endpoint, publish, timer, parameter, coverage), parts = msgspec.json.schema_components(
+        kinds, ref_template="#/$defs/{name}"
+    )
+    parts["Endpoint"]["properties"].pop("role")
+    parts["Endpoint"]["required"].remove("role")
+    for part in parts.values():
+        part["description"] = " ".join(part.get("description", "").split())
+        # Fields may come in, none is taken away: whoever reads must not trip over a new one.
+        part.pop("additionalProperties", None)
+    text, texts = {"type": "string"}, {"type": "array", "items": {"type": "string"}}
+    change = dict.fromkeys(("why", "node", "name", "kind", "role", "path"), text)
+    change |= {"change": {"enum": ["added", "removed", "changed"]}, "line": {"type": "integer"}}
+    name = {"name": text, "types": texts} | {each: texts for each in _LISTS.values()}
+    properties: dict[str, Any] = {
+        "schema": {"const": SCHEMA},
+        "tool": {"type": "object", "required": ["name", "version"], "properties": {"name": text, "version": text}},
+        "workspace": text,
+        "rev": text,
+        "ros": {"enum": [1, 2]},
+        "nodes": {"type": "array", "items": node},
+        **{kind: {"type": "array", "items": {"$ref": "#/$defs/Name"}} for kind in ("topics", "services", "actions")},
+        **{each: {"type": "array", "items": endpoint} for each in _LISTS.values()},
+        "publishes": {"type": "array", "items": publish},
+        "timers": {"type": "array", "items": timer},
+        "parameters": {"type": "array", "items": parameter},
+        "coverage": coverage,
+    }
+    parts["Name"] = {
+        "description": "A topic, service or action: its types, and the ids of the nodes that use it, by role.",
+        "type": "object", "required": ["name", "types"], "properties": name,
+    }  # fmt: skip
+    whole = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": f"rosimpact message-flow graph, schema {SCHEMA}",
+        "description": "What `rosimpact graph --format json` prints. Fields may be added without a new schema number; "
+        "none is removed, renamed or given another meaning. `base` and `changes` are there with --base alone.",
+        "type": "object",
+        "required": list(properties),
+        "properties": properties
+        | {"base": text, "changes": {"type": "array", "items": {"type": "object", "properties": change}}},
+        "$defs": dict(sorted(parts.items())),
+    }
+    return json.dumps(whole, indent=1) + "\n"
 
 
 def _endpoint(endpoint: Endpoint) -> dict[str, Any]:

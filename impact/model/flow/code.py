@@ -214,6 +214,20 @@ class Code:
                     found.setdefault(base.name, []).append(cls)
         return found
 
+    def base_made(self, fn: Fn, each: Assignment) -> tuple[str, tuple[Expr, ...]] | None:
+        """The base class, as meant, and the arguments that a constructor's initialiser gives it; None for others."""
+        if fn.source.facts.language != "cpp" or not each.target.startswith("this."):
+            return None
+        owner = self.owner_of(fn)
+        name = each.target[5:]
+        for base in owner.facts.bases if owner is not None else ():
+            if tail(parsed(base).name) == tail(name):
+                kind = self.meant_type(base, owner.source, owner.name) if owner is not None else UNKNOWN
+                value = each.value
+                made = value.kind in ("make", "list") and not value.text
+                return kind.name, value.parts if made else (value,)
+        return None
+
     def base_names(self, cls: Cls) -> Iterator[str]:
         """Names of all bases, those outside of the code too, aliases resolved."""
         for one in self.bases(cls):
