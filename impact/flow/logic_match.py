@@ -35,11 +35,12 @@ class At(NamedTuple):
 
 
 class OutletAt(NamedTuple):
-    """A publisher with where it is."""
+    """A publisher with where it is. content: the id of the file's content."""
 
     package: str
     outlet: Outlet
     path: str
+    content: str
 
 
 class Names(NamedTuple):
