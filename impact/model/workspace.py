@@ -27,6 +27,7 @@ from .package import Digest, Watched, build_type_of, digest_of
 
 if TYPE_CHECKING:
     from .flow.graph import Graph
+    from .flow.launches import Launch
 
 # Raise with every change of what a digest or the CMake interpreter says.
 DIGEST_VERSION = "14"
@@ -253,6 +254,13 @@ class Workspace:
         from .flow.workspace import graph_of, read_beside
 
         return graph_of(self, self.gathered.store, gathered=read_beside(self))
+
+    @cached_property
+    def launches(self) -> tuple[Launch, ...]:
+        """What its launch files start, see launches()."""
+        from .flow.launches import launches
+
+        return launches(self)
 
     @cached_property
     def broken_headers(self) -> frozenset[str]:
