@@ -1,0 +1,14 @@
+import rclpy
+from rclpy.node import Node
+from geometry_msgs.msg import TwistStamped
+
+
+class Wheel(Node):
+    def __init__(self):
+        super().__init__('wheel')
+        self.publisher = self.create_publisher(TwistStamped, 'course', 10)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Wheel())

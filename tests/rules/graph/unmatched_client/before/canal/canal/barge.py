@@ -1,0 +1,14 @@
+import rclpy
+from rclpy.node import Node
+from canal_msgs.srv import OpenGate
+
+
+class Barge(Node):
+    def __init__(self):
+        super().__init__('barge')
+        self.gate = self.create_client(OpenGate, 'open_gate')
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Barge())
