@@ -1,6 +1,6 @@
 import rclpy
-from rclpy.node import Node
 from geometry_msgs.msg import Twist
+from rclpy.node import Node
 
 
 class Wheel(Node):

@@ -1,6 +1,6 @@
 import rclpy
-from rclpy.node import Node
 from canal_msgs.srv import OpenGate
+from rclpy.node import Node
 
 
 class Lock(Node):

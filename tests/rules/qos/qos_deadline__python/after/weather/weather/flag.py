@@ -1,6 +1,6 @@
 import rclpy
-from rclpy.node import Node
 from rclpy.duration import Duration
+from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from std_msgs.msg import Float32
 
