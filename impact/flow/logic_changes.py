@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple
 
 import msgspec
 
+from ..model.flow.code import tail
 from ..model.flow.graph import GuardAt
 from . import guards
 from .guards import Ways
@@ -20,6 +21,8 @@ KINDS: tuple[Kind, ...] = ("tightened", "widened", "equivalent", "changed", "new
 _MOST_WAYS = 16
 """As many ways as the join follows; where there are so many, some may be missing."""
 _UNSAID = frozenset(("unknown", "start"))
+_UNLED = frozenset(("unknown", "thread"))
+"""What leads to the statement is not known."""
 _LONGEST = 400
 _ABOUT = re.compile(r"(?<![\w.])[A-Za-z_][\w:]*(?:\s*\()?|[<>=!]=?|&&|\|\|")
 _DENIED = re.compile(r"(?:!\s*|not )([\w.:]+(?:->[\w.]+)*(?:\([\w.,: ]*\))?)")
@@ -106,6 +109,8 @@ def changes(old: Side, new: Side, names: Names = SAME) -> Iterator[Change]:
     successors = {id(one.outlet): other.outlet for one, other in outlets}
     for one, other in pairs:
         yield from _compared(one, other, names, successors)
+    gone = [at for at in gone if not _unclear(at, names, new)]
+    come = [at for at in come if not _unclear(at, SAME, old, names)]
     for at in gone:
         yield _change("gone", at, at.outlets, _shown(at.said.ways, at.said), None, _when("was published", at.said))
     for at in come:
@@ -115,6 +120,17 @@ def changes(old: Side, new: Side, names: Names = SAME) -> Iterator[Change]:
         at = published.get(id(other.outlet))
         if at is not None:
             yield from _outlet_changes(one, other, at)
+
+
+def _unclear(at: At, names: Names, other: Side, backwards: Names = SAME) -> bool:
+    """Whether the other side has the call where the statement stood, and only does not tell that it publishes."""
+    variable = tail(names.text(at.said.variable))
+    return any(
+        variable == tail(backwards.text(callee.rpartition(".")[0]))
+        and (backwards.path(state.whole(path)) == names.path(at.path) or function == at.said.function)
+        for state, one in other.packages
+        for path, function, callee in one.unclear
+    )
 
 
 def _change(kind: Kind, at: At, outlets: Iterable[Outlet], old: str | None, new: str | None, why: str) -> Change:
@@ -245,6 +261,10 @@ def _about(ways: Ways, names: Names) -> set[tuple[str, ...]]:
 
 def _starts_of(first: Said, second: Said, names: Names) -> Iterator[tuple[frozenset[Start], frozenset[Start]]]:
     """What makes a statement run, before and after, as far as one took the other's place; empty where nothing did."""
+    if all(way.start.kind in _UNLED for way in first.ways) != all(way.start.kind in _UNLED for way in second.ways):
+        # What leads to it is seen on one side alone: then it is not compared.
+        yield frozenset(way.start for way in first.ways), frozenset(way.start for way in second.ways)
+        return
     old = _grouped(first, names)
     new = _grouped(second, SAME)
     for key in [key for key in old if key in new]:
@@ -296,13 +316,13 @@ def _start_differs(old: Start, new: Start, names: Names) -> str:
         if not old.detail or not new.detail:
             return f"{_named(new)}, was without pace" if new.detail else f"{new.kind} without pace, was `{old.detail}`"
         return f"{_named(new)}, was `{old.detail}`"
-    if "unknown" in (old.kind, new.kind):
+    if _UNLED & {old.kind, new.kind}:
         return ""
     return f"on {_named(new)}, was on {_named(old)}"
 
 
 def _named(start: Start) -> str:
-    kind = {"start": "the start", "subscriber": "messages of"}.get(start.kind, start.kind)
+    kind = {"start": "the start", "subscriber": "messages of", "thread": "loop"}.get(start.kind, start.kind)
     return f"{kind} `{start.detail}`" if start.detail else kind
 
 

@@ -40,8 +40,8 @@ class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Start(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What makes a statement run. kind: as in Trigger, `loop` where a loop in main or a thread does; detail: the
-    period, topic or service, the rate of a loop."""
+    """What makes a statement run. kind: as in Trigger, `loop` where a loop does that the start of a program leads to,
+    `thread` for one that nothing leads to; detail: the period, topic or service, the rate of a loop."""
 
     kind: str
     detail: str = ""
@@ -98,12 +98,14 @@ class Inlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A package at one commit. unread: files that were not read, or not in full."""
+    """A package at one commit. unread: files that were not read, or not in full. unclear: path, function and callee of
+    calls that may publish, of which it is not known."""
 
     statements: tuple[Said, ...] = ()
     outlets: tuple[Outlet, ...] = ()
     inlets: tuple[Inlet, ...] = ()
     unread: tuple[str, ...] = ()
+    unclear: tuple[tuple[str, str, str], ...] = ()
 
 
 EMPTY = Digest()
@@ -115,12 +117,23 @@ def digest(state: State, facts: Mapping[str, Any]) -> Digest:
     sources = {f.path: facts[f.path] for f in state.files if isinstance(facts.get(f.path), FlowFile)}
     join = Join(sources, lambda _: state.name, (built(state, facts),), state.ros)
     if not join.calls.uses:
-        return Digest(unread=_unread(join))
+        return Digest(unread=_unread(join), unclear=_unclear(join))
     return _Digester(join, state).digest()
 
 
 def _unread(join: Join) -> tuple[str, ...]:
     return tuple(sorted(one.path for one in join.code.sources if one.facts.unread or one.facts.problems))
+
+
+def _unclear(join: Join) -> tuple[tuple[str, str, str], ...]:
+    names = {name for name, rows in join.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
+    clear = {id(statement.use.call) for statement in join.sites.statements}
+    return tuple(
+        (fn.source.path, fn.name, call.callee)
+        for fn in join.code.functions
+        for call in fn.facts.calls
+        if tail(call.callee) in names and "." in call.callee and id(call) not in clear
+    )
 
 
 class _Digester:
@@ -158,7 +171,7 @@ class _Digester:
                     outlets.append(self._outlet(site))
                 numbers.append(known[site])
             said.append(self._said(statement, tuple(dict.fromkeys(numbers))))
-        return Digest(tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), _unread(join))
+        return Digest(tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), _unread(join), _unclear(join))
 
     def _owners(self, fn: Fn) -> list[Owner]:
         found: list[Owner] = [one for one in self.running if id(fn) in one.functions]
@@ -237,7 +250,8 @@ class _Digester:
             if unsaid and guard.kind == "if" and _is_live(guard.text):
                 asked, lives = "", True  # what stands in the loop's condition itself
             if unsaid and (lives or (guard.kind in _LOOPS and trigger.kind == "start")):
-                start = Start("loop", self._pace(guard) or (start.detail if start.kind == "loop" else ""))
+                kind = "loop" if trigger.kind == "start" else "thread"
+                start = Start(kind, self._pace(guard) or (start.detail if start.kind == kind else ""))
             if asked:
                 meaning = self.meaning.of(guard) if asked == guard.text else ""
                 gates.append(Gate(guard.kind, asked, guard.of, meaning))
@@ -274,9 +288,10 @@ class _Digester:
         code = self.join.code
         variable = code.identity(receiver, fn)
         for _, each in code.writes.get(variable, ()):
-            if each.value.parts and each.value.kind in ("make", "call", "list"):
+            paces = [shown(part) for part in each.value.parts if part.text not in ("this", "self", "*this")]
+            if paces and each.value.kind in ("make", "call", "list"):
                 kind = tail(each.value.text).lower() if each.value.text else "rate"
-                return f"{kind} {shown(each.value.parts[0])}"
+                return f"{kind} {paces[0]}"
         return ""
 
 
