@@ -63,6 +63,8 @@ def selected(
     if not kept_nodes and asked:
         raise NothingSelected(_unknown("node", (*nodes, *packages), [node.id for node in graph.nodes]))
     hidden = set() if everything or topics else {name for name in kept_names if _fits(name, HIDDEN, ("",))}
+    if around:
+        hidden -= {name for name in hidden if _fits(name, (around,), ("", "/"))}
     kept_names -= hidden
     if not asked:
         kept_nodes |= {""}
@@ -142,10 +144,3 @@ def kind_of(endpoint: Endpoint) -> str:
     """`topic`, `service` or `action`."""
     role = endpoint.role
     return "action" if role.startswith("action") else "topic" if role in ("publisher", "subscriber") else "service"
-
-
-def fitting(name: str, topics: Sequence[str], everything: bool) -> bool:
-    """Whether a name is among those asked for, none being all, and not hidden."""
-    if topics:
-        return _fits(name, topics, ("", "/"))
-    return everything or not _fits(name, HIDDEN, ("",))
