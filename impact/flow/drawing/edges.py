@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
-from ...model.flow.graph import Endpoint, Graph, Publish
+from msgspec import structs
+
+from ...model.flow.graph import Endpoint, Graph, Publish, Qos
 from ..select import kind_of
 
 Mark = Literal["", "added", "removed", "changed"]
+_CHOICE = re.compile(r"\|\||\?|\b(?:or|if|lambda)\b")
+"""What binds less than `and`."""
 _OUT = frozenset(("publisher", "client", "action client"))
 
 
@@ -76,8 +81,12 @@ def _difference(before: Edge, now: Edge) -> str:
     return ", ".join(found)
 
 
-def _qos(endpoint: Endpoint) -> str:
-    return repr(endpoint.qos)
+def _qos(endpoint: Endpoint) -> Qos | str:
+    """What is told; how it is written counts where nothing else is known."""
+    if endpoint.qos is None:
+        return Qos()
+    told = structs.replace(endpoint.qos, written="")
+    return endpoint.qos.written if told == Qos() and endpoint.qos.written else told
 
 
 def _guards(publishes: Sequence[Publish]) -> frozenset:
@@ -99,12 +108,15 @@ def names_of(graph: Graph) -> dict[str, str]:
 
 
 def guard_text(publish: Publish) -> str:
-    """The guards of a publish statement in one line."""
+    """The guards of a publish statement in one line; one that is a choice itself stands in parentheses among others."""
+    alone = len(publish.guards) == 1
     return " and ".join(
         f"not ({guard.text})"
         if guard.kind == "unless"
-        else guard.text
-        if guard.kind == "if"
         else f"{guard.kind} {guard.text}"
+        if guard.kind != "if"
+        else guard.text
+        if alone or not _CHOICE.search(guard.text)
+        else f"({guard.text})"
         for guard in publish.guards
     )
