@@ -1,16 +1,21 @@
 """The message-flow graph as text, JSON, GraphML, DOT and Mermaid."""
 
 import json
+import re
 from pathlib import Path
 
 import jsonschema
 import networkx
 import pytest
+from msgspec import structs
 from robot import DRIVER, robot
 from rosimpact.impact.flow.drawing import draw
 from rosimpact.impact.flow.drawing.dot import quoted
+from rosimpact.impact.flow.drawing.edges import guard_text
 from rosimpact.impact.flow.drawing.json import schema
-from rosimpact.impact.flow.drawing.mermaid import escaped
+from rosimpact.impact.flow.drawing.mermaid import MOST, ROOM, escaped
+from rosimpact.impact.flow.select import NothingSelected
+from rosimpact.impact.model.flow.graph import GuardAt
 
 ROOT = Path(__file__).parents[2]
 NOW = robot()
@@ -91,3 +96,101 @@ def test_hostile_names_stay_names():
 def test_a_part_is_compared_with_the_same_part_of_the_base():
     lines = draw(NOW, "text", BEFORE, topics=["scan"]).splitlines()
     assert [line[0] for line in lines if "publishes" in line or "serves" in line] == ["~"]
+
+
+WITHOUT_PLANNER = robot(planner="")
+
+
+@pytest.mark.parametrize(
+    ("asked", "gone"),
+    [
+        ({"topics": ["scan"]}, {("/planner", "/scan")}),
+        ({"nodes": ["mover"]}, {("/planner", "/plan")}),
+        ({"nodes": ["planner"]}, {("/planner", "/scan"), ("/planner", "/plan"), ("/planner", "/calibrate")}),
+        ({"around": "scan", "hops": 0}, {("/planner", "/scan")}),
+        ({}, {("/planner", "/scan"), ("/planner", "/plan"), ("/planner", "/calibrate")}),
+    ],
+)
+def test_who_is_gone_from_a_part_is_said(asked, gone):
+    lines = draw(WITHOUT_PLANNER, "text", NOW, **asked).splitlines()
+    found, name = set(), ""
+    for line in lines:
+        name = line.split(" ")[0] if line.startswith("/") else name
+        if line.startswith("- "):
+            found.add((line.split()[2], name))
+        assert not line.startswith("+ "), "what the base has too is not new because the question did not find it there"
+    assert found == gone
+
+
+def test_what_neither_side_has_is_said():
+    with pytest.raises(NothingSelected, match="nobody"):
+        draw(WITHOUT_PLANNER, "text", NOW, nodes=["nobody"])
+
+
+def _also(graph, topic):
+    return structs.replace(graph, endpoints=(*graph.endpoints, structs.replace(graph.endpoints[0], topic=topic)))
+
+
+def test_what_is_hidden_is_not_said_to_be_gone():
+    both = _also(NOW, "/tf")
+    assert not [line for line in draw(both, "text", both).splitlines() if line.startswith(("+ ", "- ", "~ "))]
+    assert "/tf " in draw(both, "text", around="/tf", hops=0), "a name asked for is not hidden"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("rclcpp::SensorDataQoS()", "rclcpp::SensorDataQoS()", ""),
+        ("10", "rclcpp::QoS(10)", ""),
+        ("10", "11", "QoS"),
+        ("qos_of_old()", "qos_of_new()", "QoS"),
+    ],
+)
+def test_qos_differs_by_what_it_says(old, new, why):
+    before, now = (robot(driver=DRIVER.replace("rclcpp::SensorDataQoS()", qos)) for qos in (old, new))
+    assert [change["why"] for change in json.loads(draw(now, "json", before))["changes"]] == ([why] if why else [])
+
+
+@pytest.mark.parametrize("odd", ["\\", "\x1b[2J\x07", "\udcff", "\uffff", "\u202e", '</script>"\n', "\x00"])
+def test_odd_names_leave_every_format_whole(odd):
+    graph = structs.replace(
+        NOW,
+        nodes=tuple(structs.replace(n, id=n.id + odd, name=n.name + odd) for n in NOW.nodes),
+        endpoints=tuple(structs.replace(e, node=e.node + odd, topic=e.topic and e.topic + odd) for e in NOW.endpoints),
+        publishes=tuple(structs.replace(p, node=p.node + odd, topic=p.topic and p.topic + odd) for p in NOW.publishes),
+    )
+    drawn = {name: draw(graph, name) for name in ("text", "json", "graphml", "dot", "mermaid")}
+    for text in drawn.values():
+        text.encode()
+    assert "\x1b" not in drawn["text"] + drawn["dot"]
+    assert len(drawn["text"].splitlines()) == len(draw(NOW, "text").splitlines())
+    assert len(json.loads(drawn["json"])["nodes"]) == 3
+    assert len(networkx.parse_graphml(drawn["graphml"])) == 6
+    for line in drawn["dot"].splitlines():
+        strings = re.sub(r'"(?:[^"\\]|\\.)*"', "", line)
+        assert '"' not in strings, f"a string of DOT is left open: {line}"
+
+
+def test_mermaid_keeps_within_its_room_and_keeps_what_differs():
+    first = NOW.endpoints[0]
+    many = tuple(structs.replace(first, topic=f"/{number:04}/{'x' * 200}") for number in range(MOST + 50))
+    now = structs.replace(NOW, endpoints=(*many, structs.replace(first, topic="/zzz")))
+    text = draw(now, "mermaid", structs.replace(NOW, endpoints=many))
+    assert len(text) <= ROOM
+    assert "edges are left out" in text
+    assert '["/zzz"]' in text
+
+
+@pytest.mark.parametrize(
+    ("guards", "said"),
+    [
+        ([("if", "a || b")], "a || b"),
+        ([("if", "a || b"), ("if", "c")], "(a || b) and c"),
+        ([("if", "a or b"), ("unless", "c or d")], "(a or b) and not (c or d)"),
+        ([("if", "a && b"), ("if", "c")], "a && b and c"),
+        ([("if", "ordered"), ("while", "ok()")], "ordered and while ok()"),
+    ],
+)
+def test_guards_in_a_line_mean_what_they_mean_nested(guards, said):
+    publish = structs.replace(NOW.publishes[0], guards=tuple(GuardAt(*guard, path="a.cpp", line=1) for guard in guards))
+    assert guard_text(publish) == said

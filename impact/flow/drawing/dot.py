@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...model.flow.graph import Graph
+from ...report.report import safe
 from ..select import Selection
 from .edges import Edge, edges, names_of
 
@@ -20,7 +21,7 @@ def render(selection: Selection, base: Graph | None, everything: bool) -> str:
         lines.append(f"  {quoted('n ' + node)} [shape=ellipse, label={quoted(names[node])}];")
     for kind, name in sorted({(edge.kind, edge.name) for edge in found}):
         types = sorted({t for edge in found if (edge.kind, edge.name) == (kind, name) for t in edge.types})
-        label = "\\n".join([name, *types])
+        label = "\n".join([name, *types])
         lines.append(f"  {quoted(f'{kind} {name}')} [shape={_SHAPES[kind]}, style=rounded, label={quoted(label)}];")
     lines.extend(_edge(edge) for edge in found)
     return "\n".join([*lines, "}"]) + "\n"
@@ -38,5 +39,5 @@ def _edge(edge: Edge) -> str:
 
 
 def quoted(text: str) -> str:
-    """A quoted string of DOT; `\\n` stays a line's end."""
-    return '"' + text.replace('"', '\\"').replace("\n", "\\n") + '"'
+    """A quoted string of DOT: a backslash is itself, a line's end is `\\n`, what moves a cursor is a placeholder."""
+    return '"' + safe(text).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'

@@ -33,7 +33,10 @@ def render(selection: Selection, base: Graph | None, everything: bool) -> str:
 
 
 def _clean(drawn):
-    """Without characters that XML cannot hold."""
+    """Without characters that XML cannot hold, in ids and in what is said of them."""
+    import networkx
+
+    drawn = networkx.relabel_nodes(drawn, {name: _printable(name) for name in drawn})
     for _, data in drawn.nodes(data=True):
         data.update({key: _printable(value) for key, value in data.items()})
     for _, _, data in drawn.edges(data=True):

@@ -5,18 +5,23 @@ from __future__ import annotations
 from ...model.flow.graph import Graph
 from ..select import Selection
 from .dot import COLOURS
-from .edges import edges, names_of
+from .edges import Edge, edges, names_of
 
 MOST = 280
 """Edges that Mermaid draws by default are 500 (its maxEdges); beyond a few hundred nobody sees anything."""
+ROOM = 50_000
+"""Characters that Mermaid reads by default (its maxTextSize)."""
+_LINES = 90
+"""Characters around the names of an edge and its ends, at most."""
 
 
 def render(selection: Selection, base: Graph | None, everything: bool) -> str:
-    """A flowchart (https://mermaid.js.org/syntax/flowchart.html). What goes beyond MOST edges is left out and said."""
+    """A flowchart (https://mermaid.js.org/syntax/flowchart.html). What goes beyond MOST edges or ROOM is left out, what
+    differs from the base last, and said."""
     graph = selection.graph
     names = (names_of(base) if base is not None else {}) | names_of(graph)
     found = [edge for edge in edges(graph, base) if edge.node in names]
-    kept = found[:MOST]
+    kept = _kept(found, names)
     ids: dict[tuple[str, str], str] = {}
 
     def id_of(kind: str, name: str) -> str:
@@ -36,6 +41,18 @@ def render(selection: Selection, base: Graph | None, everything: bool) -> str:
         label = escaped(names.get(name, name) if kind == "node" else name)
         lines.append(f'  {short}(["{label}"])' if kind == "node" else f'  {short}["{label}"]')
     return "\n".join([*lines, *links, *styles]) + "\n"
+
+
+def _kept(found: list[Edge], names: dict[str, str]) -> list[Edge]:
+    """Edges for which there is room, those that differ from the base before others, in the order given."""
+    room = ROOM
+    kept: set[int] = set()
+    for place in sorted(range(len(found)), key=lambda place: not found[place].mark)[:MOST]:
+        room -= len(escaped(names[found[place].node])) + len(escaped(found[place].name)) + _LINES
+        if room < 0:
+            break
+        kept.add(place)
+    return [edge for place, edge in enumerate(found) if place in kept]
 
 
 def escaped(text: str) -> str:

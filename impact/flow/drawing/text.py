@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...model.flow.graph import Coverage, Endpoint, Graph, Publish
+from ...report.report import one_line
 from ..select import Selection
 from .edges import Edge, edges, guard_text, names_of
 
@@ -29,7 +30,7 @@ def render(selection: Selection, base: Graph | None, everything: bool) -> str:
         if edge is not None:
             group.append(edge)
     lines += _coverage(graph.coverage, everything)
-    return "\n".join(lines) + "\n"
+    return "\n".join(map(one_line, lines)) + "\n"
 
 
 def _head(graph: Graph, hidden: int) -> str:
