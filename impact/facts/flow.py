@@ -89,7 +89,8 @@ class Call(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class Assignment(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """target = value, initialisation included. target: a path; type: as written where it is declared here (`auto` too).
-    operator: `=`, `+=`, ...; `return` with an empty target for what a function returns."""
+    operator: `=`, `+=`, ...; `return` with an empty target for what a function returns. key: of the element that is
+    assigned, where it is a literal (`remappings["image"] = ...`)."""
 
     target: str
     value: Expr
@@ -97,6 +98,7 @@ class Assignment(msgspec.Struct, frozen=True, array_like=True, gc=False):
     guard: int = -1
     type: str = ""
     operator: str = "="
+    key: Expr | None = None
 
 
 class Access(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -180,7 +182,8 @@ class Alias(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class FlowFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """language: `cpp` or `python`. constants: variables outside functions and classes, `#define`s of one literal among
     them, and what Python functions assign to names declared global; in Python once for each place that assigns.
-    exports: classes given to nodelet, component and plugin macros. unread: spans of lines (first, last) that did not
+    exports: classes given to nodelet, component and plugin macros. includes: headers, as written between
+    the brackets or quotes. unread: spans of lines (first, last) that did not
     parse. The body of the file outside functions is a Function called `` (empty name)."""
 
     language: str
@@ -191,3 +194,4 @@ class FlowFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     exports: tuple[str, ...] = ()
     unread: tuple[tuple[int, int], ...] = ()
     problems: tuple[Problem, ...] = ()
+    includes: tuple[str, ...] = ()

@@ -9,6 +9,7 @@ What follows a try whose handler jumps is under `unless` with the text `catch (.
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_right
 
 from tree_sitter import Node, Parser
@@ -43,6 +44,7 @@ from .flow_cpp_values import READ, bare, flat
 from .place import Problem
 
 PARSER = Parser(LANGUAGE)
+INCLUDED = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]", re.MULTILINE)
 EXPORTING = ("PLUGINLIB_", "RCLCPP_COMPONENTS_", "CLASS_LOADER_REGISTER")
 
 
@@ -74,6 +76,7 @@ def extract(data: bytes) -> FlowFile:
         exports,
         tuple(sorted(wrong.union(source.hidden))),
         tuple(reader.problems),
+        tuple(dict.fromkeys(INCLUDED.findall(source.text))),
     )
 
 

@@ -414,7 +414,9 @@ class Expressions(Strings):
                 self.accesses.append(Access(path, "write", line, self.guard))
             elif path.startswith("this.") and path.count(".") == 1 and operator == "=" and self.body.cls is not None:
                 self.body.cls.member(path[5:], type or made(value), line, value)
-            self.assignments.append(Assignment(path, value, line, self.guard, type, operator))
+            key = target.slice if cls is ast.Subscript and target.slice.__class__ is ast.Constant else None
+            named = self.value(key, "read") if key is not None else None
+            self.assignments.append(Assignment(path, value, line, self.guard, type, operator, named))
         elif cls is ast.Tuple or cls is ast.List:
             parts = target.elts
             starred = any(part.__class__ is ast.Starred for part in parts)
