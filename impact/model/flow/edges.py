@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import NamedTuple
 
 from ..workspace import Workspace
 from .graph import Endpoint, Graph, Node
+from .launches import Launch
 
 # Of these the workspace says what runs; plugins and libraries get their names from whoever loads them.
 _RUNNING = frozenset(("executable", "script", "component", "nodelet"))
@@ -44,33 +46,42 @@ class Pair(NamedTuple):
 
 
 class Flow:
-    """A graph, asked for what is sure in it. surely: ids of nodes that surely run under their names, all when None."""
+    """A graph, asked for what is sure in it. surely: ids of nodes that surely run under their names, all when None.
+    around: the flow of the whole workspace, this one when None."""
 
-    def __init__(self, graph: Graph, interfaces: Mapping[str, set[str]], surely: set[str] | None = None):
-        self.graph, self.interfaces, self.surely = graph, interfaces, surely
+    def __init__(
+        self,
+        graph: Graph,
+        interfaces: Mapping[str, set[str]],
+        surely: set[str] | None = None,
+        around: Flow | None = None,
+    ):
+        self.graph, self.interfaces, self.surely, self.around = graph, interfaces, surely, around
         self.nodes = {node.id: node for node in graph.nodes}
         names: dict[tuple, set[str]] = {}
         for one in graph.endpoints:
             names.setdefault((one.node, one.role, one.path, one.line, one.written), set()).add(one.topic)
         self._alone = {key for key, topics in names.items() if len(topics) == 1}
-        self.unknown: dict[str, set[str]] = {}
         self.known: dict[tuple[str, str], list[Endpoint]] = {}
         for one in graph.endpoints:
             if one.topic:
                 self.known.setdefault((_kind(one.role), one.topic), []).append(one)
-            else:
-                self.unknown.setdefault(one.role, set()).add(one.type)
 
     def sure(self, *roles: str) -> Iterator[Sure]:
         """Endpoints whose name is certain, of some roles or of all: in the order of the graph."""
         for one in self.graph.endpoints:
             node = self.nodes.get(one.node)
-            if node is None or node.kind not in _RUNNING or (roles and one.role not in roles):
+            if node is None or (roles and one.role not in roles) or not self.is_sure(one):
                 continue
-            alone = (one.node, one.role, one.path, one.line, one.written) in self._alone
-            runs = self.surely is None or node.id in self.surely
-            if one.topic and one.how in _SURE and alone and runs:
+            if self.surely is None or node.id in self.surely:
                 yield Sure(node, one)
+
+    def is_sure(self, one: Endpoint) -> bool:
+        """Whether an endpoint has one certain name, and belongs to something that surely runs by itself."""
+        node = self.nodes.get(one.node)
+        runs = node is not None and node.kind in _RUNNING and (node.line or node.kind != "executable")
+        alone = (one.node, one.role, one.path, one.line, one.written) in self._alone
+        return bool(runs and one.topic and one.how in _SURE and alone)
 
     def type_of(self, endpoint: Endpoint) -> str:
         """The type of an endpoint, empty where it is not known to be a message's (or a service's, or an action's)."""
@@ -85,8 +96,18 @@ class Flow:
         return [one for one in self.known.get((_kind(endpoint.role), endpoint.topic), ()) if one.role == wanted]
 
     def may_have(self, role: str, type_: str) -> bool:
-        """Whether something of this role and type has a name that is not known."""
-        return bool(self.unknown.get(role, set()) & {type_, "", "*"})
+        """Whether something in the workspace of this role and type has a name that is not known or not certain."""
+        return bool(self._unsure.get(role, set()) & {type_, "", "*"})
+
+    @cached_property
+    def _unsure(self) -> dict[str, set[str]]:
+        if self.around is not None:
+            return self.around._unsure
+        found: dict[str, set[str]] = {}
+        for one in self.graph.endpoints:
+            if not self.is_sure(one):
+                found.setdefault(one.role, set()).add(one.type)
+        return found
 
     def of_node(self, one: Endpoint) -> list[Endpoint]:
         """Everything of the same node and role at the same name: code may choose among several."""
@@ -110,11 +131,21 @@ class Flow:
 
 def flows(workspace: Workspace) -> Iterator[tuple[str, Flow]]:
     """What each launch file surely starts, by its path; then the whole workspace, with an empty path."""
-    interfaces = {package.name: workspace.interface_names.get(package.name, set()) for package in workspace}
+    whole = whole_flow(workspace)
     for launch in workspace.launches:
-        surely = {start.node for start in launch.starts if not start.uncertain}
-        yield launch.path, Flow(launch.graph, interfaces, surely)
-    yield "", Flow(workspace.flow, interfaces)
+        yield launch.path, launched_flow(whole, launch)
+    yield "", whole
+
+
+def whole_flow(workspace: Workspace) -> Flow:
+    """The flow of a whole workspace, under the names that its source gives."""
+    return Flow(workspace.flow, {each.name: workspace.interface_names.get(each.name, set()) for each in workspace})
+
+
+def launched_flow(whole: Flow, launch: Launch) -> Flow:
+    """The flow of what a launch file surely starts."""
+    surely = {start.node for start in launch.starts if not start.uncertain}
+    return Flow(launch.graph, whole.interfaces, surely, whole)
 
 
 def met(workspace: Workspace) -> Iterator[Pair]:
@@ -132,7 +163,7 @@ def met(workspace: Workspace) -> Iterator[Pair]:
 
 def unstarted(workspace: Workspace) -> Flow:
     """The workspace's flow as far as no launch file starts its nodes: these have the names that the source gives."""
-    *_, (_, flow) = flows(workspace)
+    flow = whole_flow(workspace)
     started = {start.program for launch in workspace.launches for start in launch.starts}
     flow.surely = flow.nodes.keys() - started
     return flow

@@ -83,7 +83,8 @@ class Seeing:
         if not one.program.roots or not functions:
             return Sight("its code is not in the workspace", "its code is not in the workspace")
         paths = {fn.source.path for fn in functions}
-        both = next(chain(self._outside(paths), self._bases(one), self._given(functions)), "")
+        steps = (self._outside(paths), self._bases(one), self._given(functions), self._unreached(one))
+        both = next(chain(*steps), "")
         names = both or next(self._unnamed(functions), "")
         return Sight(names, both or next(self._unlisted(functions), ""))
 
@@ -135,12 +136,35 @@ class Seeing:
                 if not code.targets(call.callee, fn) and calls.use_of(fn, call) is None:
                     yield f"`{last}` is given the node"
             for name, arguments, _ in made_in(fn, code):
+                if (
+                    not python
+                    and parts_of(name)[0] in self._namespaces
+                    and not code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope)
+                ):
+                    yield f"`{tail(name)}` is not followed"
                 if any(self._is_node(argument, fn) for argument in arguments):
                     kind = code.meant_type(name, fn.source, fn.scope).name if not python else name
                     known = code.class_of(kind, fn.source, fn.scope) if kind else None
                     own = parts_of(kind or name)[0] in _OWN or tail(name) in _RUNS
                     if known is None and not own and not calls.table.objects_of(kind or name, python):
                         yield f"`{tail(kind or name)}` is given the node"
+
+    @cached_property
+    def _namespaces(self) -> set[str]:
+        """The outermost namespaces of the workspace's own classes."""
+        every = (cls for classes in self.join.code.classes.values() for cls in classes)
+        return {parts_of(cls.name)[0] for cls in every if "::" in cls.name} - _OWN
+
+    def _unreached(self, one: Running) -> Iterator[str]:
+        """What the program is built from and, as far as can be told, never runs."""
+        for use in self.join.calls.uses:
+            path = use.fn.source.path
+            if path in one.program.files and id(use.fn) not in self._reached:
+                yield f"`{use.fn.name}` is not seen to be reached"
+
+    @cached_property
+    def _reached(self) -> set[int]:
+        return {number for one in self.join.running() for number in one.functions}
 
     def _is_node(self, value: Expr, fn: Fn) -> bool:
         calls = self.join.calls

@@ -45,7 +45,7 @@ def lost_edge(workspace: Workspace, base: Workspace):
             left = [one for one in has[role] if not one.implied]
             if not had[role] or not had[gone] or not left or has[gone]:
                 continue
-            if len(now.unknown.get(gone, ())) > len(before.unknown.get(gone, ())):
+            if _unknown(now, gone) > _unknown(before, gone):
                 continue
             at, old = left[0], had[gone][0]
             successors = sorted({one.topic for one in _successors(now, before, old)})
@@ -60,6 +60,11 @@ def lost_edge(workspace: Workspace, base: Workspace):
                 now.nodes[at.node].package if at.node in now.nodes else "",
                 severity=severity,
             )
+
+
+def _unknown(flow: Flow, role: str) -> int:
+    """How many endpoints of a role have no known name."""
+    return sum(one.role == role and not one.topic for one in flow.graph.endpoints)
 
 
 def _sides(flow: Flow, topic: str) -> dict[str, list[Endpoint]]:

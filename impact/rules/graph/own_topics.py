@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...model.flow.edges import Flow, Sure, unstarted
+from ...model.flow.edges import Flow, Sure, launched_flow, unstarted, whole_flow
 from ...model.workspace import Workspace
 
 _SIDES = {"publisher": "subscriber", "subscriber": "publisher"}
@@ -23,26 +23,27 @@ def one_sided(workspace: Workspace, role: str) -> Iterator[tuple[Sure, str]]:
     a launch file, or the workspace. Topics are left out that tools and people outside of the workspace may use: those
     of types that the workspace does not define, private ones, and what is known of tools."""
     own = workspace.interface_names
-    told = set()
+    told: set[object] = set()
     for where, flow in _flows(workspace):
         for one in flow.sure(role):
             endpoint = one.endpoint
             type_ = flow.type_of(endpoint)
             package = type_.partition("/")[0]
-            if package not in own or endpoint.implied or endpoint.written.startswith("~") or endpoint.topic in told:
+            private = endpoint.written.startswith("~") or endpoint.topic.startswith(f"{one.node.name}/")
+            place = (endpoint.path, endpoint.line)
+            if package not in own or endpoint.implied or private or not told.isdisjoint((endpoint.topic, place)):
                 continue
             if endpoint.topic.rpartition("/")[2] in _TOOLS or "debug" in endpoint.topic or flow.others(endpoint):
                 continue
             if not flow.may_have(_SIDES[role], type_):
-                told.add(endpoint.topic)
+                told.update((endpoint.topic, place))
                 yield one, where
 
 
 def _flows(workspace: Workspace) -> Iterator[tuple[str, Flow]]:
     """Launch files that start nothing from elsewhere, then what no launch file starts."""
-    interfaces = {package.name: workspace.interface_names.get(package.name, set()) for package in workspace}
+    whole = whole_flow(workspace)
     for launch in workspace.launches:
         if not launch.missing:
-            surely = {start.node for start in launch.starts if not start.uncertain}
-            yield f"`{launch.path}`", Flow(launch.graph, interfaces, surely)
+            yield f"`{launch.path}`", launched_flow(whole, launch)
     yield "the workspace", unstarted(workspace)
