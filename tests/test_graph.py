@@ -64,9 +64,11 @@ LAUNCH = """
 
 
 def manifest(name: str, kind: str) -> str:
-    return f"""<?xml version="1.0"?><package format="3"><name>{name}</name><version>1.0.0</version>
-    <description>x</description><maintainer email="a@b.org">a</maintainer><license>MIT</license><buildtool_depend>{kind}</buildtool_depend>
-    <export><build_type>{kind}</build_type></export></package>"""
+    return (
+        f'<?xml version="1.0"?><package format="3"><name>{name}</name><version>1.0.0</version>'
+        '<description>x</description><maintainer email="a@b.org">a</maintainer><license>MIT</license>'
+        f"<buildtool_depend>{kind}</buildtool_depend><export><build_type>{kind}</build_type></export></package>"
+    )
 
 
 @pytest.fixture

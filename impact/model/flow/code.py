@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -653,7 +653,7 @@ def _within(scope: str, outer: str) -> bool:
     return scope == outer or scope.startswith((outer + "::", outer + "."))
 
 
-def _module_of(path: str, module: list[str]) -> bool:
+def _module_of(path: str, module: Sequence[str]) -> bool:
     """Whether a path may be that of a Python module."""
     parts = path.removesuffix(".py").split("/")
     if parts and parts[-1] == "__init__":
