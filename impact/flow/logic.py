@@ -81,9 +81,10 @@ def read(
     """
     history = History(repository)
     commits = history.commits(range.text, range.number, range.since)
-    results = _Run(history, store, jobs or processes.cores(), progress or _silent).results(commits)
+    run = _Run(history, store, jobs or processes.cores(), progress or _silent)
+    results = run.results(commits)
     found = [(commit, change) for commit in commits for change in results[commit.id].changes]
-    coverage = _coverage(history, commits, results, store)
+    coverage = run.coverage(commits, results)
     return Logic(history.name, _range_text(range), tuple(commits), tuple(found), coverage)
 
 
@@ -185,6 +186,23 @@ class _Run:
             waiting.append((step.commit.id, _Result(found)))
         self._remember(waiting)
         yield from waiting
+
+    def coverage(self, commits: Sequence[Commit], results: Mapping[str, _Result]) -> Coverage:
+        """What was looked at, and what the newest commit's packages hold."""
+        if not commits:
+            return Coverage()
+        compared = sum(result.compared for result in results.values())
+        cut_off = sum(result.cut_off for result in results.values())
+        states = self.history.packages(commits[0].id)
+        self._digest(states.values())
+        statements = unresolved = 0
+        unread: list[str] = []
+        for state in states.values():
+            one = _decoded(self.digests.packed, state.key)
+            statements += len(one.statements)
+            unresolved += sum(not any(one.outlets[place].topic for place in said.outlets) for said in one.statements)
+            unread += [state.whole(path) for path in one.unread]
+        return Coverage(len(commits), compared, cut_off, len(states), statements, unresolved, tuple(sorted(unread)))
 
     def _listeners(self, commit: str) -> dict[str, list[Reached]]:
         """The subscribers of a commit by their topics."""
@@ -421,21 +439,3 @@ def _stamp(*folders: str) -> bytes:
     for path in sorted(set(files)):
         stamp.update(path.name.encode() + path.read_bytes())
     return stamp.digest()[:8]
-
-
-def _coverage(history: History, commits: Sequence[Commit], results: Mapping[str, _Result], store: Store) -> Coverage:
-    compared = sum(result.compared for result in results.values())
-    cut_off = sum(result.cut_off for result in results.values())
-    if not commits:
-        return Coverage()
-    states = history.packages(commits[0].id)
-    digests = _Digests(store)
-    known = digests.load(state.key for state in states.values())
-    statements = unresolved = 0
-    unread: list[str] = []
-    for state in states.values():
-        one = _decoded(known, state.key)
-        statements += len(one.statements)
-        unresolved += sum(not any(one.outlets[place].topic for place in said.outlets) for said in one.statements)
-        unread += [state.whole(path) for path in one.unread]
-    return Coverage(len(commits), compared, cut_off, len(states), statements, unresolved, tuple(sorted(unread)))

@@ -10,7 +10,7 @@ import pygit2
 import pytest
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.flow.history import History
-from rosimpact.impact.flow.logic import Logic, Range, chosen, read
+from rosimpact.impact.flow.logic import Coverage, Logic, Range, chosen, read
 from rosimpact.impact.flow.logic_report import as_json, text
 from rosimpact.impact.flow.timeline import render
 
@@ -515,6 +515,12 @@ def test_the_first_commit_has_all_its_statements_new(made: Made) -> None:
     assert sorted((kind, topic) for kind, topic, _ in of(made, "start")) == [
         ("new", "beeps"), ("new", "chatter"), ("new", "chatter"), ("new", "frames"), ("new", "state"),
     ]  # fmt: skip
+
+
+def test_a_range_knows_all_of_its_newest_commit(made: Made, tmp_path) -> None:
+    with Store(tmp_path) as store:
+        found = read(made.path, Range(made.commits["ask for less"], 1), store)
+    assert found.coverage == Coverage(1, 1, 0, 5, 5, 0, ())
 
 
 def test_merges_say_nothing_and_their_branches_speak(made: Made) -> None:
