@@ -125,7 +125,7 @@
   }
 
   function paint() {
-    at("lines").replaceChildren(...shownEdges.map(line));
+    at("lines").replaceChildren(...[...shownEdges.filter((edge) => !edge.mark), ...shownEdges.filter((edge) => edge.mark)].map(line));
     at("boxes").replaceChildren(...shownBoxes.map(shape));
     if (shownBoxes.length) [...shownBoxes].sort((a, b) => a.x - b.x || a.y - b.y)[0].shape.setAttribute("tabindex", "0");
   }
@@ -169,7 +169,7 @@
 
   function move() {
     world.setAttribute("transform", `translate(${view.x} ${view.y}) scale(${view.k})`);
-    stage.classList.toggle("far", view.k < 0.42);
+    stage.classList.toggle("far", view.k < 0.36);
     stage.classList.toggle("farther", view.k < 0.2);
   }
   function zoom(factor, x, y) {
@@ -194,7 +194,7 @@
     move();
   }
   // Where the whole would be too small to read, it begins readable.
-  function start() { fit(whole() >= 0.45 ? whole() : 0.6); }
+  function start() { fit(whole() >= 0.4 ? whole() : 0.6); }
   function reveal(box, middle) {
     const area = stage.getBoundingClientRect();
     const x = view.x + box.x * view.k, y = view.y + box.y * view.k, w = box.width * view.k / 2 + 12, h = box.height * view.k / 2 + 12;
@@ -400,7 +400,7 @@
     const { coverage } = graph;
     const share = coverage.calls ? ` (${Math.round(100 * coverage.resolved / coverage.calls)} %)` : "";
     const changes = edges.filter((edge) => edge.mark);
-    return [make("h2", null, graph.root || "Message flow"),
+    return [make("h2", null, graph.root && graph.root !== "." ? graph.root : "Message flow"),
       make("p", { class: "soft" }, "Click a node, a topic or an arrow to see where it is written. Drag to move, turn the wheel to zoom; tab and the arrow keys walk along the graph, enter opens, escape closes."),
       make("h3", null, "Coverage"),
       make("p", null, `${number(coverage.resolved)} of ${counted(coverage.calls, "API call")} resolved${share}${coverage.by_default ? `, ${number(coverage.by_default)} by a parameter's default` : ""}; ${counted(coverage.files, "file")} read.`),

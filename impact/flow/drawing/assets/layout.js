@@ -2,9 +2,9 @@
 // A layered drawing, left to right: boxes of side 0 (nodes) and side 1 (names) stand in columns by turns, since every
 // edge goes from one side to the other. After Sugiyama: break cycles, give columns, order them, place them.
 const layered = (() => {
-  const GAP_Y = 16, PASS_Y = 9, GAP_PART = 46, GAP_COLUMN = 64;
+  const GAP_Y = 16, PASS_Y = 9, GAP_PART = 46, GAP_COLUMN = 52;
 
-  // boxes: [{width, height, side}], edges: [{from, to}], by number. Gives boxes x, y (their middles), edges `points`:
+  // boxes: [{width, height, side}], edges: [{from, to, kind}], by number. Gives boxes x, y (their middles), edges `points`:
   // [x, y] from the left to the right, and `back` for those that run from the right to the left. The same input always
   // gives the same drawing.
   function layered(boxes, edges, aspect) {
@@ -37,30 +37,38 @@ const layered = (() => {
     return [...parts.values()];
   }
 
-  // The order of Eades, Lin and Smyth, in which few edges run backwards.
+  // An order in which few edges run backwards, after Eades, Lin and Smyth. A topic says more of the direction than a
+  // service does; where all that is left are cycles, the node that gives most begins, if equal the one that is already
+  // given most.
   function order({ boxes, edges }) {
-    const count = boxes.length;
     const outs = boxes.map(() => []), ins = boxes.map(() => []);
-    for (const edge of edges) { outs[edge.a.own].push(edge.b.own); ins[edge.b.own].push(edge.a.own); }
-    const out = outs.map((list) => list.length), inn = ins.map((list) => list.length);
+    const out = boxes.map(() => 0), inn = boxes.map(() => 0), given = boxes.map(() => 0);
+    for (const edge of edges) {
+      const weight = edge.kind === "topic" ? 3 : 1;
+      outs[edge.a.own].push([edge.b.own, weight]);
+      ins[edge.b.own].push([edge.a.own, weight]);
+      out[edge.a.own] += weight;
+      inn[edge.b.own] += weight;
+    }
     const left = new Set(boxes.keys());
     const head = [], tail = [];
-    const take = (index) => {
+    const take = (index, list) => {
+      list.push(index);
       left.delete(index);
-      for (const next of outs[index]) inn[next] -= 1;
-      for (const next of ins[index]) out[next] -= 1;
+      for (const [next, weight] of outs[index]) { inn[next] -= weight; if (list === head) given[next] += weight; }
+      for (const [next, weight] of ins[index]) out[next] -= weight;
     };
+    const before = (a, b) => boxes[a].side - boxes[b].side || (out[b] - inn[b]) - (out[a] - inn[a]) || given[b] - given[a];
     while (left.size) {
       let best = -1, found = false;
       for (const index of left) {
-        if (out[index] === 0) { tail.push(index); take(index); found = true; } else if (inn[index] === 0) { head.push(index); take(index); found = true; }
+        if (out[index] === 0) { take(index, tail); found = true; } else if (inn[index] === 0) { take(index, head); found = true; }
       }
       if (found) continue;
-      for (const index of left) if (best < 0 || out[index] - inn[index] > out[best] - inn[best]) best = index;
-      head.push(best);
-      take(best);
+      for (const index of left) if (best < 0 || before(index, best) < 0) best = index;
+      take(best, head);
     }
-    const rank = new Array(count);
+    const rank = new Array(boxes.length);
     [...head, ...tail.reverse()].forEach((index, position) => { rank[index] = position; });
     return rank;
   }
@@ -88,22 +96,42 @@ const layered = (() => {
     boxes.forEach((box, index) => { box.column = column[index] - first; });
   }
 
+  // Passes long edges through the columns between their ends. Those that leave one box, or come to one, share their way
+  // as far as it goes: one trunk with branches in place of a ribbon of lines. Gives how many links there are.
+  function thread(edges) {
+    const kin = (edge, box) => `${box.own} ${box === edge.left} ${edge.back} ${edge.kind}`;
+    const long = edges.filter((edge) => edge.right.column - edge.left.column > 1);
+    const counts = new Map();
+    for (const edge of long) for (const box of [edge.left, edge.right]) counts.set(kin(edge, box), (counts.get(kin(edge, box)) || 0) + 1);
+    const passes = new Map();
+    let size = 0;
+    const join = (a, b) => {
+      if (a.after.includes(b)) return;
+      a.after.push(b);
+      b.before.push(a);
+      size += 1;
+    };
+    for (const edge of edges) {
+      const leaving = kin(edge, edge.left), coming = kin(edge, edge.right);
+      const trunk = (counts.get(leaving) || 0) >= (counts.get(coming) || 0) ? leaving : coming;
+      edge.chain = [edge.left];
+      for (let column = edge.left.column + 1; column < edge.right.column; column += 1) {
+        const key = `${trunk} ${column}`;
+        if (!passes.has(key)) passes.set(key, { column, height: 2, width: 0, before: [], after: [], real: false });
+        edge.chain.push(passes.get(key));
+      }
+      edge.chain.push(edge.right);
+      for (let i = 1; i < edge.chain.length; i += 1) join(edge.chain[i - 1], edge.chain[i]);
+    }
+    return size;
+  }
+
   function place(part) {
     columns(part);
     const count = Math.max(...part.boxes.map((box) => box.column)) + 1;
     const rows = Array.from({ length: count }, () => []);
     for (const box of part.boxes) Object.assign(box, { before: [], after: [], real: true });
-    const links = [];
-    for (const edge of part.edges) {
-      edge.chain = [edge.left];
-      for (let column = edge.left.column + 1; column < edge.right.column; column += 1) edge.chain.push({ column, height: 2, width: 0, before: [], after: [], real: false });
-      edge.chain.push(edge.right);
-      for (let i = 1; i < edge.chain.length; i += 1) {
-        edge.chain[i - 1].after.push(edge.chain[i]);
-        edge.chain[i].before.push(edge.chain[i - 1]);
-        links.push(edge.chain[i - 1]);
-      }
-    }
+    const size = thread(part.edges);
     // First come first placed along the edges, so that what belongs together starts together.
     const seen = new Set();
     for (const start of [...part.boxes].sort((a, b) => a.column - b.column || a.own - b.own)) {
@@ -116,7 +144,7 @@ const layered = (() => {
         for (let i = box.after.length - 1; i >= 0; i -= 1) stack.push(box.after[i]);
       }
     }
-    untangle(rows, links.length);
+    untangle(rows, size);
     heights(rows);
     return spread(part, rows);
   }
@@ -238,8 +266,12 @@ const layered = (() => {
     for (const [box, sides] of byBox) {
       for (const side of ["after", "before"]) {
         const list = sides[side].sort((a, b) => a.next.y - b.next.y || a.edge.number - b.edge.number);
-        const step = list.length > 1 ? Math.min(9, (box.height - 12) / (list.length - 1)) : 0;
-        list.forEach(({ edge }, index) => { edge[side === "after" ? "leaves" : "enters"] = (index - (list.length - 1) / 2) * step; });
+        // What shares a trunk shares the door.
+        const turns = [];
+        list.forEach(({ next }, index) => { turns.push(index ? turns[index - 1] + (next.real || next !== list[index - 1].next ? 1 : 0) : 0); });
+        const last = turns.at(-1) || 0;
+        const step = last ? Math.min(9, (box.height - 12) / last) : 0;
+        list.forEach(({ edge }, index) => { edge[side === "after" ? "leaves" : "enters"] = (turns[index] - last / 2) * step; });
       }
     }
   }
