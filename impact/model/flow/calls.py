@@ -14,7 +14,7 @@ from .types import Type, parsed, split
 # Names that mean something else in most code: their receiver has to be known to be of the framework.
 _COMMON = frozenset(
     ("publish", "subscribe", "advertise", "param", "get", "getCached", "init", "call", "sendTransform", "Register",
-     "Notify", "Subscriber", "Publisher", "Service", "Timer", "ActionServer", "ActionClient")
+     "Notify", "load", "Subscriber", "Publisher", "Service", "Timer", "ActionServer", "ActionClient")
 )  # fmt: skip
 
 
@@ -152,7 +152,7 @@ class Calls:
         if value.kind == "name":
             if value.text == "this" or value.text in ("self", "*this"):
                 return True
-            if self.kinds_of(self.code.type_of(value, fn), fn) & {"node", "handle"}:
+            if self.kinds_of(self.code.type_of(value, fn), fn) & {"node", "handle", "image_transport"}:
                 return True
             kind = self.code.type_of(value, fn).name
             return tail(kind) in ("NodeT", "NodeType", "Node") or (not kind and tail(value.text).strip("_") in _NODES)
@@ -196,8 +196,13 @@ class Calls:
                     yield kind.name, Call(make.text, make.parts, call.line, call.column, call.guard, arguments, target)
             if source.facts.language == "python" and last:
                 yield from self._made_in_python(fn, call, last)
+        yield from self._made_by_members(fn)
         for each in fn.facts.assignments:
             value = each.value
+            base = code.base_made(fn, each)
+            if base is not None:
+                yield base[0], Call(base[0], base[1], each.line, 0, each.guard)
+                continue
             for make in _nested(value):
                 if not make.text:
                     continue
@@ -216,6 +221,25 @@ class Calls:
                         kind.name,
                         Call(kind.name, arguments, each.line, 0, each.guard, ", ".join(kind.arguments), each.target),
                     )
+
+    def _made_by_members(self, fn: Fn) -> Iterator[tuple[str, Call]]:
+        """Members that a class has by value and that its constructors do not initialise, told once."""
+        owner = self.code.owner_of(fn) if fn.source.facts.language == "cpp" and fn.facts.owner else None
+        if owner is None:
+            return
+        functions = self.code.functions_of(owner)
+        constructors = [one for one in functions if tail(one.name) == tail(owner.name)]
+        # A class without a constructor of its own has them made by whatever makes it.
+        if (constructors or functions)[:1] != [fn]:
+            return
+        begun = {each.target for one in constructors for each in one.facts.assignments}
+        for member in owner.facts.members:
+            target = f"this.{member.name}"
+            if member.value is None and target not in begun and "*" not in member.type and "&" not in member.type:
+                kind = self.code.meant_type(member.type, owner.source, owner.name)
+                if parsed(member.type).name == member.type.partition("<")[0]:
+                    types = ", ".join(kind.arguments)
+                    yield kind.name, Call(kind.name, (), fn.facts.line, 0, -1, types, target)
 
     def _made_in_python(self, fn: Fn, call: Call, last: str) -> Iterator[tuple[str, Call]]:
         if call.callee == "super().__init__":

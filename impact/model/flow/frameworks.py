@@ -22,11 +22,12 @@ TABLE = Path(__file__).with_name("frameworks.toml")
 
 
 class Also(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A further endpoint that a row makes."""
+    """A further endpoint that a row makes, unless one of some words is among the arguments."""
 
     role: str
     topic: str
     type: str
+    unless: tuple[str, ...] = ()
 
 
 class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -51,6 +52,7 @@ class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     variable: tuple[Spot, ...] = ()
     message: tuple[Spot, ...] = ()
     namespace: tuple[Spot, ...] = ()
+    remaps: tuple[Spot, ...] = ()
     declares: bool = False
     camera_info: bool = False
     also: tuple[Also, ...] = ()
@@ -104,6 +106,7 @@ def _ends(full: str, name: str) -> bool:
 def _row(raw: dict[str, Any]) -> Row:
     spots = (
         "topic", "type", "queue", "qos", "callback", "latch", "period", "default", "variable", "message", "namespace",
+        "remaps",
     )  # fmt: skip
     fixed = {name: value if isinstance(value, list) else [value] for name, value in raw.items() if name in spots}
     return msgspec.convert({**raw, **fixed}, Row)

@@ -12,7 +12,7 @@ from ..launch import Launched, Started
 from ..names_ros import NameRefused, canonical, ros1_name, ros2_name
 from . import nodes as programs_of
 from .calls import Calls, Use
-from .code import Code, Fn, Source, tail
+from .code import Code, Fn, Source, made_in, tail
 from .frameworks import Frameworks, frameworks
 from .graph import (
     Callback,
@@ -29,6 +29,7 @@ from .graph import (
     Unresolved,
     Way,
 )
+from .loads import Loaded, loads
 from .nodes import Built, Program, Reach
 from .qos import qos_of
 from .sites import Site, Sites, Statement, shown
@@ -48,7 +49,7 @@ _ROS2 = frozenset(("rclcpp", "rclpy", "nav2"))
 
 class Running(NamedTuple):
     """A program with the node it is, and what of the code it reaches. instance: how a launch starts it; values: what
-    expressions are worth there."""
+    expressions are worth there. loaded: how the node loads this program, which is a nodelet then."""
 
     program: Program
     node: Node
@@ -56,6 +57,7 @@ class Running(NamedTuple):
     classes: set[str]
     values: Values
     instance: Instance | None = None
+    loaded: Loaded | None = None
 
 
 Owner = Running | Node | None
@@ -75,6 +77,7 @@ class Join:
         table: Frameworks | None = None,
     ):
         self.ros, self.built = ros, list(built)
+        self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
         self.code = Code(Source(path, package_of(path), facts) for path, facts in sorted(files.items()))
         self.calls = Calls(self.code, table or frameworks())
         self.values = Values(self.calls)
@@ -128,17 +131,35 @@ class Join:
             node = structs.replace(
                 one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
             )  # fmt: skip
-            values = self.values.under(instance.settings) if instance.settings else self.values
+            arguments = [argument.value for argument in start.arguments]
+            known = None if None in arguments else [one for one in arguments if one is not None]
+            values = self.values.under(instance.settings, known)
             found.append(one._replace(node=node, instance=instance, values=values))
         return found, missing
 
-    @staticmethod
-    def _starts(program: Program, start: Started) -> bool:
+    def with_loaded(self, running: Iterable[Running]) -> Iterator[Running]:
+        """Nodes, each followed by the nodelets that its program loads into it."""
+        programs = [one for one in self.running() if one.program.plugin]
+        for one in running:
+            yield one
+            for loaded in loads(self.calls, one.functions, one.values, one.node.name):
+                part = next((p for p in programs if self._is_plugin(p.program, loaded.plugin)), None)
+                if part is not None:
+                    yield part._replace(node=one.node, values=one.values, instance=one.instance, loaded=loaded)
+
+    def _is_plugin(self, program: Program, name: str) -> bool:
+        """Whether a program is what pluginlib knows by a name."""
+        wanted = self.plugins.get(name)
+        if wanted is None:
+            wanted = name.replace("/", "::")
+            return program.plugin == wanted or tail(program.plugin) == tail(wanted)
+        return program.plugin.removeprefix("::") == wanted.removeprefix("::")
+
+    def _starts(self, program: Program, start: Started) -> bool:
         if start.package.value not in (None, program.package):
             return False
         if start.plugin.value:
-            wanted = start.plugin.value.replace("/", "::")
-            return program.plugin == wanted or tail(program.plugin) == tail(wanted)
+            return bool(program.plugin) and self._is_plugin(program, start.plugin.value)
         executable = start.executable.value or ""
         if program.executable:
             return executable in (program.executable, program.executable.removesuffix(".py"))
@@ -152,8 +173,17 @@ class Join:
     def _node(self, program: Program, named: list[Use]) -> Node:
         own = [use for use in named if tail(use.fn.facts.owner) == tail(program.plugin)] if program.plugin else []
         in_main = [use for use in named if use.fn in program.roots]
+        # Of the classes that name nodes, those that are made first where the program begins; helpers' nodes come later.
+        made = [tail(name.partition("<")[0]) for root in program.roots for name, _, _ in made_in(root, self.code)]
+        ranks = {name: place for place, name in reversed(list(enumerate(made)))}
+
+        def rank(use: Use) -> tuple[int, bool]:
+            written = self.calls.argument(use, use.row.topic)
+            return ranks.get(tail(use.fn.facts.owner), len(ranks)), written is None or written.kind != "text"
+
+        others = sorted(named, key=rank) if program.kind in ("executable", "script") else []
         name = ""
-        for use in [*own, *in_main, *named]:
+        for use in [*own, *in_main, *others]:
             values = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
             name = next((value.text for value in values if value.text), "")
             if name and "{" not in name:
@@ -224,6 +254,7 @@ class Join:
             running = self.running()
         else:
             running, missing = self.started(launch)
+        running = list(self.with_loaded(running))
         endpoints: list[Endpoint] = []
         publishes: list[Publish] = []
         timers: list[Timer] = []
@@ -248,6 +279,8 @@ class Join:
             those = owners(site.use)
             if launch is not None and not those:
                 continue
+            if launch is not None:
+                site = self._site_of(site, those[0])
             lacking = self._missing(site)
             if not site.implied:
                 calls += 1
@@ -260,16 +293,16 @@ class Join:
                 node = _node_of(owner)
                 if node is not None:
                     used.add(node.id)
-                for value in self._names(site, owner):
-                    endpoints.append(self._endpoint(site, value, owner))
+                here = self._site_of(site, owner)
+                for value in here.names:
+                    endpoints.append(self._endpoint(here, value, owner))
         for statement in self.sites.statements:
             those = owners(statement.use)
             if launch is not None and not those:
                 continue
             calls += not statement.through
-            reason = statement.reason or next(
-                (site.names[0].reason for site in statement.sites if site.names[0].text is None), ""
-            )
+            sites = [self._site_of(site, those[0]) if launch is not None else site for site in statement.sites]
+            reason = statement.reason or next((s.names[0].reason for s in sites if s.names[0].text is None), "")
             if statement.through:
                 pass  # counted where it sends
             elif reason:
@@ -290,7 +323,7 @@ class Join:
                 callback = _callback(timer.callbacks)
                 timers.append(Timer(node.id if node else "", timer.period, callback, *_place(timer.use)))
         for use in self.calls.uses:
-            if use.row.does == "parameter":
+            if use.row.does == "parameter" and not self.sites.wraps(use.fn, "parameter"):
                 parameters.extend(self._parameters(use, owners(use)))
         nodes = [one.node for one in running if one.node.id in used or launch is not None] + [
             node for node in libraries.values() if node.id in used
@@ -347,12 +380,13 @@ class Join:
             return f"{site.role} callback", site.reason
         return None
 
-    def _names(self, site: Site, owner: Owner) -> tuple[Value, ...]:
-        """What a site's name may be for whoever runs it: parameters that a launch sets go over their defaults."""
+    def _site_of(self, site: Site, owner: Owner) -> Site:
+        """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or owner.values is self.values or site.implied:
-            return site.names
-        named = self.calls.argument(site.use, site.use.row.topic)
-        return tuple(owner.values.of(named, site.use.fn, site.use.call.line))
+            return site
+        use, values = site.use, owner.values
+        names = tuple(values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line))
+        return site._replace(names=names, type=site.type or self.sites.type_of(use, values))
 
     def _endpoint(self, site: Site, value: Value, owner: Owner) -> Endpoint:
         use = site.use
@@ -372,7 +406,9 @@ class Join:
         if value.text is None:
             return "", "unresolved", value.reason
         text = value.text
+        loaded = owner.loaded if isinstance(owner, Running) else None
         full = node.name if node and node.name else f"/{node.executable or tail(node.plugin)}" if node else "/node"
+        full = loaded.name if loaded is not None else full
         namespace, _, own = full.rpartition("/")
         framework = site.use.row.framework
         if framework == "moos":
@@ -383,8 +419,12 @@ class Join:
                 text = text.replace("{node}", full).replace("{ns}", namespace or "/")
                 if site.prefix and text[:1] not in ("/", "~"):
                     text = f"~{text}" if site.prefix == "~" else f"{site.prefix}/{text}"
-                name = ros1_name(text, full) if instance is None else instance.remapped(text, 1)
-                plain = ros1_name(text, full)
+                plain = name = ros1_name(text, full)
+                if loaded is not None:
+                    plain = name = loaded.remapped(text)
+                # What the nodelet's own remappings give is not remapped again.
+                if instance is not None and name == ros1_name(text, full):
+                    name = instance.remapped(name, 1)
             else:
                 if text.startswith("~") and not text.startswith("~/") and len(text) > 1:
                     text = f"~/{text[1:]}"
@@ -416,9 +456,10 @@ class Join:
         if not statement.sites:
             yield Publish(topic="", type=statement.type, reason=statement.reason, **common)
         for site in statement.sites:
-            for value in self._names(site, owner):
-                topic, _, reason = self.name(site, value, owner)
-                yield Publish(topic=topic, type=site.type, reason=reason, **common)
+            here = self._site_of(site, owner)
+            for value in here.names:
+                topic, _, reason = self.name(here, value, owner)
+                yield Publish(topic=topic, type=here.type, reason=reason, **common)
 
     def _parameters(self, use: Use, owners: list[Owner]) -> Iterator[ParameterUse]:
         values = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)

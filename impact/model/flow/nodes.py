@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from ...facts.flow import Expr
 from .calls import Use
 from .code import Cls, Code, Fn, made_in, tail
 from .sites import Sites
@@ -27,7 +28,8 @@ class Program(NamedTuple):
 class Built(NamedTuple):
     """What the build of one package tells. executables and libraries: target to its sources; components: class to
     executable or empty; scripts: name of an installed or executable Python file to its path, entry points with the
-    function behind a colon; links: target to the targets of the workspace that it links."""
+    function behind a colon; links: target to the targets of the workspace that it links. plugins: what
+    pluginlib calls a class to the class."""
 
     package: str
     executables: Mapping[str, tuple[str, ...]]
@@ -35,6 +37,7 @@ class Built(NamedTuple):
     components: Mapping[str, str]
     scripts: Mapping[str, str]
     links: Mapping[str, tuple[str, ...]]
+    plugins: Mapping[str, str] = {}
 
 
 class Reach:
@@ -100,6 +103,8 @@ class Reach:
             objects: list[Cls] = []
             for call in fn.facts.calls:
                 further.extend(code.targets(call.callee, fn))
+                for argument in call.arguments:
+                    further.extend(self._handed(argument, fn))
             for name, _, _ in made_in(fn, code):
                 cls = code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope)
                 if cls is not None:
@@ -112,6 +117,14 @@ class Reach:
                         objects.append(cls)
             known = self._edges[id(fn)] = (further, objects)
         return known
+
+    def _handed(self, value: Expr, fn: Fn) -> list[Fn]:
+        """Functions outside of classes that an argument hands on; methods are reached through their class."""
+        if value.kind == "bind" and value.parts:
+            value = value.parts[0]
+        if value.kind in ("function", "name") and "." not in value.text and tail(value.text) in self.code.by_tail:
+            return [one for one in self.code.targets(value.text, fn) if not one.facts.owner]
+        return []
 
 
 def _points(type_: str) -> bool:

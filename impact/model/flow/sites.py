@@ -9,13 +9,16 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
+from msgspec import structs
+
 from ...facts.flow import Expr
 from .calls import Calls, Use
 from .code import Code, Fn, Variable, around, tail
 from .graph import Role
-from .types import interface_of, parsed, split
+from .types import interface_of, interface_of_header, parsed, split
 from .values import Value, Values, beside
 
+_HANDLES = frozenset(("handle", "image_transport"))
 _ROLES: dict[str, Role] = {
     "publisher": "publisher",
     "subscriber": "subscriber",
@@ -63,6 +66,21 @@ class TimerSite(NamedTuple):
     callbacks: tuple[Fn, ...]
 
 
+def _words(value: Expr) -> Iterator[str]:
+    yield value.text
+    for part in value.parts:
+        yield from _words(part)
+
+
+def _place_in_row(value: Expr) -> tuple[Expr, int] | None:
+    """What is walked through, and the place in each of its rows, of `rows[each][1]`."""
+    if value.kind == "index" and len(value.parts) == 2 and value.parts[0].kind == "index":
+        walked, place = value.parts[0].parts[:1], value.parts[1]
+        if walked and place.kind == "number" and place.text.isdigit():
+            return walked[0], int(place.text)
+    return None
+
+
 def shown(value: Expr | None) -> str:
     """An expression for people, near to how it is written."""
     if value is None:
@@ -99,7 +117,10 @@ class Sites:
         found: list[Site] = []
         for use in self.calls.uses:
             if use.row.does in _ROLES and not self.wraps(use.fn):
-                found.extend(self._endpoints(use))
+                for one in self._rows(use):
+                    found.extend(self._endpoints(one))
+            elif use.row.does == "node":
+                found.extend(self._further(Site("publisher", use, (), "", "", "")))
         return found
 
     @property
@@ -107,9 +128,37 @@ class Sites:
         """Uses inside wrappers of the framework's own functions."""
         return [use for use in self.calls.uses if use.row.does in _ROLES and self.wraps(use.fn)]
 
-    def wraps(self, fn: Fn) -> bool:
-        """Whether a function stands for the framework's own of the same name: its callers are the sites."""
-        return any(row.does in _ROLES for row in self.calls.table.calls.get(tail(fn.name), ())) and not fn.is_lambda
+    def wraps(self, fn: Fn, does: str = "") -> bool:
+        """Whether a function stands for the framework's own of the same name: its callers are the sites. does: what the
+        framework's function does, any endpoint when left out."""
+        rows = self.calls.table.calls.get(tail(fn.name), ())
+        meant = any(row.does == does if does else row.does in _ROLES for row in rows)
+        return bool(fn.facts.parameters) and meant and not fn.is_lambda
+
+    def _rows(self, use: Use) -> Iterator[Use]:
+        """The use for each row of the list that its arguments walk through together, with what the row has for them:
+        `[Subscriber(topic, type) for topic, type in rows]`."""
+        bound: dict[str, tuple[Expr, int]] = {}
+        for argument in use.call.arguments:
+            if argument.kind == "name" and argument.text in use.fn.assigned:
+                each = max(
+                    (a for a in use.fn.assigned[argument.text] if a.line <= use.call.line),
+                    key=lambda a: a.line, default=None,
+                )  # fmt: skip
+                place = _place_in_row(each.value) if each is not None else None
+                if place is not None:
+                    bound[argument.text] = place
+        rows = self.values.rows(next(iter(bound.values()))[0], use.fn) if len(bound) > 1 else []
+        if not rows or len({walked for walked, _ in bound.values()}) > 1:
+            yield use
+            return
+        for row in rows:
+            if all(place < len(row.parts) for _, place in bound.values()):
+                arguments = tuple(
+                    row.parts[bound[a.text][1]] if a.kind == "name" and a.text in bound else a
+                    for a in use.call.arguments
+                )
+                yield use._replace(call=structs.replace(use.call, arguments=arguments))
 
     def _endpoints(self, use: Use) -> Iterator[Site]:
         calls, row = self.calls, use.row
@@ -127,11 +176,17 @@ class Sites:
             # https://docs.ros.org/en/api/image_transport: camera_info stands beside the image's topic.
             infos = tuple(v if v.text is None else v._replace(text=beside(v.text, "camera_info")) for v in names)
             yield site._replace(names=infos, type="sensor_msgs/CameraInfo", implied=True)
-        for also in row.also:
-            role = _ROLES[also.role]
-            yield site._replace(
-                role=role, names=(Value(also.topic),), type=also.type, callbacks=(), reason="", implied=True
-            )
+        yield from self._further(site)
+
+    @staticmethod
+    def _further(site: Site) -> Iterator[Site]:
+        """What the framework makes beside an endpoint or a node."""
+        words = {tail(word) for argument in site.use.call.arguments for word in _words(argument)}
+        for also in site.use.row.also:
+            if words.intersection(also.unless):
+                continue
+            role, names = _ROLES[also.role], (Value(also.topic),)
+            yield site._replace(role=role, names=names, type=also.type, callbacks=(), reason="", implied=True)
 
     def _variable(self, use: Use) -> Variable | None:
         kept = self.calls.kept_in(use)
@@ -152,9 +207,10 @@ class Sites:
                         return self.code.identity(call.callee.rpartition(".")[0], use.fn)
         return None
 
-    def type_of(self, use: Use) -> str:
-        """The interface an endpoint is of, as `package/Name`; `*` for any, empty when it is not known."""
-        code, row, fn = self.code, use.row, use.fn
+    def type_of(self, use: Use, values: Values | None = None) -> str:
+        """The interface an endpoint is of, as `package/Name`; `*` for any, empty when it is not known. values: what
+        expressions are worth where it runs."""
+        code, row, fn, values = self.code, use.row, use.fn, values or self.values
         for spot in row.type:
             text = ""
             if isinstance(spot, str) and spot.startswith("="):
@@ -182,7 +238,9 @@ class Sites:
                 if value is not None and value.kind in ("name", "call"):
                     text = value.text
                     if fn.source.facts.language == "python":
-                        text = self._python_type(value, fn)
+                        text = self._python_type(value, fn, values)
+                        if text == "*" or "/" in text:
+                            return text
             if text:
                 kind = code.meant_type(text, fn.source, fn.scope)
                 if tail(kind.name) in ("ShapeShifter", "AnyMsg", "SerializedMessage"):
@@ -210,13 +268,15 @@ class Sites:
         """A type's interface by `using namespace sensor_msgs` and `using namespace std_msgs::msg`."""
         if fn.source.facts.language != "cpp" or ("::" in name and not name.startswith("msg::")):
             return ""
+        found: list[str] = []
         for alias in self.code.aliases[fn.source.path].get("*", ()):
             known = interface_of(f"{alias.target}::{name}")
-            if known and (
-                alias.target.endswith(("::msg", "::srv", "::action")) or alias.target.endswith(("_msgs", "_srvs"))
-            ):
-                return known
-        return ""
+            if known and alias.target.endswith(("::msg", "::srv", "::action", "_msgs", "_srvs")):
+                found.append(known)
+        if len(found) > 1:
+            included = {interface_of_header(header) for header in fn.source.facts.includes}
+            found = [known for known in found if known in included] or found
+        return found[0] if found else ""
 
     def _in_scope(self, name: str, fn: Fn) -> str:
         """A type's interface by the namespaces around the function: `Pose` inside `namespace turtlesim`."""
@@ -232,7 +292,7 @@ class Sites:
             scope = scope.rpartition("::")[0]
         return ""
 
-    def _python_type(self, value: Expr, fn: Fn) -> str:
+    def _python_type(self, value: Expr, fn: Fn, values: Values) -> str:
         meant = self.code.meant(value.text, fn.source)
         if interface_of(meant):
             return meant
@@ -240,9 +300,12 @@ class Sites:
             for alias in self.code.aliases[fn.source.path].get("*", ()):
                 if alias.target.endswith((".msg", ".srv", ".action")):
                     return f"{alias.target}.{value.text}"
-        for one in self.values.of(value, fn):
+        for one in values.of(value, fn):
             if one.text and interface_of(one.text):
                 return one.text
+        by_name = self._class_by_name(value, fn, values)
+        if by_name:
+            return by_name
         # `import std_msgs.msg` leaves the name as it is; a variable may hold the class.
         variable = self.code.identity(value.text, fn)
         for writer, each in self.code.writes.get(variable, ()):
@@ -251,6 +314,21 @@ class Sites:
                 if interface_of(found):
                     return found
         return meant
+
+    def _class_by_name(self, value: Expr, fn: Fn, values: Values, depth: int = 0) -> str:
+        """The type of a class that is looked up by its name, `*` for that of whatever a topic has."""
+        if value.kind == "index" and value.parts:
+            value = value.parts[0]
+        if value.kind == "call" and tail(value.text) in ("get_message_class", "get_service_class") and value.parts:
+            return next((one.text for one in values.of(value.parts[0], fn) if one.text and "/" in one.text), "")
+        if value.kind == "call" and tail(value.text) == "get_topic_class":
+            return "*"
+        if value.kind == "name" and depth < 4:
+            for writer, each in self.code.writes.get(self.code.identity(value.text, fn), ()):
+                found = self._class_by_name(each.value, writer, values, depth + 1)
+                if found:
+                    return found
+        return ""
 
     def _parameter_type(self, use: Use) -> str:
         """The message type that a callback's parameter tells."""
@@ -469,7 +547,12 @@ class Sites:
             return self.handle(handle, use.fn) if self.calls.is_node(handle, use.fn) else ""
         receiver = self.calls.receiver_of(use)
         if row.framework in ("roscpp", "image_transport") and receiver:
-            return self.handle(Expr("call" if receiver.endswith("()") else "name", receiver.removesuffix("()")), use.fn)
+            if not receiver.endswith("()"):
+                return self.handle(Expr("name", receiver), use.fn)
+            made = receiver.removesuffix("()")
+            near = [call for call in use.fn.facts.calls if call.callee == made]
+            near.sort(key=lambda call: abs(call.line - use.call.line))
+            return self.handle(Expr("call", made, near[0].arguments if near else ()), use.fn)
         return ""
 
     def handle(self, value: Expr, fn: Fn, depth: int = 0) -> str:
@@ -480,6 +563,8 @@ class Sites:
         if value.kind == "call":
             if "PrivateNodeHandle" in last or last in ("getPrivateNodeHandle", "private_node_handle"):
                 return "~"
+            if self.calls.kinds_of(self.code.meant_type(value.text, fn.source, fn.scope), fn) & _HANDLES:
+                return self._made_handle(value.parts, fn, depth)
             for target in self.code.targets(value.text, fn):
                 for each in target.facts.assignments:
                     if each.operator == "return":

@@ -95,6 +95,21 @@ def split(text: str) -> list[str]:
     return [*found, last] if last or found else found
 
 
+_HEADER = re.compile(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)\.h(?:pp)?\Z")
+
+
+def interface_of_header(header: str) -> str:
+    """`package/Name` of the interface that a generated header is of: `sensor_msgs/Image.h`,
+    `sensor_msgs/msg/camera_info.hpp`; empty for a path of another shape."""
+    found = _HEADER.match(header)
+    if found is None:
+        return ""
+    name = found[2]
+    if name.islower():
+        name = "".join(part.capitalize() for part in name.split("_"))
+    return f"{found[1]}/{name}"
+
+
 _SUFFIXES = re.compile(r"(?:_<.*>|<.*>)\Z")
 _KINDS = {"msg": "", "srv": "", "action": ""}
 

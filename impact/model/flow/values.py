@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import product
 from typing import NamedTuple
 
-from ...facts.flow import Expr
+from ...facts.flow import Call, Expr
+from .arguments import CommandLine
 from .calls import Calls, Use
 from .code import Fn, Variable, parameter_of, parts_of, tail
 from .graph import How
@@ -24,6 +25,11 @@ _SAME = frozenset(
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "resolve", "string", "str", "String", "move", "forward",
                        "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name", "resolve_service_name",
                        "resolve_topic_or_service_name"))  # fmt: skip
+# What is least certain of a text that is put together, first.
+_LEAST: tuple[How, ...] = ("default", "launch", "given")
+_PUT = frozenset(("push_back", "emplace_back", "append"))
+# Functions that give a topic's type, and its name beside it.
+_TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
 _NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
 _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
@@ -40,15 +46,30 @@ class Value(NamedTuple):
 class Values:
     """Evaluates expressions in the functions of a body of code."""
 
-    def __init__(self, calls: Calls, settings: Mapping[str, str] | None = None):
-        """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`)."""
+    def __init__(
+        self,
+        calls: Calls,
+        settings: Mapping[str, str] | None = None,
+        arguments: Sequence[str] | None = None,
+        way: Mapping[int, Call] | None = None,
+    ):
+        """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`).
+        arguments: of the command line, without the program's name; None where they are not known. way: the only call
+        through which a function is reached, by the function's id()."""
         self.calls, self.code = calls, calls.code
-        self.settings = settings or {}
+        self.settings, self.arguments, self.way = settings or {}, arguments, way or {}
 
-    def under(self, settings: Mapping[str, str]) -> Values:
-        """The same code where a launch sets parameters."""
-        other = Values(self.calls, settings)
-        for name in ("filled", "declared", "bases_made"):
+    def under(self, settings: Mapping[str, str], arguments: Sequence[str] | None = None) -> Values:
+        """The same code where a launch sets parameters and gives arguments."""
+        return self._other(settings, arguments, self.way)
+
+    def called(self, way: Mapping[int, Call]) -> Values:
+        """The same code as far as it is reached through some calls, by the id() of the function called."""
+        return self._other(self.settings, self.arguments, way) if way else self
+
+    def _other(self, *given) -> Values:
+        other = Values(self.calls, *given)
+        for name in ("filled", "declared", "bases_made", "command_line"):
             other.__dict__[name] = getattr(self, name)
         return other
 
@@ -82,7 +103,7 @@ class Values:
         elif kind == "make" and not value.parts:
             return  # made empty, and written later
         elif kind == "index" and value.parts:
-            yield from self._elements(value.parts[0], fn, line, seen)
+            yield from self._element(value, fn, line, seen)
         else:
             what = value.text or kind
             yield Value(None, "unresolved", f"`{what[:60]}` is not followed")
@@ -97,9 +118,38 @@ class Values:
                 yield unknown
                 continue
             hows = {one.how for one in row}
-            how: How = "default" if "default" in hows else "launch" if "launch" in hows else "literal"
+            how: How = next((one for one in _LEAST if one in hows), "literal")
             named = next((one.parameter for one in row if one.parameter), "")
             yield Value("".join(one.text or "" for one in row), how, "", named)
+
+    @cached_property
+    def command_line(self) -> CommandLine:
+        """What of the code is the command line."""
+        return CommandLine(self.code)
+
+    def _element(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        container, index = value.parts[0], value.parts[-1]
+        places = self.command_line.places(container, index, fn) if len(value.parts) == 2 else None
+        if places is not None:
+            if self.arguments is None:
+                yield Value(None, "unresolved", "an argument of the command line")
+            else:
+                for place in range(max(places.start, 1), min(places.stop, len(self.arguments) + 1)):
+                    yield Value(self.arguments[place - 1], "given")
+        elif container.kind == "call" and tail(container.text) in _TELLS_TOPIC and container.parts:
+            yield from self._of(container.parts[0], fn, line, seen)
+        else:
+            yield from self._elements(container, fn, line, seen)
+
+    def rows(self, value: Expr, fn: Fn, depth: int = 0) -> list[Expr]:
+        """The lists that a list of lists holds where it is written; empty where it is none, or not written once."""
+        if value.kind == "list":
+            return list(value.parts) if value.parts and all(part.kind == "list" for part in value.parts) else []
+        if value.kind == "name" and depth < 4:
+            written = self.code.writes.get(self.code.identity(value.text, fn), ())
+            if len(written) == 1:
+                return self.rows(written[0][1].value, written[0][0], depth + 1)
+        return []
 
     def _elements(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
         if value.kind == "list":
@@ -112,6 +162,12 @@ class Values:
                 if each.value.kind == "list":
                     yield from self._elements(each.value, writer, each.line, (*seen, variable))
                     return
+            pushed = [call for call in fn.facts.calls if call.callee in (f"{value.text}.{put}" for put in _PUT)]
+            if pushed and variable not in seen:
+                for call in pushed:
+                    for argument in call.arguments[:1]:
+                        yield from self._of(argument, fn, call.line, (*seen, variable))
+                return
         yield Value(None, "unresolved", f"an element of `{value.text or value.kind}`")
 
     def _name(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
@@ -124,6 +180,9 @@ class Values:
             return
         variable = self.code.identity(path, fn)
         if variable in seen:
+            return
+        for text, how in self.command_line.parsed(path, fn, self.arguments) if "." in path else ():
+            yield Value(text, "given" if how == "given" else "default")
             return
         found = list(self.of_variable(variable, fn, (*seen, variable)))
         if found:
@@ -143,6 +202,8 @@ class Values:
         elif variable.kind == "global":
             yield from self._constant(variable, fn, seen)
         for writer, each in self.code.writes.get(variable, ()):
+            if self.arguments is not None and self.command_line.excluded(writer, each.guard, len(self.arguments) + 1):
+                continue
             if each.operator == "=":
                 if variable.kind == "member" and each.value.kind == "list" and len(each.value.parts) > 1:
                     continue
@@ -203,7 +264,10 @@ class Values:
     def _passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[Value]:
         """What callers pass for a parameter."""
         number = 0
+        only = self.way.get(id(fn))
         for caller, call in self.code.callers.get(id(fn), ()):
+            if only is not None and call is not only:
+                continue
             argument = _argument(call.arguments, place, name)
             if argument is not None:
                 number += 1
@@ -237,6 +301,11 @@ class Values:
                 if call.callee == "super().__init__":
                     for base in self.code.bases(owner)[1:2]:
                         found.setdefault(base.name, []).append((fn, call.arguments, call.line))
+            for each in fn.facts.assignments:
+                made = self.code.base_made(fn, each)
+                cls = self.code.class_of(made[0], fn.source, fn.scope) if made is not None else None
+                if made is not None and cls is not None:
+                    found.setdefault(cls.name, []).append((fn, made[1], each.line))
         return found
 
     def _call(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:

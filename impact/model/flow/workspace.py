@@ -20,7 +20,9 @@ from .nodes import Built
 from .started import launched
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
-_BUILD = frozenset(("manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "msg", "srv", "action"))
+_BUILD = frozenset(
+    ("manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action")
+)
 _CODE = frozenset(FLOW.values())
 
 Progress = Callable[[int, int], None]
@@ -72,15 +74,25 @@ def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[Bu
         if target.kind in _LIBRARIES
     }
     links = {
-        target.name: tuple(link.item for link in target.links if link.how == "link" and link.item in libraries)
+        name: tuple(link.item for link in target.links if link.how == "link" and link.item in libraries)
         for package in workspace
         for target in package.build.targets
+        for name in {target.name, target.output_name or target.name}
     }
     for package in workspace:
         targets = package.build.targets
-        executables = {target.name: target.sources for target in targets if target.kind == "executable"}
+        executables = {
+            target.output_name or target.name: target.sources for target in targets if target.kind == "executable"
+        }
         components = {exported.item: "" for exported in package.build.exports if exported.how == "component"}
-        yield Built(package.name, executables, libraries, components, _scripts(package, files), links)
+        yield Built(
+            package.name, executables, libraries, components, _scripts(package, files), links, _plugins(package)
+        )
+
+
+def _plugins(package: Package) -> dict[str, str]:
+    """Classes of a package by the names that its plugin descriptions give them."""
+    return {plugin.name: plugin.type for _, plugin in package.digest.plugins if plugin.name and plugin.type}
 
 
 def _scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, str]:

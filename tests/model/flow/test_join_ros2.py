@@ -9,7 +9,7 @@ COMPONENT = """
     using Twist = geometry_msgs::msg::Twist;
     class Driver : public rclcpp::Node {
      public:
-      explicit Driver(const rclcpp::NodeOptions& options) : rclcpp::Node("driver", "base", options) {
+      explicit Driver(const rclcpp::NodeOptions& options) : rclcpp::Node("engine", options) {
         topic_ = this->declare_parameter("topic", "cmd_vel");
         pub_ = create_publisher<Twist>(topic_, rclcpp::QoS(1).transient_local());
         sub_ = this->create_subscription<sensor_msgs::msg::LaserScan>(
@@ -38,9 +38,9 @@ COMPONENT = """
 def test_a_component():
     found = graph({"demo/src/driver.cpp": COMPONENT})
     (node,) = found.nodes
-    assert (node.kind, node.plugin, node.name) == ("component", "demo::Driver", "/driver")
+    assert (node.kind, node.plugin, node.name) == ("component", "demo::Driver", "/engine")
     assert ends(found, "publisher") == {(node.id, "/cmd_vel", "geometry_msgs/Twist")}
-    assert ends(found, "subscriber") == {(node.id, "/driver/scan", "sensor_msgs/LaserScan")}
+    assert ends(found, "subscriber") == {(node.id, "/engine/scan", "sensor_msgs/LaserScan")}
     assert ends(found, "server") == {(node.id, "/stop", "std_srvs/Trigger")}
     assert ends(found, "client") == {(node.id, "/reset", "std_srvs/Empty")}
     by_role = {endpoint.role: endpoint for endpoint in found.endpoints}
@@ -146,7 +146,8 @@ def test_python_of_ros_1():
     assert ends(found, "publisher") == {(node, "/out", "std_msgs/String")}
     assert ends(found, "subscriber") == {(node, "/in", "std_msgs/String")}
     assert ends(found, "server") == {(node, "/relay/reset", "std_srvs/Empty")}
-    assert next(e for e in found.endpoints if e.role == "publisher").qos.durability == "transient_local"
+    publisher = next(e for e in found.endpoints if e.role == "publisher" and not e.implied)
+    assert publisher.qos.durability == "transient_local"
     (publish,) = found.publishes
     assert [(g.kind, g.text) for g in publish.guards] == [("if", "message.data == 'go'")] or [
         (g.kind, g.text) for g in publish.guards
@@ -203,3 +204,20 @@ def test_a_class_of_the_same_name_in_another_package_is_another_class():
         ("one/one::Node", "/one_topic", "std_msgs/Bool"),
         ("two/two::Node", "/two_topic", "std_msgs/Bool"),
     }
+
+
+def test_actions():
+    found = graph({"demo/deliver.cpp": """
+        class Deliver : public rclcpp::Node {
+         public:
+          Deliver() : Node("deliver") {
+            server_ = rclcpp_action::create_server<nav2_msgs::action::NavigateToPose>(
+              this, "deliver", [this](auto, auto) { return ok(); }, [this](auto) { return ok(); }, [this](auto) {});
+            client_ = rclcpp_action::create_client<nav2_msgs::action::Wait>(this, "wait");
+          }
+        };
+        int main(int c, char** v) { rclcpp::spin(std::make_shared<Deliver>()); }
+    """})  # fmt: skip
+    assert ends(found, "action server") == {("demo/deliver", "/deliver", "nav2_msgs/NavigateToPose")}
+    assert ends(found, "action client") == {("demo/deliver", "/wait", "nav2_msgs/Wait")}
+    assert found.coverage.resolved == found.coverage.calls
