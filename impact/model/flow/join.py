@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cached_property
 from typing import NamedTuple
 
 from msgspec import structs
@@ -89,6 +90,10 @@ class Join:
 
     def running(self) -> list[Running]:
         """All programs that talk, with their nodes, sorted."""
+        return list(self._running)
+
+    @cached_property
+    def _running(self) -> list[Running]:
         found: list[Running] = []
         names = {id(use): use for use in self.calls.uses if use.row.does == "node"}
         for program in programs_of.programs(self.code, self.built, self._kinds):
@@ -462,6 +467,8 @@ class Join:
                 yield Publish(topic=topic, type=here.type, reason=reason, **common)
 
     def _parameters(self, use: Use, owners: list[Owner]) -> Iterator[ParameterUse]:
+        if not owners:
+            return
         values = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
         default = shown(self.calls.argument(use, use.row.default)) if use.row.default else ""
         kind = "declared" if use.row.declares else "read"
