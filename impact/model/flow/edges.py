@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import cached_property
+from functools import cache, cached_property
 from typing import NamedTuple
 
+from ...targets.fields import default_fields
 from ..workspace import Workspace
 from .graph import Endpoint, Graph, Node
 from .launches import Launch
@@ -87,7 +88,9 @@ class Flow:
         """The type of an endpoint, empty where it is not known to be a message's (or a service's, or an action's)."""
         package, _, name = endpoint.type.partition("/")
         own = self.interfaces.get(package)
-        known = name in own if own is not None else package.endswith(_INTERFACES)
+        if own is None:
+            own = _defined(package, self.graph.ros)
+        known = name in own if own else package.endswith(_INTERFACES)
         return endpoint.type if name and known else ""
 
     def others(self, endpoint: Endpoint) -> list[Endpoint]:
@@ -180,6 +183,13 @@ def _left_to_each_other(flow: Flow, pair: Pair) -> bool:
 
 def _fit(one: Endpoint, other: Endpoint) -> bool:
     return one.type == other.type or not one.type or not other.type or "*" in (one.type, other.type)
+
+
+@cache
+def _defined(package: str, ros: int) -> frozenset[str]:
+    """The interfaces that a released package ever had, none when it is not known."""
+    history = default_fields().history(package, ros)
+    return frozenset(name.rpartition("/")[2] for name in history.interfaces) if history is not None else frozenset()
 
 
 def _kind(role: str) -> str:

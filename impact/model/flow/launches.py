@@ -42,8 +42,8 @@ class Given(msgspec.Struct, frozen=True):
 
 class Start(msgspec.Struct, frozen=True):
     """A node as a launch file starts it. node: its id in the graph of that launch. names: the full names that its code
-    uses, before remapping; parameters: those it declares or reads. hidden, hidden_parameters: why these may not be all
-    of them; empty where they are. uncertain: why it may have another name, or may not be started at all.
+    uses, before remapping; parameters: those it declares or reads. hidden, hidden_parameters: why these are not all
+    known, and so left empty. uncertain: why it may have another name, or may not be started at all.
     """
 
     node: str
@@ -166,12 +166,12 @@ def _start(
 ) -> Start:  # fmt: skip
     instance = one.instance
     assert instance is not None
-    node = one.node.id
-    start = instance.started
-    names = sorted({name for name in _names(join, one, instance) if name})
+    renamed = tuple(_renamed(sources, instance, join.ros))
+    given = tuple(_given(sources, launch, instance.started, instance))
+    names = {name for name in _names(join, one, instance) if name} if renamed and not sight.names else ()
+    asked = _parameters(join, one) if (given or renamed) and not sight.parameters else ()
     return Start(
-        node, program, one.program.package, tuple(names), tuple(sorted(_parameters(join, one))),
-        tuple(_renamed(sources, instance, join.ros)), tuple(_given(sources, launch, start, instance)),
+        one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
         sight.names, sight.parameters, instance.uncertain,
     )  # fmt: skip
 

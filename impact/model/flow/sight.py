@@ -19,14 +19,15 @@ from .join import Join, Running
 
 _LOADERS = frozenset(
     ("createInstance", "createSharedInstance", "createUniqueInstance", "createUnmanagedInstance", "loadLibraryForClass",
-     "load_component", "import_module", "__import__", "eval", "exec")
+     "load_component", "registerFromPlugin", "import_module", "__import__", "eval", "exec")
 )  # fmt: skip
 # Functions that take a node and name nothing with it.
 _RUNS = frozenset(
     ("spin", "spin_some", "spin_once", "spin_until_future_complete", "add_node", "remove_node", "bind", "move",
      "shared_from_this", "get_node_base_interface", "__init__", "partial", "callback_group", "ref", "cref",
      "isinstance", "reset", "make_shared", "make_unique", "push_back", "emplace_back", "append", "static_pointer_cast",
-     "dynamic_pointer_cast", "hasattr", "print", "str", "super", "async", "thread", "get")
+     "dynamic_pointer_cast", "hasattr", "print", "str", "super", "async", "thread", "get",
+     "create_timer", "create_wall_timer", "Bond")
 )  # fmt: skip
 # Functions that ask for parameters whose names the code does not say one by one.
 _WHOLE = frozenset(
@@ -42,18 +43,21 @@ _ASKING = frozenset(
 # Packages, and folders of headers of libraries, that name nothing in ROS's graph, or only what the table of frameworks
 # knows.
 _PLAIN = frozenset(
-    ("ros", "rclcpp", "rclcpp_action", "rclcpp_lifecycle", "rclcpp_components", "rclpy", "rospy", "roslib", "rosgraph",
-     "rcutils", "rcpputils", "rcl", "rmw", "rcl_interfaces", "rosidl_runtime_cpp", "builtin_interfaces",
-     "unique_identifier_msgs", "tf2", "tf2_ros", "tf", "tf2_eigen", "tf2_kdl", "tf2_geometry_msgs", "tf2_sensor_msgs",
-     "tf_transformations", "tf_conversions", "eigen_conversions", "message_filters", "actionlib", "nodelet",
-     "image_transport", "cv_bridge", "image_geometry", "pcl_conversions", "laser_geometry", "angles", "std_srvs",
-     "diagnostic_updater", "dynamic_reconfigure", "class_loader", "lifecycle_msgs", "ament_index_python",
-     "ament_index_cpp", "rospkg", "urdf", "urdf_parser_py", "kdl_parser", "kdl", "sensor_msgs_py", "bondcpp",
-     "ros2_numpy", "launch", "launch_ros", "XmlRpcValue.h", "xmlrpcpp", "console_bridge", "sophus", "Eigen", "eigen3",
-     "boost", "opencv2", "opencv", "pcl", "yaml-cpp", "yaml", "numpy", "cv2", "scipy", "matplotlib", "serial", "sys",
-     "GL", "std", "experimental", "fmt", "nlohmann", "tinyxml2", "geometry", "octomap", "ceres", "g2o", "gtest",
-     "PIL", "requests", "psutil", "usb", "smbus", "transforms3d", "tty", "six", "pandas", "zmq", "linux", "netinet",
-     "arpa", "bits", "libudev.h", "GeographicLib")
+    ("ros", "rclcpp", "rclcpp_action", "rclcpp_lifecycle", "rclcpp_components", "rclpy", "rospy", "roslib",
+     "rosgraph", "rcutils", "rcpputils", "rcl", "rmw", "rcl_interfaces", "rosidl_runtime_cpp", "builtin_interfaces",
+     "unique_identifier_msgs", "tf2", "tf2_ros", "tf", "tf2_eigen", "tf2_kdl", "tf2_geometry_msgs",
+     "tf2_sensor_msgs", "tf_transformations", "tf_conversions", "eigen_conversions", "message_filters", "actionlib",
+     "nodelet", "image_transport", "cv_bridge", "image_geometry", "pcl_conversions", "laser_geometry", "angles",
+     "std_srvs", "diagnostic_updater", "dynamic_reconfigure", "class_loader", "pluginlib", "bond", "uuid",
+     "lifecycle_msgs", "ament_index_python", "ament_index_cpp", "rospkg", "urdf", "urdf_parser_py", "kdl_parser",
+     "kdl", "sensor_msgs_py", "bondcpp", "ros2_numpy", "launch", "launch_ros", "XmlRpcValue.h", "xmlrpcpp",
+     "console_bridge", "sophus", "Eigen", "eigen3", "boost", "opencv2", "opencv", "pcl", "yaml-cpp", "yaml",
+     "numpy", "cv2", "scipy", "matplotlib", "serial", "sys", "GL", "std", "experimental", "fmt", "nlohmann",
+     "tinyxml2", "geometry", "octomap", "ceres", "g2o", "gtest", "PIL", "requests", "psutil", "usb", "smbus",
+     "transforms3d", "tty", "six", "pandas", "zmq", "linux", "netinet", "arpa", "bits", "mach", "GeographicLib",
+     "behaviortree_cpp", "behaviortree_cpp_v3", "ompl", "rcl_action", "PyKDL", "rosbag", "genpy", "tf2_py",
+     "LinearMath", "ecl", "dynamixel_sdk", "rtree", "geopandas", "colorama", "termcolor", "tqdm", "pkg_resources",
+     "StringIO", "cStringIO", "cPickle", "urlparse", "xmlrpclib", "commands", "rttest")
 )  # fmt: skip
 _INTERFACES = ("_msgs", "_interfaces", "_srvs", "_actions")
 _BASES = frozenset(("object", "Node", "LifecycleNode", "Nodelet", "enable_shared_from_this", "Thread", "Exception",
@@ -115,10 +119,11 @@ class Seeing:
         code, table = self.join.code, self.join.calls.table
         for name in sorted(one.classes):
             for cls in code.classes.get(tail(name), ()):
+                followed = {tail(base.name) for base in code.bases(cls)}
                 for base in code.base_names(cls) if cls.name == name else ():
-                    known = tail(base) in _BASES or tail(base) in code.classes or table.kind_of(base)
+                    known = tail(base) in _BASES or tail(base) in followed or table.kind_of(base)
                     if base and not known and parts_of(base)[0] not in _OWN:
-                        yield f"`{base}` is outside of the workspace"
+                        yield f"`{base}` is not followed"
 
     def _given(self, functions: list[Fn]) -> Iterator[str]:
         """Functions and objects of others that are given the node, and what is loaded by name."""
@@ -127,6 +132,8 @@ class Seeing:
             python = fn.source.facts.language == "python"
             for call in fn.facts.calls:
                 last = tail(call.callee)
+                if python and self._is_lost(call.callee, fn):
+                    yield f"`{call.callee}` is not followed"
                 if last in _LOADERS:
                     yield f"`{last}` loads code by name"
                     continue
@@ -148,6 +155,15 @@ class Seeing:
                     own = parts_of(kind or name)[0] in _OWN or tail(name) in _RUNS
                     if known is None and not own and not calls.table.objects_of(kind or name, python):
                         yield f"`{tail(kind or name)}` is given the node"
+
+    def _is_lost(self, callee: str, fn: Fn) -> bool:
+        """Whether a call in Python goes to a module of the workspace that has no such function or class there."""
+        code = self.join.code
+        meant = code.meant(callee, fn.source)
+        head, *inner = parts_of(meant)
+        if head not in self.workspace.modules or not inner or head in self.workspace.interface_names:
+            return False
+        return not code.targets(callee, fn) and code.class_of(meant, fn.source, fn.scope) is None
 
     @cached_property
     def _namespaces(self) -> set[str]:
