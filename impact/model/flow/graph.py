@@ -12,7 +12,8 @@ import msgspec
 Role = Literal["publisher", "subscriber", "server", "client", "action server", "action client"]
 How = Literal["literal", "default", "launch", "given", "unresolved"]
 """How a name became known: written so in the source; the default of a parameter, which whoever starts the node may
-change; set by the launch file; fixed by the framework (`/tf`, `/rosout`); or not at all."""
+change; set by the launch file; fixed by the framework (`/tf`, `/rosout`), or given on the command line;
+or not at all."""
 
 
 class Node(msgspec.Struct, frozen=True):

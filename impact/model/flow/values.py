@@ -26,7 +26,7 @@ _OF_FIRST = frozenset(("resolveName", "resolve_name", "resolve", "string", "str"
                        "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name", "resolve_service_name",
                        "resolve_topic_or_service_name"))  # fmt: skip
 # What is least certain of a text that is put together, first.
-_LEAST: tuple[How, ...] = ("default", "launch", "given")
+_LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
 _PUT = frozenset(("push_back", "emplace_back", "append"))
 # Functions that give a topic's type, and its name beside it.
 _TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
@@ -118,7 +118,7 @@ class Values:
                 yield unknown
                 continue
             hows = {one.how for one in row}
-            how: How = next((one for one in _LEAST if one in hows), "literal")
+            how: How = min(hows, key=_LEAST.index, default="literal")
             named = next((one.parameter for one in row if one.parameter), "")
             yield Value("".join(one.text or "" for one in row), how, "", named)
 
