@@ -131,7 +131,7 @@ class Join:
                 if start.kind != "container":
                     missing.append(Unresolved("started node", reason, *at, what))
                 continue
-            one = fitting[0]
+            one = next((each for each in fitting if each.program.roots), fitting[0])
             instance = instances(launch, one.node.name.rpartition("/")[2], start)
             node = structs.replace(
                 one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
