@@ -11,6 +11,8 @@ setup(
     | {
         "rosimpact.impact.targets": ["data/*"],
         "rosimpact.impact.report": ["*.html", "*.json"],
+        "rosimpact.impact.model.flow": ["*.toml"],
+        "rosimpact.impact.flow.drawing": ["assets/*"],
         "rosimpact.corpus": ["py.typed", "labels.jsonl", "GUIDE.md"],
         "rosimpact.classifier": ["py.typed", "data/*"],
     },

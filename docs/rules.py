@@ -9,8 +9,10 @@ from rosimpact.impact.rules.rule import Rule, all_rules
 FAMILIES = {
     "api": "What other packages and libraries offer, and used to offer.",
     "general": "The run itself.",
+    "graph": "Topics, services, actions and parameters: who uses them, and what meets nobody.",
     "interfaces": "Messages, services and actions compared with a base; they speak with `--base` alone.",
     "packages": "What packages declare, find, build, install and export.",
+    "qos": "Quality of service: publishers and subscribers that refuse each other.",
     "sources": "What source files include.",
     "versions": "Versions that are asked for, against those that a target has.",
 }

@@ -1,7 +1,9 @@
 """Where rosimpact keeps what it can make again."""
 
+import hashlib
 import os
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 CACHE_VARIABLE = "ROSIMPACT_CACHE"
@@ -15,3 +17,19 @@ def cache_folder(environment: Mapping[str, str] = os.environ) -> Path:
     import platformdirs
 
     return Path(platformdirs.user_cache_dir("rosimpact", appauthor=False))
+
+
+@cache
+def code_stamp() -> str:
+    """Changes whenever a file of the tool does: sizes and times of its modules."""
+    root = Path(__file__).parent
+    stamp = hashlib.sha1()
+    for folder, folders, files in os.walk(root):
+        folders[:] = sorted(name for name in folders if name not in ("__pycache__", "data"))
+        for name in sorted(files):
+            if name.endswith(".py"):
+                status = os.stat(os.path.join(folder, name))
+                stamp.update(
+                    f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape")
+                )
+    return stamp.hexdigest()

@@ -43,6 +43,13 @@ def _print_schema(value: bool) -> None:
         raise typer.Exit(run.schema())
 
 
+def _print_graph_schema(value: bool) -> None:
+    if value:
+        from . import run
+
+        raise typer.Exit(run.graph_schema())
+
+
 @app.command()
 def check(
     path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
@@ -127,6 +134,77 @@ def why(
     from . import run
 
     raise typer.Exit(run.why(name, path, tuple(target or ()), format))
+
+
+@app.command()
+def graph(
+    path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
+    launch: Annotated[str, typer.Option(help="Only what this launch file starts, under the names it gives.")] = "",
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="An argument of the launch file, NAME:=VALUE. May be repeated.")
+    ] = None,
+    node: Annotated[
+        list[str] | None, typer.Option(help="Only this node and what it talks to; `*` stands for any text.")
+    ] = None,
+    topic: Annotated[
+        list[str] | None, typer.Option(help="Only this topic, service or action, and who uses it.")
+    ] = None,
+    package: Annotated[list[str] | None, typer.Option(help="Only nodes of this package.")] = None,
+    around: Annotated[str, typer.Option(help="Only what is near this node or topic.")] = "",
+    hops: Annotated[int, typer.Option(min=1, help="How near: steps from node to node.")] = 2,
+    rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
+    base: Annotated[
+        list[str] | None, typer.Option(help="Mark what is new, gone and changed against this revision, as for check.")
+    ] = None,
+    format: Annotated[
+        str, typer.Option("--format", "-f", help="One of text, json, graphml, dot, mermaid, html.")
+    ] = "text",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the graph to this file.")] = None,
+    all: Annotated[bool, typer.Option("--all", help="Show what is hidden, and all that was not resolved.")] = False,
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema", callback=_print_graph_schema, is_eager=True, help="Print the JSON schema of --format json."
+        ),
+    ] = False,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+) -> None:
+    """Show who talks to whom: nodes, topics, services and actions, without building or running anything."""
+    from . import run
+
+    raise typer.Exit(
+        run.graph(
+            path, launch=launch, arguments=tuple(set_ or ()), nodes=_names(node), topics=_names(topic),
+            packages=_names(package), around=around, hops=hops, rev=rev, base=tuple(base or ()), format=format,
+            output=output, everything=all, jobs=jobs, quiet=quiet,
+        )
+    )  # fmt: skip
+
+
+@app.command()
+def logic(
+    repository: Annotated[Path, typer.Argument(help="Git repository, bare or not, or a folder in one.")] = Path("."),
+    range: Annotated[str, typer.Option(help="Commits A..B, or all up to B; all of HEAD's when left out.")] = "",
+    commits: Annotated[int | None, typer.Option(min=1, help="Only the newest so many of them.")] = None,
+    since: Annotated[str, typer.Option(help="Only those since this day, 2024-03-01.")] = "",
+    package: Annotated[list[str] | None, typer.Option(help="Only this package. May be repeated.")] = None,
+    topic: Annotated[list[str] | None, typer.Option(help="Only this topic. May be repeated.")] = None,
+    all: Annotated[bool, typer.Option("--all", help="Also list conditions that were merely reworded.")] = False,
+    format: Annotated[str, typer.Option("--format", "-f", help="text, json or html (a timeline).")] = "text",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to work with.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+) -> None:
+    """Say at which commits the logic of publishing changed: which condition or trigger, how, and whom it reaches."""
+    from . import run
+
+    raise typer.Exit(
+        run.logic(
+            repository, range=range, number=commits, since=since, packages=_names(package), topics=_names(topic),
+            everything=all, format=format, output=output, jobs=jobs, quiet=quiet,
+        )
+    )  # fmt: skip
 
 
 @app.command()

@@ -106,10 +106,16 @@ class Gathered:
 
 
 def gather(
-    tree: Tree, store: Store, *, jobs: int | None = None, progress: Callable[[int, int], None] | None = None
+    tree: Tree,
+    store: Store,
+    *,
+    jobs: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    kind_of: Callable[[str], str | None] = kinds.kind_of,
 ) -> Gathered:
     """Finds or makes the facts of every file whose kind is known.
 
+    kind_of: the kind of facts wanted of a path, None for none; by its name when left out.
     jobs: processes to use, all available cores when None. progress: called with (done, total) bytes of the files whose
     facts are not known from an earlier run. KeyboardInterrupt passes through; what was parsed before it stays stored.
     """
@@ -124,7 +130,7 @@ def gather(
 
     unread: list[tuple[int, str, str]] = []
     known: dict[bytes, list[tuple[int, str, str]]] = {}
-    kind_of, known_id = kinds.kind_of, tree.known_id
+    known_id = tree.known_id
     for entry in entries:
         path, size = entry.path, entry.size
         kind = kind_of(path)

@@ -33,7 +33,7 @@ def hits_of(
     found stands. jobs: processes to use, all available cores when None.
     """
     every = list(rules)
-    told = [rule for rule in every if rule.per_target and rule.family != "interfaces"]
+    told = [rule for rule in every if rule.per_target]
     names = [rule.name for rule in told]
     kept: dict[str, list[tuple[str, Hit]]] = {}
     fresh = []
@@ -109,7 +109,7 @@ def _all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[tuple[str, H
 
 def _run(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Hit]]:
     """The call of a rule that asks no target."""
-    if rule.family != "interfaces":
+    if not rule.compares:
         return lambda: rule.run(opened.workspace)
     return lambda: rule.run(opened.workspace, before) if before is not None else ()
 

@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import os
 from collections.abc import Iterable, Sequence
-from functools import cache
-from pathlib import Path
 
 import msgspec
 from msgspec import structs
 
+from .cache import code_stamp
 from .facts.store import Store
 from .model import watch
 from .model.build import At
@@ -49,25 +47,9 @@ class _Judgement(msgspec.Struct, frozen=True, array_like=True):
     unresolved: dict[str, tuple[str, ...]]
 
 
-@cache
-def _code() -> str:
-    """Changes whenever a file of the tool does: sizes and times of its modules."""
-    root = Path(__file__).parent
-    stamp = hashlib.sha1()
-    for folder, folders, files in os.walk(root):
-        folders[:] = sorted(name for name in folders if name not in ("__pycache__", "data"))
-        for name in sorted(files):
-            if name.endswith(".py"):
-                status = os.stat(os.path.join(folder, name))
-                stamp.update(
-                    f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape")
-                )
-    return stamp.hexdigest()
-
-
 def watched(store: Store) -> Watched:
     """The names that rules look out for, as an earlier run gathered them from the same tables."""
-    name = hashlib.sha1(f"{_code()} {data_stamp()}".encode()).digest()
+    name = hashlib.sha1(f"{code_stamp()} {data_stamp()}".encode()).digest()
     data = store.memo("watched", name)
     if data is not None:
         with contextlib.suppress(msgspec.MsgspecError):
@@ -83,7 +65,9 @@ def key(view: View, rules: Iterable[str]) -> bytes:
     stamp = hashlib.sha1(view.workspace.identity)
     config = view.config
     stamp.update(
-        repr((_code(), view.target.identity(), sorted(rules), config.private, config.underlays, config.repos)).encode()
+        repr(
+            (code_stamp(), view.target.identity(), sorted(rules), config.private, config.underlays, config.repos)
+        ).encode()
     )
     return stamp.digest()
 

@@ -260,6 +260,103 @@ def _progress() -> Callable[[int, int], None] | None:
     return show
 
 
+GRAPH_FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
+
+
+def graph_schema() -> int:
+    """Prints the JSON schema of the graph's JSON."""
+    from .flow.drawing.json import schema as text
+
+    _write(text())
+    return 0
+
+
+def graph(
+    path: Path, *, launch, arguments, nodes, topics, packages, around, hops, rev, base, format, output, everything,
+    jobs, quiet,
+) -> int:  # fmt: skip
+    """Draws the message-flow graph. Returns the exit status: 0, or 2 (failed)."""
+    try:
+        with told(path):
+            if format not in GRAPH_FORMATS:
+                raise Failed(f"--format {format}: unknown; choose one of {', '.join(GRAPH_FORMATS)}")
+            given = dict(argument.partition(":=")[::2] for argument in arguments)
+            if any(":=" not in argument for argument in arguments):
+                raise Failed("--set: write NAME:=VALUE")
+            if given and not launch:
+                raise Failed("--set: arguments belong to a launch file; name it with --launch")
+            from .flow.drawing import draw
+            from .flow.select import NothingSelected
+            from .graph import graphs
+
+            found = graphs(
+                path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
+                progress=None if quiet else _progress(),
+            )  # fmt: skip
+            for note in found.notes:
+                say(f"rosimpact: {note}")
+            try:
+                text = draw(
+                    found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
+                    hops=hops, everything=everything,
+                )  # fmt: skip
+            except NothingSelected as error:
+                raise Failed(str(error)) from None
+            _deliver(text, output)
+    except Failed as error:
+        return failed(str(error))
+    except KeyboardInterrupt:
+        say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
+        return 130
+    return 0
+
+
+LOGIC_FORMATS = ("text", "json", "html")
+
+
+def logic(
+    path: Path, *, range, number, since, packages, topics, everything, format, output, jobs, quiet
+) -> int:  # fmt: skip
+    """Prints where the logic of publishing changed. Returns the exit status: 0, or 2 (failed)."""
+    try:
+        with told(path):
+            if format not in LOGIC_FORMATS:
+                raise Failed(f"--format {format}: unknown; choose one of {', '.join(LOGIC_FORMATS)}")
+            from .facts.store import Store
+            from .flow import logic as history
+            from .flow import logic_report, timeline
+
+            with Store() as store:
+                try:
+                    asked = history.Range(range, number, since)
+                    found = history.read(os.fspath(path), asked, store, jobs, None if quiet else steps())
+                except ValueError as error:
+                    raise Failed(f"--since: {error}") from None
+                for note in store.notes:
+                    say(f"rosimpact: {note}")
+            found = history.chosen(found, packages, topics, everything)
+            if format == "html":
+                text = timeline.render(found, __version__)
+            elif format == "json":
+                text = logic_report.as_json(found, __version__)
+            else:
+                coloured = output is None and _coloured()
+                text = logic_report.text(found, logic_report.COLOURED if coloured else logic_report.PLAIN)
+            _deliver(text, output)
+    except Failed as error:
+        return failed(str(error))
+    except KeyboardInterrupt:
+        say("rosimpact: interrupted; what was read is kept, and the next run goes on from there")
+        return 130
+    return 0
+
+
+def _coloured() -> bool:
+    from .report.text import style_for
+
+    return bool(style_for(sys.stdout).colours)
+
+
 def explain(name: str | None) -> int:
     """Prints a rule's documentation, or the list of rules."""
     from .rules.rule import all_rules

@@ -49,10 +49,15 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "setup_cfg": ("setup", "SetupFile", 3),
     "pyproject": ("setup", "SetupFile", 3),
     "script": ("", "", 1),
+    "flow_cpp": ("flow_cpp", "FlowFile", 1),
+    "flow_python": ("flow_python", "FlowFile", 1),
+    "flow_script": ("", "", 1),
 }
 """kind: (module, struct, version). Raise the version with every change of what an extractor says: it is part of the key
 under which facts are stored."""
 WITH_KIND = frozenset({"interface", "launch", "setup"})
+FLOW = {"cpp": "flow_cpp", "python": "flow_python", "script": "flow_script"}
+"""The second look that the message-flow graph takes at files of a kind."""
 
 BY_NAME = {
     "package.xml": "manifest",
@@ -123,6 +128,8 @@ def version_of(kind: str) -> str:
     """The part of a store key that changes when an extractor does."""
     if kind == "script":
         return f"script.{EXTRACTORS['python'][2]}.{EXTRACTORS['shell'][2]}.{EXTRACTORS[kind][2]}"
+    if kind == "flow_script":
+        return f"{kind}.{EXTRACTORS['flow_python'][2]}.{EXTRACTORS[kind][2]}"
     if kind == "setup_py":
         return f"{kind}.{EXTRACTORS[kind][2]}.{EXTRACTORS['python'][2]}"
     if kind == "cpp":
@@ -156,6 +163,10 @@ def extract(kind: str, data: bytes) -> FileFacts[Any]:
         kind = script_kind(data) if len(data) <= LARGEST else "script"
         if kind == "script":
             return FileFacts(kind, None)
+    if kind == "flow_script":
+        if len(data) > LARGEST or script_kind(data) != "python":
+            return FileFacts(kind, None)
+        kind = "flow_python"
     if len(data) > LARGEST:
         return FileFacts(kind, empty(kind, Problem(1, "larger than 8 MB")))
     return FileFacts(kind, _facts(kind, data), allows(data))
@@ -218,7 +229,7 @@ def decode(kind: str, data: bytes) -> FileFacts[Any]:
     Raises msgspec.DecodeError (its subclass ValidationError where the shape differs) when the bytes are not such facts.
     """
     try:
-        if kind == "script":
+        if kind in ("script", "flow_script"):
             kind = _raw.decode(data).kind
             if kind not in EXTRACTORS:
                 raise msgspec.ValidationError(f"no kind of facts is called `{kind}`")
@@ -232,4 +243,4 @@ _raw = msgspec.msgpack.Decoder(FileFacts[msgspec.Raw])
 
 @cache
 def _decoder(kind: str) -> msgspec.msgpack.Decoder[FileFacts[Any]]:
-    return msgspec.msgpack.Decoder(FileFacts[None] if kind == "script" else FileFacts[_struct(kind)])
+    return msgspec.msgpack.Decoder(FileFacts[None] if kind in ("script", "flow_script") else FileFacts[_struct(kind)])

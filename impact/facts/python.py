@@ -4,6 +4,7 @@ import ast
 import codecs
 import re
 import warnings
+from typing import NamedTuple
 
 import msgspec
 
@@ -30,6 +31,18 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     interpreter: str = ""
     main: bool = False
     problems: tuple[Problem, ...] = ()
+
+
+class Source(NamedTuple):
+    """A source and its syntax tree. text: decoded, with `\\n` as the end of line. parsed: what the tree was made from:
+    the text, or where Python 2 was rewritten the same lines with other words. tree: None for what does not parse.
+    python2_only: as in PythonFile, of a text that was refused."""
+
+    text: str
+    parsed: str
+    tree: ast.Module | None
+    python2_only: tuple[Problem, ...]
+    problems: tuple[Problem, ...]
 
 
 _COOKIE = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
@@ -96,30 +109,34 @@ def _as_python2(text: str, error: SyntaxError) -> tuple[tuple[Problem, ...], ast
     return old, None, text
 
 
-def extract(data: bytes) -> PythonFile:
-    """The facts of one Python file, read by this interpreter's own parser. Never raises.
+def read(data: bytes) -> Source:
+    """One Python source parsed by this interpreter's own parser, Python 2 as far as it can be rewritten. Never raises.
 
-    Syntax newer than this interpreter is a problem, never `python2_only`. Where the file cannot be parsed, imports are
-    read line by line and all else is left out.
+    Syntax newer than this interpreter is a problem, never `python2_only`.
     """
     text, problems = _decode(data)
-    rewritten = text
-    first_line = text.split("\n", 1)[0]
-    interpreter = first_line.strip() if _SHEBANG.match(first_line) else ""
-    old: tuple[Problem, ...] = ()
     try:
-        tree = _parse(text)
+        return Source(text, text, _parse(text), (), problems)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        tree = None
-        line = min(getattr(error, "lineno", None) or 1, text.count("\n") + 1)
-        if isinstance(error, SyntaxError):
-            old, tree, rewritten = _as_python2(text, error)
+        old, tree, rewritten = _as_python2(text, error) if isinstance(error, SyntaxError) else ((), None, text)
         if not old:
+            line = min(getattr(error, "lineno", None) or 1, text.count("\n") + 1)
             what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
             problems = (*problems, Problem(line, f"not parsed: {what}"))
+        return Source(text, rewritten, tree, old, problems)
+
+
+def extract(data: bytes) -> PythonFile:
+    """The facts of one Python file. Never raises.
+
+    Where the file cannot be parsed, imports are read line by line and all else is left out.
+    """
+    text, parsed, tree, old, problems = read(data)
+    first_line = text.split("\n", 1)[0]
+    interpreter = first_line.strip() if _SHEBANG.match(first_line) else ""
     if tree is not None:
         try:
-            reader = Reader(rewritten, text)
+            reader = Reader(parsed, text)
             reader.read(tree)
             return PythonFile(
                 imports=tuple(reader.imports),

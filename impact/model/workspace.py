@@ -12,7 +12,7 @@ import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
@@ -24,6 +24,10 @@ from ..targets.fields import snake
 from .build import Build, extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
 from .package import Digest, Watched, build_type_of, digest_of
+
+if TYPE_CHECKING:
+    from .flow.graph import Graph
+    from .flow.launches import Launch
 
 # Raise with every change of what a digest or the CMake interpreter says.
 DIGEST_VERSION = "14"
@@ -243,6 +247,20 @@ class Workspace:
         if stems is None:
             stems = self._interface_stems[package] = _stems(self.interface_names.get(package, ()))
         return _names_interface(rest, stems)
+
+    @cached_property
+    def flow(self) -> Graph:
+        """The message-flow graph of its code, without a launch file."""
+        from .flow.workspace import graph_of, read_beside
+
+        return graph_of(self, self.gathered.store, gathered=read_beside(self))
+
+    @cached_property
+    def launches(self) -> tuple[Launch, ...]:
+        """What its launch files start, see launches()."""
+        from .flow.launches import launches
+
+        return launches(self)
 
     @cached_property
     def broken_headers(self) -> frozenset[str]:

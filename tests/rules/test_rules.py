@@ -2,7 +2,7 @@
 
 A case is a folder `<family>/<rule>/`, with underscores for dashes, that holds the workspaces `before` and `after`, and
 a file `targets` with one target a line (without it, each workspace names its own in rosimpact.toml). A further case of
-the same rule is `<rule>__<what it shows>`. Rules of the interfaces family compare a workspace with `after`, the base.
+the same rule is `<rule>__<what it shows>`. Rules that compare are given `after` as the base of both workspaces.
 One snapshot shows every finding of every rule over all `before` workspaces, so that a stray hit of another rule is seen
 in review.
 """
@@ -42,7 +42,7 @@ def run(tmp_path_factory) -> Run:
         targets = case / "targets"
         asked = tuple(targets.read_text().split()) if targets.exists() else ()
         options = Options(targets=asked, preview=True, cache=store, jobs=1)
-        if case.parent.name == "interfaces":
+        if all_rules()[rule_of(case)].compares:
             return compare(case / which, case / "after", options)
         return check(case / which, options)
 

@@ -22,7 +22,7 @@ from ..rule import Hit, rule
 from .comparison import pairs, users, wire
 
 
-@rule(severity="error")
+@rule(severity="error", compares=True)
 def removed_field(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
         there = {f.name for f in pair.new.fields}

@@ -22,7 +22,7 @@ from ..rule import Hit, rule
 from .comparison import _users
 
 
-@rule(severity="error")
+@rule(severity="error", compares=True)
 def removed_interface(workspace: Workspace, base: Workspace):
     now = {}
     for package in workspace:

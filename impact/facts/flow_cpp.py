@@ -1,0 +1,508 @@
+"""C++ sources to facts of message flow: what their classes, functions and variables are, what is called and when.
+
+One file is read by itself, with tree-sitter: no headers, no build. Two functions stand for what is outside of all:
+one without name and owner for the file, and one without a name for each class whose members are initialised by calls.
+`T(x)` might call a function or make an object; it is told as a `call`. A member that is initialised by one argument is
+assigned that argument, by more a `make` without a type; base classes are initialised the same way (`this.Node`).
+What follows a try whose handler jumps is under `unless` with the text `catch (...)`.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+
+from tree_sitter import Node, Parser
+
+from .cpp import _exports, scan
+from .flow import Alias, Assignment, Class, Expr, FlowFile, Member
+from .flow_cpp_clean import Cleaned, cleaned, cleaned_further
+from .flow_cpp_grammar import (
+    ARGUMENTS,
+    BRACES,
+    COMPOUND,
+    DECLARATORS,
+    DECLARED_TYPES,
+    EQUALS,
+    ERROR,
+    FUNCTION_DECLARATOR,
+    IDENTIFIER,
+    INIT_DECLARATOR,
+    LANGUAGE,
+    NAMES,
+    PARAMETERS,
+    POINTER_DECLARATOR,
+    REFERENCE,
+    TRAILING_RETURN,
+    TYPES,
+    grammatical,
+    kind,
+    listed_in,
+)
+from .flow_cpp_statements import FIELD_INITIALIZERS, PREPROC, Statements
+from .flow_cpp_values import READ, bare, flat
+from .place import Problem
+
+PARSER = Parser(LANGUAGE)
+INCLUDED = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]", re.MULTILINE)
+EXPORTING = ("PLUGINLIB_", "RCLCPP_COMPONENTS_", "CLASS_LOADER_REGISTER")
+
+
+def extract(data: bytes) -> FlowFile:
+    """The flow of one C or C++ file. Never raises; what did not parse is in `unread`, what went wrong in `problems`."""
+    source = cleaned(data)
+    root = PARSER.parse(source.source).root_node
+    wrong = errors(root, source.starts)
+    reader = None if wrong else read(source, root)
+    if reader is None or reader.misread:
+        further = cleaned_further(data, source)
+        if further.source != source.source:
+            again = PARSER.parse(further.source).root_node
+            still_wrong = errors(again, further.starts)
+            if len(still_wrong) <= len(wrong):
+                source, root, wrong, reader = further, again, still_wrong, None
+    if reader is None:
+        reader = read(source, root)
+    reader.leave_outside()
+    exports: tuple[str, ...] = ()
+    if any(word in source.text for word in EXPORTING):
+        exports = _exports(scan(data).visible)
+    return FlowFile(
+        "cpp",
+        tuple(reader.aliases),
+        tuple(reader.classes),
+        tuple(reader.functions),
+        tuple(reader.constants),
+        exports,
+        tuple(sorted(wrong.union(source.hidden))),
+        tuple(reader.problems),
+        tuple(dict.fromkeys(INCLUDED.findall(source.text))),
+    )
+
+
+def read(source: Cleaned, root: Node) -> _File:
+    """A source as parsed, read."""
+    reader = _File(source)
+    try:
+        reader.scope(root.children, "", "", ())
+    except RecursionError:
+        reader.problems.append(Problem(1, "nested too deeply to be read in full"))
+    return reader
+
+
+def errors(root: Node, starts: list[int]) -> set[tuple[int, int]]:
+    """Lines, first and last, of what the grammar did not understand."""
+    found: set[tuple[int, int]] = set()
+    waiting = [root] if root.has_error else []
+    while waiting:
+        node = waiting.pop()
+        # A semicolon after a macro is often missing, and nothing is lost by it.
+        if node.kind_id == ERROR or (node.is_missing and node.kind_id != SEMICOLON):
+            found.add((bisect_right(starts, node.start_byte), bisect_right(starts, node.end_byte)))
+        elif node.has_error:
+            waiting += node.children
+    return found
+
+
+class _File(Statements):
+    """The reader of a whole file."""
+
+    def __init__(self, source) -> None:
+        super().__init__(source)
+        self.aliases: list[Alias] = []
+        self.classes: list[Class] = []
+        self.constants: list[Member] = []
+        self.problems: list[Problem] = []
+        self.namespaces: set[str] = set()
+        self.misread = False
+        self.outside = {"": self.state()}
+        self.conditions: tuple[tuple[str, int], ...] = ()
+
+    def go_outside(self, owner: str) -> None:
+        """Into the function that stands for what is outside of functions, of the file or of a class."""
+        if owner not in self.outside:
+            self.name, self.owner = "", owner
+            self.begin(set())
+            self.outside[owner] = self.state()
+        self.restore(self.outside[owner])
+
+    def leave_outside(self) -> None:
+        for _owner, state in self.outside.items():
+            self.restore(state)
+            if self.calls:
+                line = min(call.line for call in self.calls)
+                self.close((), line, max(call.line for call in self.calls))
+
+    # Scopes
+
+    def scope(self, children: list[Node], name: str, owner: str, conditions: tuple[tuple[str, int], ...]) -> None:
+        """What stands in a file, namespace or class. name: the scopes so far; owner: the class, empty for none."""
+        for child in children:
+            read = SCOPED.get(child.kind_id)
+            if read is not None:
+                read(self, child, name, owner, conditions)
+
+    def namespace(self, node: Node, name: str, owner: str, conditions) -> None:
+        said = node.child_by_field_name("name")
+        body = node.child_by_field_name("body")
+        if body is None:
+            return
+        inner = name
+        if said is not None:
+            inner = joined(name, "".join(self.said(said).replace("inline", "").split()))
+            self.namespaces.add(inner)
+        self.scope(body.children, inner, "", conditions)
+
+    def descend(self, node: Node, name: str, owner: str, conditions) -> None:
+        self.scope(node.children, name, owner, conditions)
+
+    def unparsed(self, node: Node, name: str, owner: str, conditions) -> None:
+        """What did not parse: whatever is a whole piece in it is read."""
+        for child in node.children:
+            read = SCOPED.get(child.kind_id)
+            if read is not None:
+                read(self, child, name, owner, conditions)
+            elif child.child_count:
+                self.go_outside(owner)
+                self.statement(child, -1)
+
+    def preprocessed(self, node: Node, name: str, owner: str, conditions) -> None:
+        asked, statements, rest = self.branch(node)
+        if not rest and not owner and asked.startswith("!(defined(") and guards_file(node, statements):
+            self.scope(statements, name, owner, conditions)
+            return
+        line = self.line(node)
+        inner = (*conditions, (asked, line)) if asked else conditions
+        self.scope(statements, name, owner, inner)
+        while rest is not None:
+            conditions = (*conditions, (f"!({asked})", line))
+            asked, statements, rest = self.branch(rest)
+            inner = (*conditions, (asked, line)) if asked else conditions
+            self.scope(statements, name, owner, inner)
+
+    # Names
+
+    def alias(self, node: Node, name: str, owner: str, conditions) -> None:
+        said = node.child_by_field_name("name")
+        target = node.child_by_field_name("type")
+        if said is not None and target is not None:
+            self.aliases.append(Alias(self.said(said), self.said(target), name))
+
+    def typedef(self, node: Node, name: str, owner: str, conditions) -> None:
+        children = grammatical(node)
+        target = self.written_type(children)
+        for child in children:
+            if child.kind_id in DECLARED_TYPES:
+                self.class_(child, name, owner, conditions)
+        for child in node.children_by_field_name("declarator"):
+            said, marks = self.declared(child)
+            if said is not None:
+                self.aliases.append(Alias(self.said(said), target + marks, name))
+
+    def using(self, node: Node, name: str, owner: str, conditions) -> None:
+        children = grammatical(node)
+        target = next((child for child in children if child.kind_id in NAMES), None)
+        if target is None:
+            return
+        said = bare(self.said(target))
+        if any(self.text[child.start_byte : child.end_byte] == "namespace" for child in children[:2]):
+            self.aliases.append(Alias("*", said, name))
+        else:
+            self.aliases.append(Alias(said.rpartition("::")[2], said, name))
+
+    def namespace_alias(self, node: Node, name: str, owner: str, conditions) -> None:
+        children = grammatical(node)
+        if len(children) >= 4:
+            self.aliases.append(Alias(self.said(children[1]), bare(self.said(children[3])), name))
+
+    def define(self, node: Node, name: str, owner: str, conditions) -> None:
+        children = node.children
+        if len(children) < 3:
+            return
+        said, written = children[1], children[2]
+        text = flat(self.text[written.start_byte : written.end_byte])
+        value: Expr | None = None
+        if text[:1] == '"' and text[-1:] == '"' and len(text) > 1 and '"' not in text[1:-1]:
+            value = Expr("text", text[1:-1])
+        elif text in ("true", "false") or (text.strip("()") and _is_number(text.strip("()"))):
+            value = Expr("number", text.strip("()"))
+        if value is not None:
+            self.constants.append(Member(self.said(said), "", self.line(node), value))
+
+    # Variables and members
+
+    def declared_outside(self, node: Node, name: str, owner: str, conditions) -> None:
+        """A declaration outside of functions: variables; what declares functions tells only their names."""
+        self.go_outside(owner)
+        base = self.guarded(conditions)
+        children = node.children
+        type_ = ""
+        for child in children:
+            if child.kind_id in DECLARED_TYPES:
+                self.class_(child, name, owner, conditions)
+        typed = False
+        for index, child in enumerate(children):
+            number = child.kind_id
+            if number not in DECLARATORS or (number in NAMES and node.field_name_for_child(index) != "declarator"):
+                continue
+            if not typed:
+                type_, typed = self.written_type(children), True
+            self.go_outside(owner)
+            self.variable(node, child, index, type_, name, owner, base)
+
+    def variable(self, node: Node, child: Node, index: int, type_: str, name: str, owner: str, base: int) -> None:
+        said, marks = self.declared(child)
+        if said is None or self.declares_function(child):
+            if said is not None and owner:
+                self.methods.append(bare(self.said(said)))
+            return
+        if child.kind_id == MACRO_LIKE and node.children[-1].is_missing:
+            return
+        variable = bare(self.said(said))
+        target = f"this.{variable}" if owner else joined(name, variable)
+        value: Expr | None = None
+        children = node.children
+        given: Node | None = None
+        if child.kind_id == INIT_DECLARATOR:
+            given = child.children[-1]
+        elif index + 1 < len(children):
+            beside = children[index + 1]
+            if beside.kind_id == EQUALS and index + 2 < len(children):
+                given = children[index + 2]
+            elif beside.kind_id == BRACES:
+                given = beside
+        if given is not None:
+            direct = given.kind_id == ARGUMENTS or (
+                given.kind_id == BRACES and given.prev_sibling is not None and given.prev_sibling.kind_id != EQUALS
+            )
+            if direct:
+                inner = listed_in(given)
+                if len(inner) == 1:
+                    value = self.value(inner[0], base, READ, target)
+                else:
+                    value = Expr("make", type_, self.arguments(given, base, bare(type_)))
+            else:
+                value = self.value(given, base, READ, target)
+        member = Member(variable if owner else target, type_ + marks, self.line(said), value)
+        (self.members if owner else self.constants).append(member)
+
+    def declares_function(self, node: Node) -> bool:
+        """Whether a declarator is that of a function, rather than of a pointer to one."""
+        for _ in range(64):
+            number = node.kind_id
+            if number == FUNCTION_DECLARATOR:
+                return node.children[0].kind_id in NAMES
+            if number == OPERATOR_CAST:
+                return True
+            if number not in (POINTER_DECLARATOR, REFERENCE, INIT_DECLARATOR):
+                return False
+            inner = next((child for child in node.children if child.kind_id in DECLARATORS), None)
+            if inner is None:
+                return False
+            node = inner
+        return False
+
+    def guarded(self, conditions) -> int:
+        """The guards of the preprocessor around what stands outside of functions."""
+        guard = -1
+        for text, line in conditions:
+            guard = self.guard("cpp", text, line, guard)
+        return guard
+
+    # Classes
+
+    members: list[Member]
+    methods: list[str]
+
+    def class_(self, node: Node, name: str, owner: str, conditions) -> None:
+        """A class; also one in a function, whose name is then its scope."""
+        body = node.child_by_field_name("body")
+        if body is None or node.kind_id == ENUM:
+            return
+        said = node.child_by_field_name("name")
+        inner = joined(name, bare(self.said(said))) if said is not None else name
+        bases: list[str] = []
+        for child in node.children:
+            if child.kind_id == BASES:
+                bases = [self.said(part) for part in child.children if part.kind_id in TYPES]
+        kept = getattr(self, "members", None), getattr(self, "methods", None)
+        self.members, self.methods = [], []
+        before = self.state()
+        self.scope(body.children, inner, inner or "", conditions)
+        self.restore(before)
+        members, methods = self.members, self.methods
+        if kept[0] is not None and kept[1] is not None:
+            self.members, self.methods = kept[0], kept[1]
+        self.classes.append(
+            Class(
+                inner,
+                tuple(bases),
+                tuple(members),
+                tuple(dict.fromkeys(methods)),
+                self.line(node),
+                self.line_of_end(node),
+            )
+        )
+
+    def local_type(self, node: Node) -> None:
+        self.class_(node, self.name or self.owner, "", ())
+
+    def local_name(self, node: Node) -> None:
+        SCOPED[node.kind_id](self, node, self.name, "", ())
+
+    def line_of_end(self, node: Node) -> int:
+        return bisect_right(self.starts, node.end_byte)
+
+    # Functions
+
+    def function(self, node: Node, name: str, owner: str, conditions) -> None:
+        """A function with its body."""
+        declarator: Node | None = None
+        body: Node | None = None
+        initializers: Node | None = None
+        virtual = False
+        marks = ""
+        children = node.children
+        for index, child in enumerate(children):
+            number = child.kind_id
+            if number in (COMPOUND, TRY):
+                body = child
+            elif number == FIELD_INITIALIZERS:
+                initializers = child
+            elif number == VIRTUAL:
+                virtual = True
+            elif number in DECLARATORS and (number not in NAMES or node.field_name_for_child(index) == "declarator"):
+                declarator = child
+            elif number in DECLARED_TYPES and child.child_by_field_name("body") is not None:
+                self.class_(child, name, owner, conditions)
+        while declarator is not None and declarator.kind_id in (POINTER_DECLARATOR, REFERENCE):
+            mark = declarator.children[0]
+            marks += self.text[mark.start_byte : mark.end_byte]
+            declarator = next((part for part in declarator.children if part.kind_id in DECLARATORS), None)
+        if declarator is None or (declarator.kind_id == IDENTIFIER and children[0].kind_id in DECLARED_TYPES):
+            # `class MACRO Name { ... }` is taken for a function that gives a `class MACRO`.
+            self.misread = True
+            self.go_outside(owner)
+            for child in children:
+                if child.kind_id == COMPOUND:
+                    self.statement(child, -1)
+            return
+        returns = ""
+        listed: Node | None = None
+        if declarator.kind_id == FUNCTION_DECLARATOR:
+            said = bare(self.said(declarator.children[0]))
+            for child in declarator.children:
+                number = child.kind_id
+                if number == PARAMETERS and listed is None:
+                    listed = child
+                elif number == TRAILING_RETURN:
+                    returns = self.said(child).removeprefix("->").strip()
+                elif number == VIRTUAL_SPECIFIER:
+                    virtual = True
+        else:
+            said = self.said(declarator)
+            if declarator.kind_id == OPERATOR_CAST or "operator" in said:
+                said = said.partition("(")[0].strip()
+            else:
+                said = bare(said)
+        if not returns:
+            returns = self.written_type(children) + marks
+        said = said.removeprefix("::")
+        if owner:
+            self.methods.append(said)
+            belongs = owner
+        else:
+            belongs = said.rpartition("::")[0] if "operator" not in said else said.partition("operator")[0].rstrip(":")
+            belongs = joined(name, belongs) if belongs else ""
+            if belongs in self.namespaces:
+                belongs = ""
+        if body is None and initializers is None:
+            return
+        self.name, self.owner = joined(name, said), belongs
+        self.begin(set())
+        guard = self.guarded(conditions)
+        line = self.line(node)
+        parameters = self.parameters(listed, guard)
+        state = self.state()
+        try:
+            if initializers is not None:
+                self.initializers(initializers, guard)
+            if body is not None:
+                self.statement(body, guard)
+        except RecursionError:
+            self.problems.append(Problem(line, "nested too deeply to be read in full"))
+            self.nesting = 0
+            self.restore(state)
+        self.close(parameters, line, self.line_of_end(node), returns, virtual)
+
+    def initializers(self, node: Node, guard: int) -> None:
+        """The list of initialisers of a constructor: assignments to members, and to base classes by their names."""
+        for child in node.children:
+            if child.kind_id != FIELD_INITIALIZER:
+                continue
+            parts = grammatical(child)
+            target = f"this.{bare(self.said(parts[0]))}"
+            given = parts[-1]
+            inner = listed_in(given)
+            if len(inner) == 1:
+                value = self.value(inner[0], guard, ("pass", target, 0), target)
+            else:
+                value = Expr("make", "", self.arguments(given, guard, target) if inner else ())
+            self.assignments.append(Assignment(target, value, self.line(child), guard))
+
+    def statement_outside(self, node: Node, name: str, owner: str, conditions) -> None:
+        """Macros and other statements outside of functions."""
+        self.go_outside(owner)
+        self.statement(node, self.guarded(conditions))
+
+
+def joined(scope: str, name: str) -> str:
+    return f"{scope}::{name}" if scope and name else scope or name
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text.rstrip("uUlLfF"))
+    except ValueError:
+        return text[:2] in ("0x", "0X") and text[2:].rstrip("uUlL").isalnum()
+    return True
+
+
+def guards_file(node: Node, statements: list[Node]) -> bool:
+    """Whether an #ifndef is the guard of a header: it defines at once what it asks for."""
+    if not statements or statements[0].kind_id != DEFINE:
+        return False
+    asked, defined = node.children[1], statements[0].children[1]
+    return asked.text == defined.text
+
+
+SEMICOLON = kind(";", False)
+DEFINE = kind("preproc_def")
+ENUM = kind("enum_specifier")
+BASES = kind("base_class_clause")
+TRY = kind("try_statement")
+VIRTUAL = kind("virtual", False)
+VIRTUAL_SPECIFIER = kind("virtual_specifier")
+OPERATOR_CAST = kind("operator_cast")
+MACRO_LIKE = kind("parenthesized_declarator")
+FIELD_INITIALIZER = kind("field_initializer")
+SCOPED = {
+    kind("namespace_definition"): _File.namespace,
+    kind("linkage_specification"): _File.descend,
+    kind("declaration_list"): _File.descend,
+    kind("template_declaration"): _File.descend,
+    kind("template_instantiation"): _File.descend,
+    kind("friend_declaration"): _File.descend,
+    kind("function_definition"): _File.function,
+    kind("declaration"): _File.declared_outside,
+    kind("field_declaration"): _File.declared_outside,
+    kind("alias_declaration"): _File.alias,
+    kind("type_definition"): _File.typedef,
+    kind("using_declaration"): _File.using,
+    kind("namespace_alias_definition"): _File.namespace_alias,
+    DEFINE: _File.define,
+    kind("expression_statement"): _File.statement_outside,
+    ERROR: _File.unparsed,
+    **{number: _File.preprocessed for number in PREPROC},
+    **{number: _File.class_ for number in DECLARED_TYPES},
+}  # fmt: skip

@@ -1,0 +1,298 @@
+"""A C++ source made ready for its grammar: macros that break the parse are blanked, and no offset moves."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from itertools import accumulate, count, pairwise
+from operator import add
+from typing import NamedTuple
+
+from .cpp import _decode, scan
+
+
+class Region(NamedTuple):
+    """A stretch that stands under a preprocessor condition and whose directives were blanked."""
+
+    start: int
+    end: int
+    condition: str
+    line: int
+
+
+class Cleaned(NamedTuple):
+    """text: the source; source: what is parsed, one byte for each character of text; starts: the offset of every
+    line; regions: where directives were blanked; hidden: lines (first, last) that were left out."""
+
+    text: str
+    source: bytes
+    starts: list[int]
+    regions: tuple[Region, ...] = ()
+    hidden: tuple[tuple[int, int], ...] = ()
+
+
+_NOT_ASCII = re.compile(r"[^\x01-\x7f]")
+_VISIBILITY_ENDS = ("_PUBLIC", "_EXPORT", "_API", "_LOCAL")
+_VISIBILITY = re.compile(r"_(?:PUBLIC|EXPORTS?|LOCAL|API)(?:_TYPE)?\b(?=\s+(?:[A-Za-z_~]|::|\[\[))")
+_LAST_WORD = re.compile(r"[A-Z][A-Z0-9_]*\Z")
+_CLASS_MACRO = re.compile(
+    r"(?:class|struct)\s+(?P<macro>[A-Z][A-Z0-9_]{5,}(?:\([^()\n]*\))?)(?=\s+\w+\s*(?:final\s*)?[:{])"
+)
+# Words that stand where the grammar knows none; gone, what is around them is plain C++.
+_BARE = (
+    "Q_OBJECT", "Q_GADGET", "Q_NAMESPACE", "Q_INVOKABLE", "Q_SLOT", "Q_SIGNAL", "Q_DECL_OVERRIDE", "Q_EMIT",
+    "EIGEN_MAKE_ALIGNED_OPERATOR_NEW", "EIGEN_STRONG_INLINE", "EIGEN_DEVICE_FUNC", "BOOST_FORCEINLINE",
+    "ROS_DEPRECATED", "ROS_FORCE_INLINE", "PCL_MAKE_ALIGNED_OPERATOR_NEW", "TF2_PUBLIC", "BOOST_NOEXCEPT",
+    "__BEGIN_DECLS", "__END_DECLS", "__global__", "__device__", "__host__",
+)  # fmt: skip
+_RARE_VISIBILITY = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:DECL|VISIBILITY|IMPORT|HIDDEN)\b(?=\s+(?:[A-Za-z_~]|::|\[\[))")
+_BARE_WORD = re.compile(r"\b(?:" + "|".join(_BARE) + r")\b(?!\s*\()")
+_FORMATS = re.compile(r"\bPRI[diouxX](?:LEAST|FAST)?(?:8|16|32|64|MAX|PTR)\b")
+_SLOTS = re.compile(r"\b((?:public|protected|private)\s+)(slots|Q_SLOTS)(?=\s*:)")
+_SIGNALS = re.compile(r"^([ \t]*)(signals|Q_SIGNALS)([ \t]*:)(?!:)", re.MULTILINE)
+_EACH_NAMES = ("_FOREACH", "foreach")
+_EACH = re.compile(r"\b(?:BOOST_FOREACH|BOOST_REVERSE_FOREACH|Q_FOREACH|foreach)(?=\s*\()")
+_BETWEEN = re.compile(r"[(),<>;{}]")
+
+
+def cleaned(data: bytes) -> Cleaned:
+    """The source of a file, ready to be parsed. Undecodable bytes become replacement characters, line breaks `\\n`."""
+    text = _decode(data)
+    source = text
+    if not source.isascii() or "\0" in source:
+        source = _NOT_ASCII.sub(_stand_in, source)
+    if any(end in source for end in _VISIBILITY_ENDS):
+        source = _without_visibility(source)
+    if any(name in source for name in _EACH_NAMES):
+        source = _each(source)
+    return Cleaned(text, source.encode(), [0, *map(add, accumulate(map(len, source.split("\n"))), count(1))])
+
+
+def cleaned_further(data: bytes, before: Cleaned) -> Cleaned:
+    """The source of a file that did not parse as it was: what is dear to look for is blanked too."""
+    source = before.source.decode()
+    for words, pattern, stand_in in _FURTHER:
+        if any(word in source for word in words):
+            source = pattern.sub(stand_in, source)
+    source, regions, hidden = _flattened(data, before.text, source, before.starts)
+    return Cleaned(before.text, source.encode(), before.starts, regions, hidden)
+
+
+def _without_visibility(source: str) -> str:
+    """`class FOO_PUBLIC A` as `class            A`. Searched from the end of the word, which is the rarer part."""
+    pieces: list[str] = []
+    position = 0
+    for match in _VISIBILITY.finditer(source):
+        line = source.rfind("\n", 0, match.start()) + 1
+        word = _LAST_WORD.search(source, max(line, position), match.start())
+        if word is None or source[line : word.start()].lstrip()[:1] == "#":
+            continue
+        pieces += [source[position : word.start()], " " * (match.end() - word.start())]
+        position = match.end()
+    return "".join(pieces) + source[position:]
+
+
+def _stand_in(match: re.Match[str]) -> str:
+    # A letter, so that words in any script stay words.
+    return " " if match[0] == "\0" else "x"
+
+
+def _blank(match: re.Match[str]) -> str:
+    return " " * len(match[0])
+
+
+def _blank_macro(match: re.Match[str]) -> str:
+    start = match.start()
+    return match[0][: match.start("macro") - start] + " " * (match.end() - match.start("macro"))
+
+
+def _without_slots(match: re.Match[str]) -> str:
+    return match[1] + " " * len(match[2])
+
+
+def _as_public(match: re.Match[str]) -> str:
+    return match[1] + "public:".ljust(len(match[2]) + len(match[3]))
+
+
+def _unless_directive(match: re.Match[str]) -> str:
+    text = match.string
+    line = text.rfind("\n", 0, match.start()) + 1
+    if text[line : match.start()].lstrip()[:1] == "#":
+        return match[0]
+    return " " * len(match[0])
+
+
+def _each(source: str) -> str:
+    """`BOOST_FOREACH(T x, xs)` as `for(T x: xs)`."""
+    pieces: list[str] = []
+    position = 0
+    for match in _EACH.finditer(source):
+        line = source.rfind("\n", 0, match.start()) + 1
+        if match.start() < position or source[line : match.start()].lstrip()[:1] == "#":
+            continue
+        depth = angles = 0
+        comma = -1
+        for mark in _BETWEEN.finditer(source, match.end(), match.end() + 2000):
+            sign = mark[0]
+            if sign == "(":
+                depth += 1
+            elif sign == ")":
+                depth -= 1
+                if depth == 0:
+                    break
+            elif sign == "<":
+                angles += 1
+            elif sign == ">":
+                angles -= 1
+            elif sign == ",":
+                if depth == 1 and angles <= 0 and comma < 0:
+                    comma = mark.start()
+            else:
+                break
+        if comma < 0 or depth:
+            continue
+        pieces += [source[position : match.start()], "for".ljust(len(match[0])), source[match.end() : comma], ":"]
+        position = comma + 1
+    return "".join(pieces) + source[position:]
+
+
+def _blank_group(match: re.Match[str]) -> str:
+    """What a pattern calls `gone` as blanks."""
+    start, (first, last) = match.start(), match.span("gone")
+    return match[0][: first - start] + " " * (last - first) + match[0][last - start :]
+
+
+def _word_group(match: re.Match[str]) -> str:
+    """What a pattern calls `gone` as one word."""
+    start, (first, last) = match.start(), match.span("gone")
+    return match[0][: first - start] + "x" * (last - first) + match[0][last - start :]
+
+
+def _rounded(match: re.Match[str]) -> str:
+    """`= {a, b}` as `= (a, b)`, and `= {}` as `= 0 `."""
+    inner = match["inner"]
+    return f"={match['blanks']}({inner})" if inner.strip() else f"={match['blanks']}0{' ' * (len(inner) + 1)}"
+
+
+def _ended(match: re.Match[str]) -> str:
+    return match["macro"] + ";"
+
+
+# What the grammar does not know, and what it does that means the same: (words to look for, pattern, stand-in).
+_HAS_INCLUDE = re.compile(r"__has_include(?:_next)?\s*\(\s*(?P<gone>[<\"][^>\"\n]*[>\"])")
+_COMPARED = re.compile(r"^[ \t]*#[ \t]*(?:el)?if\b[^\n]*?\(\s*(?P<gone>[<>=!]=?)(?=\s*,)", re.MULTILINE)
+_NEW_POINTERS = re.compile(r"\bnew\s+[\w:]+\s*(?P<gone>\*+)(?=\s*\[)")
+_DEFAULT_BRACES = re.compile(r"=(?P<blanks>\s*)\{(?P<inner>[^{};]*)\}(?=\s*[,)])")
+_TYPENAME = re.compile(r"(?:=|\breturn)\s*(?P<gone>typename)\b")
+_TEMPLATE = re.compile(r"(?:->|\.)\s*(?P<gone>template)(?=\s+\w+\s*\()")
+_SIGNATURE = re.compile(r"\b(?:SIGNAL|SLOT)\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)")
+_EACH_LIKE = re.compile(r"(?:[Ee]ach|EACH)\w*\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)(?=\s*\{)")
+_STATEMENT_MACRO = re.compile(
+    r"^(?P<macro>(?P<blanks>[ \t]*)[A-Z][A-Z0-9_]{3,}\([^()\n]*\))[ \n]"
+    r"(?![ \t]*[{;.,=#?:&|+<*)\]-])(?!(?P=blanks)[ \t]+\S)",
+    re.MULTILINE,
+)
+_FURTHER = (
+    (("__has_include",), _HAS_INCLUDE, _word_group),
+    (("(<", "(>", "(=", "(!"), _COMPARED, _word_group),
+    (("new ",), _NEW_POINTERS, _blank_group),
+    (("{",), _DEFAULT_BRACES, _rounded),
+    (("typename",), _TYPENAME, _blank_group),
+    (("template",), _TEMPLATE, _blank_group),
+    (("SIGNAL", "SLOT"), _SIGNATURE, _blank_group),
+    (("ach", "EACH"), _EACH_LIKE, _blank_group),
+    ((")",), _STATEMENT_MACRO, _ended),
+    (("class ", "struct "), _CLASS_MACRO, _blank_macro),
+    (("_DECL", "_VISIBILITY", "_IMPORT", "_HIDDEN"), _RARE_VISIBILITY, _unless_directive),
+    (_BARE, _BARE_WORD, _unless_directive),
+    (("PRI",), _FORMATS, _blank),
+    (("slots", "Q_SLOTS"), _SLOTS, _without_slots),
+    (("signals", "Q_SIGNALS"), _SIGNALS, _as_public),
+)
+_DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(if|ifdef|ifndef|elif|else|endif)\b((?:[^\n]*\\\n)*[^\n]*)", re.MULTILINE)
+_BRACES = re.compile(r"[{}()]")
+_STARTS_INSIDE = re.compile(r"\s*(?:else\b|&&|\|\||<<|[,.?)+*/=]|:(?!:)|->|-)")
+_ENDS_INSIDE = re.compile(r"(?:\belse|&&|\|\||<<|[,(=?+*/]|-)\s*\Z")
+_HEADED = re.compile(r"\s*(?:\}\s*else\s+)?(?:if|while|for|else\s+if)\b[^;{}]*\)\s*\Z")
+_NOT_NEWLINE = re.compile(r"[^\n]+")
+
+
+def _flattened(
+    data: bytes, text: str, source: str, starts: list[int]
+) -> tuple[str, tuple[Region, ...], tuple[tuple[int, int], ...]]:
+    """The source without those #if blocks that cut through a statement: of each, the first branch is kept and becomes
+    a Region, the others are left out."""
+    if "#if" not in source and "# if" not in source:
+        return source, (), ()
+    visible = scan(data).visible
+    if len(visible) != len(text):
+        return source, (), ()
+    opened: list[list[tuple[int, int, str, str]]] = []
+    blank: list[tuple[int, int]] = []
+    regions: list[Region] = []
+    hidden: list[tuple[int, int]] = []
+    for match in _DIRECTIVE.finditer(visible):
+        word = match[1]
+        condition = " ".join(text[match.start(2) : match.end(2)].replace("\\\n", " ").split("//")[0].split())
+        if word.startswith("if"):
+            opened.append([(match.start(), match.end(), word, condition)])
+            continue
+        if not opened:
+            continue
+        opened[-1].append((match.start(), match.end(), word, condition))
+        if word != "endif":
+            continue
+        directives = opened.pop()
+        if not _cuts(visible, directives):
+            continue
+        first_start, first_end, first_word, condition = directives[0]
+        if first_word == "ifdef":
+            condition = f"defined({condition})"
+        elif first_word == "ifndef":
+            condition = f"!(defined({condition}))"
+        line = bisect_right(starts, first_start)
+        kept_end = directives[1][0]
+        blank.append((first_start, first_end))
+        regions.append(Region(first_end, kept_end, condition, line))
+        blank.append((kept_end, directives[-1][1]))
+        if len(directives) > 2:
+            hidden.append((bisect_right(starts, directives[1][1]) + 1, bisect_right(starts, directives[-1][0]) - 1))
+    for start, end in blank:
+        source = source[:start] + _NOT_NEWLINE.sub(_blank, source[start:end]) + source[end:]
+    return source, tuple(sorted(regions)), tuple(hidden)
+
+
+def _cuts(visible: str, directives: list[tuple[int, int, str, str]]) -> bool:
+    """Whether an #if block cuts through a statement, so that its branches are none by themselves."""
+    before = visible[max(0, directives[0][0] - 2000) : directives[0][0]]
+    while True:  # directives before it are no code
+        stripped = before.rstrip()
+        line = stripped.rfind("\n") + 1
+        if stripped[line:].lstrip()[:1] != "#":
+            break
+        before = stripped[:line]
+    last = stripped[-1:]
+    if last and last in ",(=<+-&|?":
+        return True
+    for (_, start, _, _), (end, _, _, _) in pairwise(directives):
+        body = visible[start:end]
+        depth = round_depth = 0
+        for mark in _BRACES.finditer(body):
+            sign = mark[0]
+            if sign == "{":
+                depth += 1
+            elif sign == "}":
+                depth -= 1
+                if depth < 0:
+                    return True
+            elif sign == "(":
+                round_depth += 1
+            else:
+                round_depth -= 1
+                if round_depth < 0:
+                    return True
+        if depth or round_depth:
+            return True
+        if _STARTS_INSIDE.match(body) or _ENDS_INSIDE.search(body) or _HEADED.match(body):
+            return True
+    return False

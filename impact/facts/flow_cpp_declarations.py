@@ -1,0 +1,347 @@
+"""What C++ functions declare: variables and what they begin with, parameters, and lambdas as functions of their own."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+from tree_sitter import Node
+
+from .flow import Assignment, Call, Expr, Function, Parameter
+from .flow_cpp_grammar import (
+    ABSTRACT_FUNCTION,
+    ARGUMENTS,
+    BINDING,
+    BRACES,
+    CAPTURE_INITIALIZER,
+    CAPTURES,
+    COMPOUND,
+    DECLARATION,
+    DECLARATORS,
+    DECLARED_TYPES,
+    EQUALS,
+    FUNCTION_DECLARATOR,
+    IDENTIFIER,
+    INIT_DECLARATOR,
+    LAMBDA,
+    NAMES,
+    OPTIONAL_PARAMETER,
+    PARAMETER,
+    PARAMETERS,
+    POINTER_DECLARATOR,
+    REFERENCE,
+    RVALUE,
+    TRAILING_RETURN,
+    TYPE_QUALIFIER,
+    TYPES,
+    VARIADIC_PARAMETER,
+    grammatical,
+    listed_in,
+)
+from .flow_cpp_values import READ, VALUES, Position, Values, bare, flat
+
+
+class Declarations(Values):
+    """The reader of declarations inside functions."""
+
+    def written_type(self, children: list[Node]) -> str:
+        """The type that a declaration begins with, without its declarators."""
+        pieces: list[str] = []
+        typed = False
+        for child in children:
+            number = child.kind_id
+            if number == TYPE_QUALIFIER:
+                pieces.append(self.text[child.start_byte : child.end_byte])
+            elif number in DECLARED_TYPES:
+                name = child.child_by_field_name("name")
+                pieces.append(self.said(name) if name is not None else "")
+                typed = True
+            elif number in TYPES and not typed:
+                pieces.append(self.said(child))
+                typed = True
+            elif typed:
+                break
+        return " ".join(pieces) if len(pieces) > 1 else pieces[0] if pieces else ""
+
+    def declared(self, node: Node) -> tuple[Node | None, str]:
+        """The name inside a declarator and the marks `*`, `&`, `&&` around it."""
+        marks = ""
+        for _ in range(64):
+            number = node.kind_id
+            if number in NAMES or number == BINDING:
+                return node, marks
+            if number in (POINTER_DECLARATOR, REFERENCE):
+                mark = node.children[0]
+                marks += self.text[mark.start_byte : mark.end_byte]
+            for child in node.children:
+                if child.kind_id in DECLARATORS:
+                    node = child
+                    break
+            else:
+                return None, marks
+        return None, marks
+
+    def declaration(self, node: Node, guard: int, position: Position, target: str) -> Expr:
+        """Local variables."""
+        children = node.children
+        kind_ = ""
+        value = Expr("other")
+        typed = False
+        for index, child in enumerate(children):
+            number = child.kind_id
+            if number == INIT_DECLARATOR:
+                if not typed:
+                    kind_, typed = self.written_type(children), True
+                value = self.initialised(child, guard, kind_)
+            elif number in DECLARATORS and (number not in NAMES or typed or self.is_declarator(node, index)):
+                if not typed:
+                    kind_, typed = self.written_type(children), True
+                if number == FUNCTION_DECLARATOR:
+                    self.constructed(child, guard, kind_)
+                    continue
+                if number == REFERENCE and self.called_after(child, guard, kind_):
+                    continue
+                given = children[index + 1] if index + 1 < len(children) else None
+                if given is not None and given.kind_id == EQUALS and index + 2 < len(children):
+                    # `if (auto x = f())` has no init_declarator.
+                    value = self.kept(child, children[index + 2], guard, kind_)
+                    break
+                name, marks = self.declared(child)
+                if name is None:
+                    continue
+                variable = self.text[name.start_byte : name.end_byte]
+                self.known.add(variable)
+                self.assignments.append(
+                    Assignment(variable, Expr("make", kind_ + marks), self.line(name), guard, kind_ + marks)
+                )
+            elif number in DECLARED_TYPES:
+                self.local_type(child)
+        return value
+
+    def is_declarator(self, node: Node, index: int) -> bool:
+        return node.field_name_for_child(index) == "declarator"
+
+    def local_type(self, node: Node) -> None:
+        """A class inside a function; who reads files says what is done with it."""
+
+    def local_name(self, node: Node) -> None:
+        """Another name for something inside a function; the same."""
+
+    def initialised(self, node: Node, guard: int, kind_: str) -> Expr:
+        children = node.children
+        if len(children) == 3 and children[1].kind_id == EQUALS:
+            return self.kept(children[0], children[2], guard, kind_)
+        children = grammatical(node)
+        if len(children) == 3:
+            return self.kept(children[0], children[2], guard, kind_)
+        if len(children) != 2:
+            return self.anything(node, guard, READ, "")
+        name, marks = self.declared(children[0])
+        given = children[1]
+        if name is None or given.kind_id not in (ARGUMENTS, BRACES):
+            return self.anything(node, guard, READ, "")
+        variable = self.text[name.start_byte : name.end_byte]
+        if kind_.endswith("auto") or marks:
+            inner = listed_in(given)
+            if len(inner) == 1:
+                return self.kept(children[0], inner[0], guard, kind_)
+        value = Expr("make", kind_, self.arguments(given, guard, bare(kind_)))
+        self.known.add(variable)
+        self.assignments.append(Assignment(variable, value, self.line(name), guard, kind_ + marks))
+        return value
+
+    def kept(self, declarator: Node, given: Node, guard: int, kind_: str) -> Expr:
+        """`T x = given`."""
+        if declarator.kind_id == IDENTIFIER:
+            name, marks = declarator, ""
+        else:
+            name, marks = self.declared(declarator)
+            if name is None:
+                return self.value(given, guard, READ)
+        if name.kind_id == BINDING:
+            value = self.value(given, guard, READ)
+            line = self.line(name)
+            variables = [child for child in name.children if child.kind_id == IDENTIFIER]
+            for index, child in enumerate(variables):
+                variable = self.text[child.start_byte : child.end_byte]
+                self.known.add(variable)
+                part = Expr("index", "", (value, Expr("number", str(index))))
+                self.assignments.append(Assignment(variable, part, line, guard, kind_ + marks))
+            return value
+        variable = self.text[name.start_byte : name.end_byte]
+        value = self.value(given, guard, READ, variable)
+        self.known.add(variable)
+        self.assignments.append(Assignment(variable, value, self.line(name), guard, kind_ + marks))
+        return value
+
+    def constructed(self, node: Node, guard: int, kind_: str) -> None:
+        """`T x(a, f());` in a function, which the grammar takes for a function's declaration."""
+        children = grammatical(node)
+        name, marks = self.declared(children[0])
+        listed = next((child for child in children if child.kind_id == PARAMETERS), None)
+        if name is None or listed is None:
+            return
+        types = listed_in(listed)
+        if not types or kind_ == "void":
+            return
+        parts: list[Expr] = []
+        callee = bare(kind_)
+        for child in types:
+            part = self.taken_for_parameter(child, guard, ("pass", callee, len(parts)))
+            if part is None:
+                return
+            parts.append(part)
+        variable = self.text[name.start_byte : name.end_byte]
+        self.known.add(variable)
+        self.assignments.append(
+            Assignment(variable, Expr("make", kind_, tuple(parts)), self.line(name), guard, kind_ + marks)
+        )
+
+    def called_after(self, node: Node, guard: int, asked: str) -> bool:
+        """`a && g(b);`, which the grammar takes for the declaration of a function that gives an `a &&`."""
+        children = grammatical(node)
+        if len(children) != 2 or children[0].kind_id != RVALUE or children[1].kind_id != FUNCTION_DECLARATOR:
+            return False
+        name, listed = children[1].children[0], children[1].children[-1]
+        if listed.kind_id != PARAMETERS:
+            return False
+        line, column = self.place(name.start_byte)
+        inner = self.guard("if", asked, line, guard)
+        callee = bare(self.text[name.start_byte : name.end_byte])
+        parts: list[Expr] = []
+        for child in listed_in(listed):
+            part = self.taken_for_parameter(child, inner, ("pass", callee, len(parts)))
+            if part is None:
+                return True
+            parts.append(part)
+        self.calls.append(Call(callee, tuple(parts), line, column, inner))
+        return True
+
+    def taken_for_parameter(self, node: Node, guard: int, position: Position) -> Expr | None:
+        """An argument that the grammar took for a parameter's type; None when it is a parameter."""
+        children = grammatical(node)
+        if node.kind_id != PARAMETER or not children or children[0].kind_id not in TYPES:
+            return None
+        name = bare(self.text[children[0].start_byte : children[0].end_byte])
+        if len(children) == 1:
+            if name in self.known:
+                self.touch(name, node, guard, position)
+            return Expr("name", name)
+        if len(children) == 2 and children[1].kind_id == ABSTRACT_FUNCTION:
+            listed = next((child for child in children[1].children if child.kind_id == PARAMETERS), None)
+            parts: list[Expr] = []
+            for child in listed_in(listed) if listed is not None else ():
+                part = self.taken_for_parameter(child, guard, ("pass", name, len(parts)))
+                if part is None:
+                    return None
+                parts.append(part)
+            line, column = self.place(children[0].start_byte)
+            self.calls.append(Call(name, tuple(parts), line, column, guard))
+            return Expr("call", name, tuple(parts))
+        return None
+
+    # Functions
+
+    def parameters(self, listed: Node | None, guard: int = -1) -> tuple[Parameter, ...]:
+        """The parameters of a function; their names are known from here on."""
+        result: list[Parameter] = []
+        if listed is None:
+            return ()
+        for child in listed.children:
+            number = child.kind_id
+            if number not in (PARAMETER, OPTIONAL_PARAMETER, VARIADIC_PARAMETER):
+                continue
+            children = child.children
+            default: Expr | None = None
+            end = child.end_byte
+            name: Node | None = None
+            typed = False
+            for index, part in enumerate(children):
+                kind_ = part.kind_id
+                if kind_ == EQUALS:
+                    end = part.start_byte
+                    if index + 1 < len(children):
+                        default = self.value(children[index + 1], guard)
+                    break
+                if typed:
+                    if kind_ in DECLARATORS:
+                        name, _ = self.declared(part)
+                elif kind_ in TYPES or kind_ in DECLARED_TYPES:
+                    typed = True
+            start = child.start_byte
+            if name is None:
+                if child.child_count == 1 and self.text[start:end] == "void":
+                    continue
+                result.append(Parameter("", flat(self.text[start:end]), default))
+                continue
+            said = self.text[name.start_byte : name.end_byte]
+            self.known.add(said)
+            written = self.text[start : name.start_byte] + " " + self.text[name.end_byte : end]
+            result.append(Parameter(said, flat(written), default))
+        return tuple(result)
+
+    def lambda_(self, node: Node, guard: int, position: Position, target: str) -> Expr:
+        """A lambda becomes a Function; what it is called is its Expr."""
+        line, column = self.place(node.start_byte)
+        name = f"{self.name}::lambda@{line}:{column}" if self.name else f"lambda@{line}:{column}"
+        if self.name == "" and self.owner:
+            name = f"{self.owner}::{name}"
+        inits: list[tuple[str, Expr]] = []
+        body: Node | None = None
+        listed: Node | None = None
+        returns = ""
+        for child in node.children:
+            number = child.kind_id
+            if number == CAPTURES:
+                for capture in child.children:
+                    if capture.kind_id == CAPTURE_INITIALIZER:
+                        parts = grammatical(capture)
+                        said = self.text[parts[0].start_byte : parts[0].end_byte].lstrip("&")
+                        inits.append((said, self.value(parts[-1], guard, READ)))
+            elif number == COMPOUND:
+                body = child
+            elif number == ABSTRACT_FUNCTION:
+                for part in child.children:
+                    if part.kind_id == PARAMETERS:
+                        listed = part
+                    elif part.kind_id == TRAILING_RETURN:
+                        returns = self.said(part).removeprefix("->").strip()
+        state = self.state()
+        self.begin(set(self.known))
+        self.name = name
+        parameters = self.parameters(listed)
+        for said, value in inits:
+            self.known.add(said)
+            self.assignments.append(Assignment(said, value, line, -1, "auto"))
+        if body is not None:
+            self.run(body)
+        self.close(parameters, line, bisect_right(self.starts, max(0, node.end_byte - 1)), returns)
+        self.restore(state)
+        return Expr("lambda", name)
+
+    def close(
+        self, parameters: tuple[Parameter, ...], line: int, end: int, returns: str = "", virtual: bool = False
+    ) -> None:
+        """Notes the function it is in."""
+        self.functions.append(
+            Function(
+                self.name,
+                self.owner,
+                parameters,
+                line,
+                end,
+                tuple(self.guards),
+                tuple(self.calls),
+                tuple(self.assignments),
+                tuple(self.accesses),
+                (),
+                returns,
+                virtual,
+            )
+        )
+
+    def run(self, body: Node, guard: int = -1) -> None:
+        """The statements of a function; given by who knows statements."""
+        raise NotImplementedError
+
+
+VALUES.update({LAMBDA: Declarations.lambda_, DECLARATION: Declarations.declaration})

@@ -1,0 +1,652 @@
+"""C++ statements to guards: under which conditions what stands in a function runs.
+
+Every statement tells how control leaves it: STAYS (what follows runs), JUMPS (it never does), BREAKS (it leaves the
+switch or loop around it), or, where it depends, the conditions under which what follows runs. Those are guards too,
+with `early` set. A jump out of a loop from inside it says nothing about what follows the loop.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from typing import NamedTuple
+
+from tree_sitter import Node
+
+from .flow import Assignment, Expr
+from .flow_cpp_declarations import Declarations
+from .flow_cpp_grammar import (
+    ASSERTS,
+    CALL,
+    COMMENT,
+    COMPOUND,
+    CONDITION,
+    DECLARATION,
+    DECLARED_TYPES,
+    ERROR,
+    FUNCTION_DECLARATOR,
+    NEVER_RETURNS,
+    PARAMETERS,
+    grammatical,
+    kind,
+    listed_in,
+)
+from .flow_cpp_values import ESCAPE, READ, RETURN, VALUES, flat
+
+
+class Condition(NamedTuple):
+    """What must hold for what follows a statement to run. code: the text in C++, where that is another."""
+
+    kind: str
+    text: str
+    line: int
+    code: str = ""
+
+
+STAYS = 0
+JUMPS = 1
+BREAKS = 2
+Leaving = int | tuple[Condition, ...]
+
+ELSE = kind("else_clause")
+CASE = kind("case_statement")
+CATCH = kind("catch_clause")
+FIELD_INITIALIZERS = kind("field_initializer_list")
+EXPRESSION_STATEMENT = kind("expression_statement")
+IF = kind("if_statement")
+DO_WORD = kind("do", False)
+SEMICOLON = kind(";", False)
+COLON = kind(":", False)
+CASE_WORD = kind("case", False)
+INIT_STATEMENT = kind("init_statement")
+PREPROC_ELSE = kind("preproc_else")
+PREPROC_ELIF = kind("preproc_elif")
+PREPROC_ELIFDEF = kind("preproc_elifdef")
+PREPROC_IF = kind("preproc_if")
+PREPROC_IFDEF = kind("preproc_ifdef")
+ENDIF = kind("#endif", False)
+ALTERNATIVES = (PREPROC_ELSE, PREPROC_ELIF, PREPROC_ELIFDEF)
+LABELED = kind("labeled_statement")
+
+_MARKS = re.compile(r"[()\[\]{}]|\|\||\?|,|(?<![=!<>])=(?!=)")
+LONGEST_COMPOSED = 3000
+MOST_CONDITIONS = 500
+MOST_VALUES = 64
+
+
+def negated(conditions: tuple[Condition, ...]) -> str | None:
+    """The text of when not all of some conditions hold; None when that has no words."""
+    pieces: list[str] = []
+    for condition in conditions:
+        if condition.kind == "unless":
+            pieces.append(condition.text)
+        elif condition.kind in ("if", "case"):
+            pieces.append(f"!({condition.code or condition.text})")
+        else:
+            return None
+    return " || ".join(grouped(piece) for piece in pieces) if len(pieces) > 1 else pieces[0]
+
+
+def grouped(text: str) -> str:
+    """A condition that may stand beside `&&`."""
+    depth = 0
+    for mark in _MARKS.finditer(text):
+        sign = mark[0]
+        if sign in "([{":
+            depth += 1
+        elif sign in ")]}":
+            depth -= 1
+        elif depth == 0:
+            return f"({text})"
+    return text
+
+
+class Statements(Declarations):
+    """The reader of statements."""
+
+    def run(self, body: Node, guard: int = -1) -> None:
+        self.statement(body, guard)
+
+    def statement(self, node: Node, guard: int) -> Leaving:
+        if self.regions:
+            guard = self.regional(node, guard)
+        read = STATEMENTS.get(node.kind_id)
+        if read is not None:
+            return read(self, node, guard)
+        value = VALUES.get(node.kind_id)
+        if value is not None:
+            value(self, node, guard, READ, "")
+        elif node.child_count:
+            return self.block(node, guard)
+        return STAYS
+
+    def regional(self, node: Node, guard: int) -> int:
+        """Adds the conditions of blanked directives that a statement, but not the one around it, stands under."""
+        start = node.start_byte
+        parent = node.parent
+        if parent is not None and parent.kind_id == ELSE:
+            parent = parent.parent
+        for region in self.regions:
+            if region.start <= start < region.end:
+                if parent is not None and region.start <= parent.start_byte:
+                    continue
+                guard = self.guard("cpp", region.condition, region.line, guard)
+        return guard
+
+    def block(self, node: Node, guard: int) -> Leaving:
+        return self.sequence(node.named_children, guard)
+
+    def sequence(self, children: list[Node], guard: int) -> Leaving:
+        """Statements one after the other."""
+        base = guard
+        ended = STAYS
+        conditions: list[Condition] = []
+        headed: Node | None = None
+        regions = self.regions
+        for child in children:
+            number = child.kind_id
+            if number == COMMENT:
+                continue
+            if headed is not None:
+                outer = self.guard("macro", self.said(headed), self.line(headed), guard)
+                headed = None
+                self.statement(child, outer)
+                continue
+            if number == EXPRESSION_STATEMENT and child.child_count == 2 and child.children[1].is_missing:
+                if self.heads(child, children):
+                    headed = child.children[0]
+                    self.value(headed, guard)
+                    continue
+            elif number == LABELED:
+                guard, conditions, ended = base, [], STAYS
+            if regions:
+                leaving = self.statement(child, guard)
+            else:
+                read = STATEMENTS.get(number)
+                leaving = self.statement(child, guard) if read is None else read(self, child, guard)
+            if leaving == STAYS or ended:
+                continue
+            if not isinstance(leaving, tuple):
+                ended = leaving
+                continue
+            conditions += leaving
+            for condition in leaving:
+                guard = self.guard(condition.kind, condition.text, condition.line, guard, True)
+        return ended or tuple(conditions) or STAYS
+
+    def heads(self, node: Node, children: list[Node]) -> bool:
+        """Whether `NAME(...)` without a semicolon is the head of the statement that follows it: one on the same line,
+        or further to the right."""
+        following = next((child for child in children if child.start_byte >= node.end_byte and child.is_named), None)
+        if following is None or node.children[0].kind_id != CALL:
+            return False
+        _line, column = self.place(node.start_byte)
+        next_line, next_column = self.place(following.start_byte)
+        last_line = bisect_right(self.starts, node.end_byte)
+        return next_line == last_line or (next_line <= last_line + 1 and next_column > column)
+
+    # Conditions
+
+    def condition(self, node: Node, guard: int) -> str:
+        """Reads the condition in parentheses of an if, while or switch; gives its text."""
+        children = listed_in(node)
+        for child in children:
+            if child.kind_id == INIT_STATEMENT:
+                for part in child.children:
+                    if part.is_named:
+                        self.statement(part, guard)
+            else:
+                self.value(child, guard, READ, None)
+        if not children:
+            return ""
+        return self.outer_text(children[-1])
+
+    def if_(self, node: Node, guard: int) -> Leaving:
+        """An if with its chain of else-ifs, which is walked along since it is a deep tree."""
+        branches: list[tuple[Condition, Leaving]] = []
+        last: Leaving = STAYS
+        while True:
+            asked: Node | None = None
+            then: Node | None = None
+            other: Node | None = None
+            for child in node.children:
+                number = child.kind_id
+                if number == CONDITION:
+                    asked = child
+                elif number == ELSE:
+                    other = child
+                elif asked is not None and child.is_named and number != COMMENT:
+                    then = child
+            if asked is None:
+                return self.sequence(node.named_children, guard)
+            line = self.line(node)
+            text = self.condition(asked, guard)
+            leaving = self.statement(then, self.guard("if", text, line, guard)) if then is not None else STAYS
+            branches.append((Condition("unless", text, line), leaving))
+            if other is None:
+                break
+            guard = self.guard("unless", text, line, guard)
+            follows = next(
+                (child for child in reversed(other.children) if child.is_named and child.kind_id != COMMENT), None
+            )
+            if follows is None:
+                break
+            if follows.kind_id == IF and not self.regions:
+                node = follows
+                continue
+            last = self.statement(follows, guard)
+            break
+        for asked_, leaving in reversed(branches):
+            last = self.either(asked_, leaving, last)
+        return last
+
+    def either(self, asked: Condition, yes: Leaving, no: Leaving) -> Leaving:
+        """How control leaves an if, from how it leaves its branches. asked: that its condition does not hold."""
+        yes_ends = yes in (JUMPS, BREAKS)
+        no_ends = no in (JUMPS, BREAKS)
+        if yes_ends and no_ends:
+            return yes if yes == no else BREAKS
+        if yes_ends:
+            return (asked, *no) if isinstance(no, tuple) and len(no) < MOST_CONDITIONS else (asked,)
+        if no_ends:
+            holds = Condition("if", asked.text, asked.line)
+            return (holds, *yes) if isinstance(yes, tuple) and len(yes) < MOST_CONDITIONS else (holds,)
+        if yes == STAYS and isinstance(no, tuple) and len(no) == 1 and no[0].kind == "if":
+            # Branches that go on, before an else that does not.
+            text = f"{asked.text} || {no[0].text}"
+            return (Condition("if", text, asked.line),) if len(text) < LONGEST_COMPOSED else STAYS
+        result: list[Condition] = []
+        for head, leaving in ((grouped(asked.text), yes), (f"!({asked.text})", no)):
+            if isinstance(leaving, tuple):
+                tail = negated(leaving)
+                if tail is not None and len(head) + len(tail) < LONGEST_COMPOSED:
+                    result.append(Condition("unless", f"{head} && {grouped(tail)}", leaving[0].line))
+        return tuple(result) or STAYS
+
+    # Loops
+
+    def while_(self, node: Node, guard: int) -> Leaving:
+        asked: Node | None = None
+        for child in node.children:
+            if child.kind_id == CONDITION:
+                asked = child
+            elif asked is not None and child.is_named and child.kind_id != COMMENT:
+                text = self.condition(asked, guard)
+                self.statement(child, self.guard("while", text, self.line(node), guard))
+                return STAYS
+        return STAYS
+
+    def for_(self, node: Node, guard: int) -> Leaving:
+        children = grammatical(node)
+        semicolons = 0
+        text = ""
+        update: list[Node] = []
+        body: Node | None = None
+        closed = False
+        for child in children:
+            number = child.kind_id
+            if number == SEMICOLON:
+                semicolons += 1
+            elif not child.is_named:
+                closed = closed or child.kind_id == RIGHT_ROUND
+            elif closed:
+                body = child
+            elif number in (DECLARATION, INIT_STATEMENT):
+                self.statement(child, guard)
+                semicolons += 1
+            elif semicolons == 0:
+                self.value(child, guard, READ, None)
+            elif semicolons == 1:
+                self.value(child, guard, READ, None)
+                text = self.outer_text(child)
+            else:
+                update.append(child)
+        inner = self.guard("while", text or "true", self.line(node), guard)
+        if body is not None:
+            self.statement(body, inner)
+        for child in update:
+            self.value(child, inner, READ, None)
+        return STAYS
+
+    def range_for(self, node: Node, guard: int) -> Leaving:
+        children = node.children
+        declarator = node.child_by_field_name("declarator")
+        walked = node.child_by_field_name("right")
+        body = node.child_by_field_name("body")
+        if declarator is None or walked is None or body is None:
+            return self.sequence(node.named_children, guard)
+        container = self.value(walked, guard, READ)
+        name, marks = self.declared(declarator)
+        head_end = next((child.start_byte for child in children if child.kind_id == RIGHT_ROUND), walked.end_byte)
+        head = next((child.end_byte for child in children if child.kind_id == LEFT_ROUND), node.start_byte)
+        line = self.line(node)
+        inner = self.guard("for", flat(self.text[head:head_end]), line, guard)
+        if name is not None:
+            type_ = self.written_type(children)
+            for part in name.children or (name,):
+                if part.is_named:
+                    variable = self.text[part.start_byte : part.end_byte]
+                    self.known.add(variable)
+                    value = Expr("index", "", (container, Expr("other")))
+                    self.assignments.append(Assignment(variable, value, line, inner, type_ + marks))
+        self.statement(body, inner)
+        return STAYS
+
+    def do(self, node: Node, guard: int) -> Leaving:
+        body = node.child_by_field_name("body")
+        asked = node.child_by_field_name("condition")
+        if body is None or asked is None:
+            return self.sequence(node.named_children, guard)
+        text = self.outer_text(asked)
+        inner = self.guard("do", text, self.line(node), guard)
+        leaving = self.statement(body, inner)
+        self.value(asked, inner)
+        # `do { ... } while (false)` runs once: a return inside is one outside.
+        return JUMPS if leaving == JUMPS else STAYS
+
+    # Switch
+
+    def switch(self, node: Node, guard: int) -> Leaving:
+        asked = next((child for child in node.children if child.kind_id == CONDITION), None)
+        body = node.child_by_field_name("body")
+        if asked is None or body is None:
+            return self.sequence(node.named_children, guard)
+        subject = self.condition(asked, guard)
+        line = self.line(node)
+        cases = list(self.cases(body))
+        named = [value for value, *_ in cases if value is not None]
+        falling: list[str] = []
+        other = False
+        # Per label: how control leaves it at its end.
+        leavings: list[tuple[str | None, Leaving]] = []
+        for value, case, statements, condition in cases:
+            if value is None:
+                other = True
+            else:
+                falling.append(value)
+            text = self.case_text(subject, falling, other, named)
+            inner = guard
+            if condition is not None:
+                inner = self.guard("cpp", condition, self.line(case), inner)
+            if text:
+                inner = self.guard("case", text, self.line(case), inner)
+            if not statements:
+                leavings.append((value, STAYS))
+                continue
+            leaving = self.sequence(statements, inner)
+            leavings.append((value, leaving))
+            if leaving in (JUMPS, BREAKS):
+                falling, other = [], False
+        for child in body.children:
+            if child.kind_id != CASE and child.is_named and child.kind_id not in PREPROC:
+                self.statement(child, guard)
+        return self.after_switch(subject, leavings, line)
+
+    def cases(self, body: Node, condition: str | None = None):
+        """The labels of a switch, nested ones too: value (None for default), node, statements, condition of #if."""
+        for child in body.children:
+            if child.kind_id == CASE:
+                yield from self.labels(child, condition)
+            elif child.kind_id in PREPROC:
+                asked, statements, rest = self.branch(child)
+                for part in statements:
+                    if part.kind_id == CASE:
+                        yield from self.labels(part, asked)
+                while rest is not None:
+                    _, statements, rest = self.branch(rest)
+                    for part in statements:
+                        if part.kind_id == CASE:
+                            yield from self.labels(part, f"!({asked})")
+
+    def labels(self, case: Node, condition: str | None):
+        children = case.children
+        colon = next((index for index, child in enumerate(children) if child.kind_id == COLON), len(children) - 1)
+        value: str | None = None
+        if children[0].kind_id == CASE_WORD:
+            value = flat(self.text[children[0].end_byte : children[colon].start_byte])
+        statements: list[Node] = []
+        nested: Node | None = None
+        for child in children[colon + 1 :]:
+            if child.kind_id == CASE:
+                nested = child
+                break
+            statements.append(child)
+        yield value, case, [child for child in statements if child.is_named and child.kind_id != COMMENT], condition
+        if nested is not None:
+            yield from self.labels(nested, condition)
+
+    @staticmethod
+    def case_text(subject: str, falling: list[str], other: bool, named: list[str]) -> str:
+        if other:
+            if len(named) > MOST_CONDITIONS:
+                return f"{subject} other than {len(named)} values"
+            rest = [value for value in named if value not in falling]
+            return f"{subject} other than {', '.join(rest)}" if rest else ""
+        if len(falling) > MOST_VALUES:
+            return f"{subject} == one of {len(falling)} values"
+        return f"{subject} == {' or '.join(falling)}"
+
+    def after_switch(self, subject: str, leavings: list[tuple[str | None, Leaving]], line: int) -> Leaving:
+        jumping: list[str | None] = []
+        staying: list[str | None] = []
+        last: Leaving = STAYS
+        for value, leaving in reversed(leavings):
+            # A label without an end of its own falls into the next one.
+            if leaving != STAYS and not isinstance(leaving, tuple):
+                last = leaving
+            (jumping if last == JUMPS else staying).append(value)
+        if not jumping:
+            return STAYS
+        if None in jumping:
+            if not staying:
+                return JUMPS
+            values = [str(value) for value in reversed(staying)]
+            code = " || ".join(f"{subject} == {value}" for value in values)
+            return (Condition("case", f"{subject} == {' or '.join(values)}", line, code),)
+        values = [str(value) for value in reversed(jumping)]
+        code = " && ".join(f"{subject} != {value}" for value in values)
+        return (Condition("case", f"{subject} other than {', '.join(values)}", line, code),)
+
+    # Exceptions, jumps
+
+    def try_(self, node: Node, guard: int) -> Leaving:
+        leaving: Leaving = STAYS
+        caught: list[tuple[Condition, Leaving]] = []
+        for child in node.children:
+            number = child.kind_id
+            if number == CATCH:
+                listed = next((part for part in child.children if part.kind_id == PARAMETERS), None)
+                text = flat(self.text[listed.start_byte + 1 : listed.end_byte - 1]) if listed is not None else "..."
+                line = self.line(child)
+                self.parameters(listed)
+                body = next((part for part in child.children if part.kind_id == COMPOUND), None)
+                inner = self.guard("catch", text, line, guard)
+                left = self.statement(body, inner) if body is not None else STAYS
+                caught.append((Condition("catch", text, line), left))
+            elif number == COMPOUND:
+                leaving = self.statement(child, guard)
+            elif number == FIELD_INITIALIZERS:
+                self.statement(child, guard)
+        going_on = [asked for asked, left in caught if left != JUMPS and left != BREAKS]
+        if leaving in (JUMPS, BREAKS):
+            if not going_on:
+                return leaving
+            return (going_on[0],) if len(going_on) == 1 else STAYS
+        conditions = leaving if isinstance(leaving, tuple) else ()
+        conditions += tuple(
+            Condition("unless", f"catch ({asked.text})", asked.line)
+            for asked, left in caught
+            if left in (JUMPS, BREAKS)
+        )
+        return conditions or STAYS
+
+    def returned(self, node: Node, guard: int) -> Leaving:
+        for child in node.children:
+            if child.is_named and child.kind_id != COMMENT:
+                value = self.value(child, guard, ESCAPE, RETURN)
+                self.assignments.append(Assignment("", value, self.line(node), guard, "", "return"))
+        return JUMPS
+
+    def jump(self, node: Node, guard: int) -> Leaving:
+        return JUMPS
+
+    def broken(self, node: Node, guard: int) -> Leaving:
+        return BREAKS
+
+    def thrown_(self, node: Node, guard: int) -> Leaving:
+        self.anything(node, guard, ESCAPE, "")
+        return JUMPS
+
+    def expression(self, node: Node, guard: int) -> Leaving:
+        child = node.children[0]
+        number = child.kind_id
+        if number == COMMENT:
+            child = next((part for part in node.children if part.kind_id != COMMENT), child)
+            number = child.kind_id
+        value = VALUES[number](self, child, guard, READ, "")
+        if number == CALL:
+            if value.kind == "call":
+                if value.text in NEVER_RETURNS:
+                    return JUMPS
+                if value.text in ASSERTS and value.parts:
+                    arguments = child.children[-1].children
+                    return (Condition("if", self.outer_text(arguments[1]), self.line(node)),)
+        elif number == THROW:
+            return JUMPS
+        return STAYS
+
+    def labeled(self, node: Node, guard: int) -> Leaving:
+        return self.sequence(node.named_children[1:], guard)
+
+    def macro_block(self, node: Node, guard: int) -> Leaving:
+        """`NAME(...) { ... }` inside a function, which the grammar takes for a function's definition."""
+        children = grammatical(node)
+        body = next((child for child in children if child.kind_id == COMPOUND), None)
+        head = next((child for child in children if child.kind_id == FUNCTION_DECLARATOR), None)
+        if body is None or head is None:
+            return self.sequence(node.named_children, guard)
+        known = set(self.known)
+        self.parameters(next((part for part in head.children if part.kind_id == PARAMETERS), None), guard)
+        text = flat(self.text[node.start_byte : body.start_byte])
+        self.statement(body, self.guard("macro", text, self.line(node), guard))
+        self.known = known | self.known
+        return STAYS
+
+    # Preprocessor
+
+    def branch(self, node: Node) -> tuple[str, list[Node], Node | None]:
+        """The condition of an #if, #ifdef, #elif or #else, what stands in it, and the branch after it."""
+        children = node.children
+        first = children[0]
+        word = self.text[first.start_byte : first.end_byte].replace(" ", "").replace("\t", "")
+        start = 1
+        asked = ""
+        if word != "#else" and len(children) > 1:
+            asked = self.directive(children[1].start_byte)
+            start = 2
+            if word.endswith("ndef"):
+                asked = f"!(defined({asked}))"
+            elif word.endswith("def"):
+                asked = f"defined({asked})"
+        statements: list[Node] = []
+        rest: Node | None = None
+        for child in children[start:]:
+            if child.kind_id in ALTERNATIVES:
+                rest = child
+            elif child.is_named:
+                statements.append(child)
+        return asked, statements, rest
+
+    def directive(self, start: int) -> str:
+        """The rest of a directive's line."""
+        end = self.text.find("\n", start)
+        while end > 0 and self.text[end - 1] == "\\":
+            end = self.text.find("\n", end + 1)
+        return flat(self.text[start : end if end >= 0 else len(self.text)].replace("\\\n", " "))
+
+    def preprocessor(self, node: Node, guard: int) -> Leaving:
+        """#if in a function; its branches are walked along."""
+        branch: Node | None = node
+        asked_before = ""
+        ends: list[tuple[str, Leaving]] = []
+        while branch is not None:
+            asked, statements, rest = self.branch(branch)
+            line = self.line(branch)
+            if asked_before:
+                guard = self.guard("cpp", f"!({asked_before})", line, guard)
+            inner = self.guard("cpp", asked, line, guard) if asked else guard
+            ends.append((asked, self.sequence(statements, inner)))
+            asked_before = asked
+            branch = rest
+        line = self.line(node)
+        gone = [left in (JUMPS, BREAKS) for _, left in ends]
+        if all(gone) and not ends[-1][0]:
+            return ends[0][1]
+        conditions: list[Condition] = []
+        for (asked, _), jumps in zip(ends, gone, strict=True):
+            if jumps and asked:
+                conditions.append(Condition("cpp", f"!({asked})", line))
+            elif jumps and len(ends) == 2 and not gone[0]:
+                conditions.append(Condition("cpp", ends[0][0], line))
+            elif not jumps:
+                break
+        return tuple(conditions) or STAYS
+
+    def unknown(self, node: Node, guard: int) -> Leaving:
+        """What did not parse: its pieces are read all the same, and nothing is concluded from their order."""
+        for child in node.children:
+            if child.is_named:
+                self.statement(child, guard)
+        return STAYS
+
+    def local(self, node: Node, guard: int) -> Leaving:
+        self.local_type(node)
+        return STAYS
+
+    def named(self, node: Node, guard: int) -> Leaving:
+        self.local_name(node)
+        return STAYS
+
+    def nothing(self, node: Node, guard: int) -> Leaving:
+        return STAYS
+
+
+LEFT_ROUND = kind("(", False)
+RIGHT_ROUND = kind(")", False)
+THROW = kind("throw_statement")
+PREPROC = frozenset((PREPROC_IF, PREPROC_IFDEF))
+STATEMENTS = {
+    COMPOUND: Statements.block,
+    EXPRESSION_STATEMENT: Statements.expression,
+    IF: Statements.if_,
+    kind("while_statement"): Statements.while_,
+    kind("for_statement"): Statements.for_,
+    kind("for_range_loop"): Statements.range_for,
+    kind("do_statement"): Statements.do,
+    kind("switch_statement"): Statements.switch,
+    kind("try_statement"): Statements.try_,
+    kind("return_statement"): Statements.returned,
+    kind("co_return_statement"): Statements.returned,
+    kind("continue_statement"): Statements.jump,
+    kind("break_statement"): Statements.broken,
+    kind("goto_statement"): Statements.jump,
+    THROW: Statements.thrown_,
+    LABELED: Statements.labeled,
+    kind("function_definition"): Statements.macro_block,
+    PREPROC_IF: Statements.preprocessor,
+    PREPROC_IFDEF: Statements.preprocessor,
+    ERROR: Statements.unknown,
+    COMMENT: Statements.nothing,
+    **{
+        kind(name): Statements.named
+        for name in ("alias_declaration", "type_definition", "using_declaration", "namespace_alias_definition")
+    },
+    **{number: Statements.local for number in DECLARED_TYPES},
+    **{
+        kind(name): Statements.nothing
+        for name in (
+            "preproc_def", "preproc_function_def", "preproc_call", "preproc_include", "static_assert_declaration",
+            "access_specifier",
+        )
+    },
+}  # fmt: skip

@@ -1,0 +1,738 @@
+"""What stands inside C++ functions: expressions to calls, assignments and uses of variables.
+
+One walk does it all. Reading a tree in Python costs more than parsing it, so the walk looks at a node once: it takes
+the text of plain paths whole, and asks for children in one go instead of by field.
+
+A use of a parameter or local variable is judged by where it stands: a test or an operand is a `read`; an argument is a
+`pass`; so is a method called on it, with position -1; the value of another local variable is a `read` too, since the
+Assignment tells what goes on from there; all that is not known to be safe is an `escape`.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Callable
+from typing import Any
+
+from tree_sitter import Node
+
+from .flow import Access, Assignment, Call, Expr, Function, Guard
+from .flow_cpp_clean import Cleaned
+from .flow_cpp_grammar import (
+    ARGUMENTS,
+    BINARY,
+    BINDS,
+    BRACES,
+    CALL,
+    CAST,
+    CHANGES,
+    COMMENT,
+    DEPENDENT,
+    ELEMENTS,
+    ERROR,
+    FIELD,
+    FIELD_IDENTIFIER,
+    IDENTIFIER,
+    JOINING,
+    LISTS,
+    LOOKS,
+    MAKES,
+    OPERATORS,
+    PARENTHESIZED,
+    POINTEES,
+    POINTER,
+    QUALIFIED,
+    RAW_STRING,
+    SAFE,
+    SILENT,
+    STRING,
+    SUBSCRIPT,
+    TEMPLATE_FUNCTION,
+    TEMPLATE_METHOD,
+    THIS,
+    THROUGH,
+    grammatical,
+    kind,
+    listed_in,
+    noise,
+)
+
+# A position: kind of access, callee it is passed to, number of the argument.
+Position = tuple[str, str, int]
+READ: Position = ("read", "", -1)
+ESCAPE: Position = ("escape", "", -1)
+WRITE: Position = ("write", "", -1)
+RETURN = "return"  # in place of a target: no path is called so
+
+LONGEST_OTHER = 120
+LONGEST_CONDITION = 4000
+DEEPEST = 24
+NOTHING = Expr("other")
+
+_PLAIN = re.compile(r"(this->)?([A-Za-z_]\w*)(?:(?:\.|->)[A-Za-z_]\w*)*")
+_ASIDE = re.compile(r'//[^\n]*|/\*.*?\*/|("(?:[^"\\]|\\.)*")', re.DOTALL)
+_ESCAPES = {"n": "\n", "t": "\t", "\\": "\\", '"': '"', "'": "'", "0": "\0", "r": "\r"}
+_ESCAPED = re.compile(r"\\(.)", re.DOTALL)
+
+
+def flat(text: str) -> str:
+    """A piece of source on one line, without comments."""
+    if "/" in text and ("//" in text or "/*" in text):
+        text = _ASIDE.sub(lambda match: match[1] or " ", text)
+    if "\n" in text or "  " in text or "\t" in text:
+        return " ".join(text.split())
+    return text.strip()
+
+
+def bare(name: str) -> str:
+    """A name without its template arguments and without blanks."""
+    if "<" not in name and " " not in name and "\n" not in name:
+        return name
+    if "<" in name:
+        depth = 0
+        kept: list[str] = []
+        for piece in re.split(r"([<>])", name):
+            if piece == "<":
+                depth += 1
+            elif piece == ">":
+                depth -= 1
+            elif depth <= 0:
+                kept.append(piece)
+        if "operator" not in name:
+            name = "".join(kept)
+    return "".join(name.split()) if "operator" not in name else " ".join(name.split())
+
+
+class Values:
+    """The reader of one file's functions, and the function that it is in."""
+
+    def __init__(self, cleaned: Cleaned) -> None:
+        self.text = cleaned.text
+        self.starts = cleaned.starts
+        self.regions = cleaned.regions
+        self.functions: list[Function] = []
+        self.nesting = 0
+        self.name = ""
+        self.owner = ""
+        self.begin(set())
+
+    def begin(self, known: set[str]) -> None:
+        """Starts an empty function that knows some variables."""
+        self.guards: list[Guard] = []
+        self.calls: list[Call] = []
+        self.assignments: list[Assignment] = []
+        self.accesses: list[Access] = []
+        self.known = known
+
+    def state(self) -> tuple[Any, ...]:
+        """The function it is in, to be gone back to by restore()."""
+        return (self.name, self.owner, self.guards, self.calls, self.assignments, self.accesses, self.known)
+
+    def restore(self, state: tuple[Any, ...]) -> None:
+        self.name, self.owner, self.guards, self.calls, self.assignments, self.accesses, self.known = state
+
+    # Text and places
+
+    def said(self, node: Node) -> str:
+        """The source of a node on one line."""
+        text = self.text[node.start_byte : node.end_byte]
+        if "\n" in text or "  " in text or "/" in text or "\t" in text:
+            return flat(text)
+        return text
+
+    def line(self, node: Node) -> int:
+        return bisect_right(self.starts, node.start_byte)
+
+    def place(self, offset: int) -> tuple[int, int]:
+        line = bisect_right(self.starts, offset)
+        return line, offset - self.starts[line - 1] + 1
+
+    def guard(self, kind_: str, text: str, line: int, outer: int, early: bool = False) -> int:
+        """A new guard around what follows; gives its place."""
+        self.guards.append(Guard(kind_, text[:LONGEST_CONDITION], line, outer, early))
+        return len(self.guards) - 1
+
+    # Expressions
+
+    def value(self, node: Node, guard: int, position: Position = READ, target: str | None = "") -> Expr:
+        """An expression that stands in a position; target: what it is kept in, RETURN for what the function returns,
+        None where nobody asks what it says."""
+        return VALUES[node.kind_id](self, node, guard, position, target)
+
+    def other(self, node: Node) -> Expr:
+        start = node.start_byte
+        end = min(node.end_byte, start + 4 * LONGEST_OTHER)
+        return Expr("other", flat(self.text[start:end])[:LONGEST_OTHER])
+
+    def anything(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        for child in node.children:
+            read = VALUES.get(child.kind_id)
+            if read is not None:
+                read(self, child, guard, ESCAPE if position is READ else position, None)
+            elif child.child_count:
+                self.anything(child, guard, position, None)
+        return NOTHING if target is None else self.other(node)
+
+    def skipped(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        return self.other(node)
+
+    def identifier(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        start = node.start_byte
+        name = self.text[start : node.end_byte]
+        if name in self.known:
+            self.accesses.append(
+                Access(name, position[0], bisect_right(self.starts, start), guard, position[1], position[2])
+            )
+        return Expr("name", name)
+
+    def number(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        return Expr("number", self.text[node.start_byte : node.end_byte])
+
+    def this(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        return Expr("name", "this")
+
+    def string(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        text = self.text[node.start_byte : node.end_byte]
+        if text[0:1] == '"' and "\\" not in text:
+            return Expr("text", text[1:-1])
+        return Expr("text", self.literal(node))
+
+    def literal(self, node: Node) -> str:
+        """The value of a string literal."""
+        text = self.text[node.start_byte : node.end_byte]
+        if node.kind_id == RAW_STRING:
+            start, end = text.find("("), text.rfind(")")
+            return text[start + 1 : end] if start >= 0 else ""
+        text = text[text.find('"') + 1 : -1]
+        if "\\" in text:
+            text = _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], "" if match[1] == "\n" else match[0]), text)
+        return text
+
+    def strings(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        parts: list[Expr] = []
+        for child in node.children:
+            number = child.kind_id
+            if number in (STRING, RAW_STRING):
+                text = self.literal(child)
+                if parts and parts[-1].kind == "text":
+                    text = parts.pop().text + text
+                parts.append(Expr("text", text))
+            elif number == IDENTIFIER:
+                parts.append(Expr("name", self.text[child.start_byte : child.end_byte]))
+        if len(parts) == 1:
+            return parts[0]
+        return Expr("join", "+", tuple(parts))
+
+    def qualified(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        return Expr("name", bare(self.text[node.start_byte : node.end_byte]))
+
+    def field(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        start = node.start_byte
+        plain = _PLAIN.fullmatch(self.text, start, node.end_byte)
+        if plain is not None:
+            path = plain[0].replace("->", ".")
+            if plain[1] is None and plain[2] in self.known:
+                self.accesses.append(
+                    Access(path, position[0], bisect_right(self.starts, start), guard, position[1], position[2])
+                )
+            return Expr("name", path)
+        path, local = self.path(node, guard)
+        if local:
+            self.touch(path, node, guard, position)
+        return Expr("name", path)
+
+    def touch(self, path: str, node: Node, guard: int, position: Position) -> None:
+        self.accesses.append(
+            Access(path, position[0], bisect_right(self.starts, node.start_byte), guard, position[1], position[2])
+        )
+
+    def path(self, node: Node, guard: int) -> tuple[str, bool]:
+        """A path and whether it begins at a variable of the function; what stands inside, such as an index, is read."""
+        number = node.kind_id
+        if number == IDENTIFIER:
+            name = self.text[node.start_byte : node.end_byte]
+            return name, name in self.known
+        if number == FIELD:
+            plain = _PLAIN.fullmatch(self.text, node.start_byte, node.end_byte)
+            if plain is not None:
+                return plain[0].replace("->", "."), plain[1] is None and plain[2] in self.known
+            children = grammatical(node)
+            path, local = self.path(children[0], guard)
+            return f"{path}.{self.member(children[-1])}", local
+        if number == THIS:
+            return "this", False
+        if number == QUALIFIED:
+            return bare(self.text[node.start_byte : node.end_byte]), False
+        if number in (PARENTHESIZED, POINTER, CAST):
+            children = grammatical(node)
+            return self.path(children[1] if number == PARENTHESIZED else children[-1], guard)
+        if number == SUBSCRIPT:
+            children = grammatical(node)
+            path, local = self.path(children[0], guard)
+            for index in listed_in(children[1]):
+                self.value(index, guard)
+            return f"{path}.[]", local
+        if number == CALL:
+            children = grammatical(node)
+            function = children[0]
+            if function.kind_id == FIELD:
+                method = self.member(function.children[-1])
+                if method in ELEMENTS or method in POINTEES:
+                    if method in POINTEES:
+                        self.call(node, guard, READ, "")
+                        receiver = self.plain(function.children[0])
+                        return receiver if receiver is not None else (self.receiver(node), False)
+                    path, local = self.path(function.children[0], guard)
+                    for argument in listed_in(children[-1]):
+                        self.value(argument, guard)
+                    return f"{path}.[]", local
+            else:
+                arguments = listed_in(children[-1])
+                if len(arguments) == 1 and self.called(node) in THROUGH:
+                    return self.path(arguments[0], guard)
+            self.call(node, guard, ESCAPE, "")
+            return self.called(node) + "()", False
+        self.value(node, guard, ESCAPE)
+        return "()", False
+
+    def plain(self, node: Node) -> tuple[str, bool] | None:
+        """The path of a node that is nothing but names."""
+        plain = _PLAIN.fullmatch(self.text, node.start_byte, node.end_byte)
+        if plain is None:
+            return None
+        return plain[0].replace("->", "."), plain[1] is None and plain[2] in self.known
+
+    def called(self, node: Node) -> str:
+        """The callee of a call, by its text alone."""
+        function = node.children[0]
+        number = function.kind_id
+        if number == FIELD:
+            children = grammatical(function)
+            return f"{self.receiver(children[0])}.{self.member(children[-1])}"
+        if number in (IDENTIFIER, QUALIFIED, TEMPLATE_FUNCTION):
+            return bare(self.text[function.start_byte : function.end_byte])
+        return self.receiver(function)
+
+    def receiver(self, node: Node) -> str:
+        """What a method is called on, as a path; nothing is noted."""
+        number = node.kind_id
+        if number == THIS:
+            return "this"
+        if number == IDENTIFIER:
+            return self.text[node.start_byte : node.end_byte]
+        if number == QUALIFIED:
+            return bare(self.text[node.start_byte : node.end_byte])
+        if number == FIELD:
+            plain = self.plain(node)
+            if plain is not None:
+                return plain[0]
+            children = grammatical(node)
+            return f"{self.receiver(children[0])}.{self.member(children[-1])}"
+        if number == PARENTHESIZED:
+            return self.receiver(grammatical(node)[1])
+        if number in (POINTER, CAST):
+            return self.receiver(grammatical(node)[-1])
+        if number == SUBSCRIPT:
+            return self.receiver(node.children[0]) + ".[]"
+        if number == CALL:
+            name = self.called(node)
+            if name in THROUGH:
+                arguments = listed_in(node.children[-1])
+                if len(arguments) == 1:
+                    return self.receiver(arguments[0])
+            head, _, last = name.rpartition(".")
+            if head and last in ELEMENTS:
+                return head + ".[]"
+            if head and last in POINTEES:
+                return head
+            return name + "()"
+        return "()"
+
+    def member(self, node: Node) -> str:
+        """The name of a member in a field expression, without template arguments."""
+        if node.kind_id == FIELD_IDENTIFIER:
+            return self.text[node.start_byte : node.end_byte]
+        if node.kind_id == DEPENDENT:
+            node = node.children[-1]
+        return bare(self.text[node.start_byte : node.end_byte])
+
+    def call(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        """A call, which is noted, and its Expr."""
+        children = node.children
+        if len(children) != 2:
+            children = [child for child in children if child.kind_id not in (COMMENT, ERROR)]
+            if len(children) < 2:
+                return self.anything(node, guard, position, target)
+        function = children[0]
+        number = function.kind_id
+        text = self.text
+        types = ""
+        at = start = function.start_byte
+        method = ""
+        local = False
+        receiver = ""
+        if number == IDENTIFIER:
+            callee = text[start : function.end_byte]
+        elif number == FIELD:
+            plain = _PLAIN.fullmatch(text, start, function.end_byte)
+            if plain is not None:
+                callee = plain[0].replace("->", ".")
+                receiver, _, method = callee.rpartition(".")
+                at = function.end_byte - len(method)
+                local = plain[1] is None and plain[2] in self.known
+            else:
+                parts = grammatical(function)
+                member = parts[-1]
+                if member.kind_id == DEPENDENT:
+                    member = member.children[-1]
+                at = member.start_byte
+                if member.kind_id == TEMPLATE_METHOD:
+                    name, written = member.children[0], member.children[-1]
+                    method = text[name.start_byte : name.end_byte]
+                    types = flat(text[written.start_byte + 1 : written.end_byte - 1])
+                else:
+                    method = self.member(member)
+                receiver, local = self.path(parts[0], guard)
+                callee = f"{receiver}.{method}"
+        elif number == QUALIFIED:
+            callee = text[start : function.end_byte]
+            name = function
+            while name.kind_id == QUALIFIED:
+                name = name.children[-1]
+            at = name.start_byte
+            if name.kind_id == DEPENDENT:
+                name = name.children[-1]
+            if name.kind_id in (TEMPLATE_FUNCTION, TEMPLATE_METHOD):
+                written = name.children[-1]
+                types = flat(text[written.start_byte + 1 : written.end_byte - 1])
+            callee = bare(callee)
+        elif number == TEMPLATE_FUNCTION:
+            name, written = function.children[0], function.children[-1]
+            callee = text[name.start_byte : name.end_byte]
+            types = flat(text[written.start_byte + 1 : written.end_byte - 1])
+        else:
+            callee, local = self.path(function, guard)
+            if local:
+                self.touch(callee, function, guard, READ)
+
+        listed = children[-1]
+        if callee in THROUGH:
+            inner = listed_in(listed)
+            if len(inner) == 1:
+                return self.value(inner[0], guard, position, target)
+        if local and receiver:
+            if method in ELEMENTS:
+                self.touch(f"{receiver}.[]", node, guard, position)
+            elif method in POINTEES:
+                self.touch(receiver, node, guard, position)
+            elif method in LOOKS:
+                self.touch(receiver, node, guard, READ)
+            elif method in CHANGES:
+                self.touch(receiver, node, guard, WRITE)
+            else:
+                self.touch(receiver, node, guard, ("pass", callee, -1))
+        logs = noise(callee)
+        arguments: tuple[Expr, ...] = ()
+        if listed.end_byte - listed.start_byte > 2:
+            self.nesting += 1
+            if listed.kind_id in LISTS:
+                arguments = self.arguments(listed, guard, "" if logs else callee)
+            else:
+                self.value(listed, guard, ESCAPE)
+            self.nesting -= 1
+        if callee in BINDS and arguments and (callee != "bind" or arguments[0].kind == "function"):
+            return Expr("bind", "", arguments)
+        if not logs and not (method in SILENT and method):
+            line, column = self.place(at)
+            self.calls.append(
+                Call(
+                    callee,
+                    arguments,
+                    line,
+                    column,
+                    guard,
+                    types,
+                    "" if target == RETURN else target or "",
+                    target == RETURN,
+                )
+            )
+        if target is None:
+            return NOTHING
+        if self.nesting > DEEPEST:
+            return self.other(node)
+        if callee in MAKES:
+            return Expr("make", types, arguments)
+        return Expr("call", callee, arguments)
+
+    def arguments(self, listed: Node, guard: int, callee: str) -> tuple[Expr, ...]:
+        """The arguments in a list, passed to a callee; without one they are merely read."""
+        result: list[Expr] = []
+        text = self.text
+        known = self.known
+        for child in listed.named_children:
+            number = child.kind_id
+            if number == IDENTIFIER:
+                start = child.start_byte
+                name = text[start : child.end_byte]
+                if name in known:
+                    line = bisect_right(self.starts, start)
+                    self.accesses.append(
+                        Access(name, "pass", line, guard, callee, len(result))
+                        if callee
+                        else Access(name, "read", line, guard)
+                    )
+                result.append(Expr("name", name))
+            elif number != COMMENT:
+                position = ("pass", callee, len(result)) if callee else READ
+                result.append(VALUES[number](self, child, guard, position, ""))
+        return tuple(result)
+
+    def subscript(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        children = grammatical(node)
+        path, local = self.path(children[0], guard)
+        index = Expr("other")
+        for child in listed_in(children[1]):
+            index = self.value(child, guard)
+        if local:
+            self.touch(f"{path}.[]", node, guard, position)
+        return Expr("index", "", (Expr("name", path), index))
+
+    def parenthesized(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        children = grammatical(node)
+        if len(children) != 3:
+            return self.anything(node, guard, position, target)
+        return self.value(children[1], guard, position, target)
+
+    def pointer(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        children = grammatical(node)
+        inner = children[-1]
+        if self.text.startswith("&", node.start_byte):
+            number = inner.kind_id
+            if number in (QUALIFIED, TEMPLATE_FUNCTION):
+                return Expr("function", bare(self.text[inner.start_byte : inner.end_byte]))
+            if number == IDENTIFIER:
+                name = self.text[inner.start_byte : inner.end_byte]
+                if name and name not in self.known and not name.endswith("_"):
+                    return Expr("function", name)
+        return self.value(inner, guard, position, target)
+
+    def last_child(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        return self.value(grammatical(node)[-1], guard, position, target)
+
+    def binary(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        """Operators in a row are walked through, since a long row is a deep tree."""
+        operands: list[Node] = []
+        signs: list[str] = []
+        lefts: list[Node] = []
+        spine = node
+        while True:
+            children = spine.children
+            if len(children) != 3:
+                children = [child for child in children if child.kind_id not in (COMMENT, ERROR)]
+                if len(children) != 3:
+                    break
+            operands.append(children[2])
+            signs.append(OPERATORS.get(children[1].kind_id, "?"))
+            spine = children[0]
+            lefts.append(spine)
+            if spine.kind_id != BINARY:
+                break
+        if not operands:
+            return self.anything(node, guard, position, target)
+        if spine.kind_id == BINARY:
+            self.anything(spine, guard, ESCAPE, None)
+        operands.append(spine)
+        operands.reverse()
+        signs.reverse()
+        lefts.reverse()
+        joined = signs[0] in JOINING and self.nesting <= DEEPEST and all(sign == signs[0] for sign in signs)
+        parts: list[Expr] = []
+        outer = guard
+        pending: list[Node] = []
+        self.nesting += 1
+        for index, operand in enumerate(operands):
+            sign = signs[index - 1] if index else signs[0]
+            number = operand.kind_id
+            if index and (sign == "&&" or sign == "||"):
+                if index > 1 and signs[index - 2] == sign:
+                    pending.append(operands[index - 1])
+                else:
+                    guard = outer
+                    pending = [lefts[index - 1]]
+                if "(" in self.text[operand.start_byte : operand.end_byte]:
+                    holds = "if" if sign == "&&" else "unless"
+                    for asked in pending:
+                        guard = self.guard(holds, self.outer_text(asked), self.line(asked), guard)
+                    pending = []
+            if number in LITERALS:
+                read = LITERALS[number](self, operand, guard, READ, "")
+            else:
+                if sign in SAFE or (sign in ("==", "!=") and self.literal_beside(operands, index)):
+                    where = READ
+                else:
+                    where = ESCAPE
+                read = VALUES[number](self, operand, guard, where, "" if joined else None)
+            if joined:
+                parts.append(read)
+        self.nesting -= 1
+        if joined:
+            return Expr("join", signs[0], tuple(parts))
+        return NOTHING if target is None else self.other(node)
+
+    def literal_beside(self, operands: list[Node], index: int) -> bool:
+        other = operands[index - 1] if index else operands[1] if len(operands) > 1 else operands[0]
+        return other.kind_id in LITERALS
+
+    def unary(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        children = grammatical(node)
+        inner = self.value(children[-1], guard, READ, None)
+        if inner.kind == "number" and self.text[node.start_byte] == "-":
+            return Expr("number", "-" + inner.text)
+        return NOTHING if target is None else self.other(node)
+
+    def update(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        children = grammatical(node)
+        operand = children[0] if children[-1].child_count == 0 and not children[-1].is_named else children[-1]
+        path, local = self.path(operand, guard)
+        if local:
+            self.touch(path, operand, guard, WRITE)
+        sign = (
+            "+="
+            if "++" in (self.text[node.start_byte : node.start_byte + 2], self.text[node.end_byte - 2 : node.end_byte])
+            else "-="
+        )
+        self.assignments.append(Assignment(path, Expr("number", "1"), self.line(node), guard, "", sign))
+        return Expr("name", path)
+
+    def assignment(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        children = grammatical(node)
+        if len(children) != 3:
+            return self.anything(node, guard, position, target)
+        left, sign, right = children
+        path, local = self.path(left, guard)
+        if local:
+            self.touch(path, left, guard, WRITE)
+        operator = self.text[sign.start_byte : sign.end_byte]
+        followed = operator != "=" or path in self.known
+        value = self.value(right, guard, READ if followed else ("escape", path, -1), path)
+        self.assignments.append(Assignment(path, value, self.line(node), guard, "", operator, self.key(left, guard)))
+        return value
+
+    def key(self, node: Node, guard: int) -> Expr | None:
+        """The literal in the brackets of an element's path."""
+        if node.kind_id != SUBSCRIPT:
+            return None
+        inner = listed_in(grammatical(node)[1])
+        return self.value(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
+
+    def conditional(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        children = grammatical(node)
+        if len(children) != 5:
+            return self.anything(node, guard, position, target)
+        asked, _, yes, _, no = children
+        self.nesting += 1
+        condition = self.value(asked, guard, READ)
+        line = self.line(node)
+        text = self.outer_text(asked)
+        true = self.value(yes, self.guard("if", text, line, guard), position, target)
+        false = self.value(no, self.guard("unless", text, line, guard), position, target)
+        self.nesting -= 1
+        if self.nesting > DEEPEST:
+            return self.other(node)
+        return Expr("choice", "", (condition, true, false))
+
+    def outer_text(self, node: Node) -> str:
+        """A condition as written, without parentheses around the whole."""
+        while node.kind_id == PARENTHESIZED:
+            children = grammatical(node)
+            if len(children) != 3:
+                break
+            node = children[1]
+        return self.said(node)
+
+    def braces(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        if self.nesting > DEEPEST:
+            self.anything(node, guard, ESCAPE, "")
+            return self.other(node)
+        self.nesting += 1
+        parts = tuple(self.value(child, guard, ESCAPE) for child in listed_in(node))
+        self.nesting -= 1
+        return Expr("list", "", parts)
+
+    def made(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        """`new T(...)` and `T{...}`."""
+        children = grammatical(node)
+        kind_ = ""
+        parts: tuple[Expr, ...] = ()
+        self.nesting += 1
+        for child in children:
+            if child.kind_id in (ARGUMENTS, BRACES):
+                parts = self.arguments(child, guard, bare(kind_) or "new")
+            elif child.is_named and not kind_:
+                kind_ = self.said(child)
+        self.nesting -= 1
+        if self.nesting > DEEPEST:
+            return self.other(node)
+        return Expr("make", kind_, parts)
+
+    def thrown(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        return self.anything(node, guard, ESCAPE, "")
+
+    def asked_only(self, node: Node, guard: int, position: Position, target: str | None) -> Expr:
+        for child in node.children:
+            read = VALUES.get(child.kind_id)
+            if read is not None:
+                read(self, child, guard, READ, "")
+        return self.other(node)
+
+
+LITERALS: dict[int, Callable[..., Expr]] = {
+    **{kind(name): Values.number for name in ("true", "false", "null", "number_literal", "char_literal")},
+    STRING: Values.string,
+    RAW_STRING: Values.string,
+    kind("concatenated_string"): Values.strings,
+}
+
+
+class _Readers(dict[int, Callable[..., Expr]]):
+    """How each kind of node is read; one that is not listed is looked into."""
+
+    def __missing__(self, number: int) -> Callable[..., Expr]:
+        return Values.anything
+
+
+VALUES = _Readers(
+    {
+        **LITERALS,
+        IDENTIFIER: Values.identifier,
+        QUALIFIED: Values.qualified,
+        TEMPLATE_FUNCTION: Values.qualified,
+        FIELD: Values.field,
+        THIS: Values.this,
+        CALL: Values.call,
+        SUBSCRIPT: Values.subscript,
+        PARENTHESIZED: Values.parenthesized,
+        POINTER: Values.pointer,
+        CAST: Values.last_child,
+        BINARY: Values.binary,
+        kind("unary_expression"): Values.unary,
+        kind("update_expression"): Values.update,
+        kind("assignment_expression"): Values.assignment,
+        kind("conditional_expression"): Values.conditional,
+        BRACES: Values.braces,
+        kind("initializer_pair"): Values.last_child,
+        kind("new_expression"): Values.made,
+        kind("compound_literal_expression"): Values.made,
+        kind("co_await_expression"): Values.last_child,
+        kind("throw_statement"): Values.thrown,
+        kind("sizeof_expression"): Values.asked_only,
+        kind("delete_expression"): Values.asked_only,
+        COMMENT: Values.skipped,
+        kind("type_descriptor"): Values.skipped,
+        kind("template_argument_list"): Values.skipped,
+        kind("primitive_type"): Values.skipped,
+        kind("type_identifier"): Values.skipped,
+        kind("field_identifier"): Values.skipped,
+    }
+)

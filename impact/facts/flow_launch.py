@@ -1,0 +1,869 @@
+"""What one launch file starts and sets, as written: XML of both generations and YAML here, Python in its own module.
+
+All of them give the same facts, so that whatever follows a launch need not know which it reads. Nothing is resolved:
+values are sequences of pieces. Files of parameters are read here too.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import msgspec
+
+from .markup import TOKEN, Document, Element, decode, scan, unescape
+from .place import Problem
+
+
+class Piece(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A part of a value. text: by kind; parts: values it is made of.
+
+    Where a name may itself be computed (`$(find-pkg-share $(var robot))`) text is empty and the name is parts[0].
+
+    | kind | text | parts |
+    |---|---|---|
+    | text | the literal | |
+    | arg | name of a launch argument or configuration | its own default, if it brings one |
+    | env | name of an environment variable | its own default, if it brings one |
+    | find | package, for its share folder | |
+    | prefix | package, for the folder it is installed in | |
+    | executable | | name, package |
+    | program | name of a program on the search path | |
+    | dirname, filename | | |
+    | anon | what an anonymous name starts with | |
+    | eval | `roslaunch` or `launch`: whose rules the expression follows | the expression |
+    | command | | the command line whose output it is |
+    | content | | the path of the file whose content it is |
+    | has-node | | a parameter file, the name of a node: whether it has parameters for it |
+    | join | | parts of a path |
+    | equals, and, or, in | | two values; values; values; what is sought and the values it may be |
+    | not | | a value |
+    | choose | | condition, value if it is true, value if not |
+    | method | name of a method of str | the text it is called on, its arguments |
+    | rewritten | | a parameter file, its root key, then name and value of each parameter it changes |
+    | replaced | | a text file, then each text and what replaces it |
+    | other | the source, at most 120 characters | |
+    """
+
+    kind: str
+    text: str = ""
+    parts: tuple[tuple[Piece, ...], ...] = ()
+
+
+Value = tuple[Piece, ...]
+
+
+class Condition(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What an action hangs on. kind: `if` or `unless` the value is true; `each` once for each of what is walked
+    through; `after` an event or some time, which the value describes."""
+
+    kind: str
+    value: Value
+    line: int
+
+
+class Action(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Something a launch file does. attributes: (name, value), in the file's order, under the names of this table.
+
+    | kind | attributes | children |
+    |---|---|---|
+    | argument | name, default, value (ROS 1: constant) | |
+    | let | name, value | |
+    | pass | name, value: an argument given to an include | |
+    | node, lifecycle, test | package, executable, name, namespace, arguments (several), clear | remap, parameter,
+      parameter-file, environment |
+    | container | as node | as node, and composable |
+    | composable | package, plugin, name, namespace | remap, parameter, parameter-file |
+    | load | container: its full name, or container-node: the name of a container of the same file, before the
+      namespaces that are pushed | composable |
+    | include | file, namespace, pass-all (ROS 1), clear | pass, environment |
+    | group | namespace (ROS 1), scoped, forwarding, clear | any |
+    | namespace | namespace: pushed for what follows | |
+    | remap | from, to | |
+    | parameter | name, value, type; instead of value: textfile, binfile, command | |
+    | parameter-file | file or text (YAML), name (below which), command, substitute; below (several): keys in the file
+      whose values alone are given, as plain parameters | |
+    | environment | name, value | |
+    | process | command (several) | |
+    | unknown | text: what could not be followed | |
+    """
+
+    kind: str
+    line: int
+    attributes: tuple[tuple[str, Value], ...] = ()
+    conditions: tuple[Condition, ...] = ()
+    children: tuple[Action, ...] = ()
+
+    def get(self, name: str) -> Value | None:
+        """The first attribute of a name, None when there is none."""
+        return next((value for key, value in self.attributes if key == name), None)
+
+    def all(self, name: str) -> tuple[Value, ...]:
+        """All attributes of a name."""
+        return tuple(value for key, value in self.attributes if key == name)
+
+
+class LaunchFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """language: `xml`, `yaml` or `python`. generation: 1 or 2, 0 where an XML file could be of either."""
+
+    language: str
+    generation: int
+    actions: tuple[Action, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A value of a parameter file. path: its keys from the root. value: bool, int, float, str, None, list or, below a
+    list, dict. line: of the value, of its key where it is a list."""
+
+    path: tuple[str, ...]
+    value: Any
+    line: int
+
+
+class ParameterFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """The values of a YAML file in its order; mappings are followed, an empty one is a value."""
+
+    entries: tuple[Entry, ...]
+    problems: tuple[Problem, ...] = ()
+
+
+DEEPEST = 60
+MOST_ENTRIES = 50_000
+SHOWN = 120
+
+
+def literal(text: str) -> Value:
+    """A value that is plain text."""
+    return (Piece("text", text),)
+
+
+def plain(value: Value | None) -> str | None:
+    """The text of a value that is all literal, None for any other."""
+    if value is None or any(piece.kind != "text" for piece in value):
+        return None
+    return "".join(piece.text for piece in value)
+
+
+def together(values: Iterator[Value] | list[Value] | tuple[Value, ...]) -> Value:
+    """Values one after the other as one, literal neighbours joined."""
+    pieces: list[Piece] = []
+    for value in values:
+        for piece in value:
+            if piece.kind == "text" and pieces and pieces[-1].kind == "text":
+                pieces[-1] = Piece("text", pieces[-1].text + piece.text)
+            elif piece.kind != "text" or piece.text:
+                pieces.append(piece)
+    return tuple(pieces) or literal("")
+
+
+def named(kind: str, name: Value, *rest: Value) -> Piece:
+    """A piece whose name may be computed."""
+    text = plain(name)
+    return Piece(kind, text, rest) if text else Piece(kind, "", (name, *rest))
+
+
+def other(source: str) -> Piece:
+    """A piece that could not be read."""
+    return Piece("other", " ".join(source.split())[:SHOWN])
+
+
+def extract(data: bytes, kind: str) -> LaunchFile:
+    """The facts of a launch file of the kind launch_xml, launch_yaml or launch_python. Never raises."""
+    if kind == "launch_python":
+        from .flow_launch_python import extract as extract_python
+
+        return extract_python(data)
+    try:
+        return _launch_yaml(data) if kind == "launch_yaml" else _launch_xml(data)
+    except RecursionError:
+        return LaunchFile(kind.removeprefix("launch_"), 0, (), (Problem(1, "nested too deeply to be read"),))
+
+
+# Substitutions
+
+_ROS1 = re.compile(r"\$\(([^$()]*)\)")
+
+
+def substitutions(text: str, generation: int) -> Value:
+    """A text of a launch or parameter file as a value, by the rules of ROS 1 (roslaunch) or ROS 2 (launch)."""
+    if "$(" not in text:
+        return literal(text)
+    return _ros1(text) if generation == 1 else _Template(text).value()
+
+
+def _ros1(text: str) -> Value:
+    if text.startswith("$(eval ") and text.endswith(")"):
+        return (Piece("eval", "roslaunch", (literal(text[7:-1]),)),)
+    values: list[Value] = []
+    at = 0
+    for m in _ROS1.finditer(text):
+        values += (_no_opening(text[at : m.start()]), (_ros1_piece(m[1].split(), m[0]),))
+        at = m.end()
+    values.append(_no_opening(text[at:]))
+    return together(values)
+
+
+def _no_opening(text: str) -> Value:
+    """Text between substitutions; one that opens a substitution and is none cannot be read."""
+    return (other(text),) if "$(" in text else literal(text)
+
+
+def _ros1_piece(words: list[str], source: str) -> Piece:
+    verb, args = (words[0], words[1:]) if words else ("", [])
+    if verb in ("arg", "anon", "env", "find") and len(args) == 1:
+        return Piece(verb, args[0])
+    if verb == "optenv" and args:
+        return Piece("env", args[0], (literal(" ".join(args[1:])),))
+    if verb == "dirname" and not args:
+        return Piece("dirname")
+    return other(source)
+
+
+_IDENTIFIER = re.compile(r"[A-Za-z][\w-]*")
+
+
+class _Template:
+    """A text with launch's substitutions, by the grammar of launch/frontend/grammar.lark."""
+
+    def __init__(self, text: str):
+        self.text = text
+        self.at = 0
+
+    def value(self) -> Value:
+        return self._fragments("", 0)
+
+    def _fragments(self, quote: str, depth: int) -> Value:
+        """Literals and substitutions up to a closing quote, or to the end."""
+        values: list[Value] = []
+        start = self.at
+        text = self.text
+        held: list[str] = []
+
+        def hold(end: int) -> None:
+            held.append(text[start:end])
+
+        while self.at < len(text):
+            c = text[self.at]
+            if c == quote:
+                break
+            if c == "\\" and self.at + 1 < len(text):
+                hold(self.at)
+                held.append(text[self.at + 1])
+                self.at += 2
+                start = self.at
+            elif c == "$" and text.startswith("$(", self.at):
+                hold(self.at)
+                values += (literal("".join(held)), (self._substitution(depth + 1, quote),))
+                held = []
+                start = self.at
+            else:
+                self.at += 1
+        hold(self.at)
+        values.append(literal("".join(held)))
+        return together(values)
+
+    def _substitution(self, depth: int, quote: str) -> Piece:
+        begin = self.at
+        m = _IDENTIFIER.match(self.text, begin + 2)
+        if m is None or depth > DEEPEST:
+            self.at = len(self.text)
+            return other(self.text[begin:])
+        self.at = m.end()
+        args: list[Value] = []
+        while self.at < len(self.text):
+            c = self.text[self.at]
+            if c == ")":
+                self.at += 1
+                return _ros2_piece(m[0], args, self.text[begin : self.at])
+            if c.isspace():
+                self.at += 1
+            elif c in "'\"" and c != quote:
+                self.at += 1
+                args.append(self._fragments(c, depth))
+                self.at += 1
+            else:
+                args.append(self._unquoted(depth, quote))
+        return other(self.text[begin:])
+
+    def _unquoted(self, depth: int, quote: str) -> Value:
+        values: list[Value] = []
+        text = self.text
+        while self.at < len(text):
+            c = text[self.at]
+            if c == ")" or c.isspace():
+                break
+            if text.startswith("$(", self.at):
+                values.append((self._substitution(depth + 1, quote),))
+                continue
+            step = 2 if c == "\\" and self.at + 1 < len(text) else 1
+            values.append(literal(text[self.at + step - 1]))
+            self.at += step
+        return together(values)
+
+
+def _ros2_piece(verb: str, args: list[Value], source: str) -> Piece:
+    if verb in _ROS2_NAMED and 1 <= len(args) <= 2:
+        return named(_ROS2_NAMED[verb], *args)
+    if verb in ("find-pkg-share", "find-pkg-prefix", "find-exec", "anon") and len(args) == 1:
+        return named(
+            {"find-pkg-share": "find", "find-pkg-prefix": "prefix", "find-exec": "program"}.get(verb, verb), args[0]
+        )
+    if verb == "exec-in-pkg" and len(args) == 2:
+        return Piece("executable", "", tuple(args))
+    if verb in ("dirname", "filename") and not args:
+        return Piece(verb)
+    if verb == "eval" and args:
+        return Piece("eval", "launch", (spaced(args),))
+    if verb == "file-content" and len(args) == 1:
+        return Piece("content", "", (args[0],))
+    if verb == "command" and args:
+        return Piece("command", "", (args[0],))
+    if verb in ("equals", "not-equals") and len(args) == 2:
+        same = Piece("equals", "", tuple(args))
+        return same if verb == "equals" else Piece("not", "", ((same,),))
+    if verb == "not" and len(args) == 1:
+        return Piece("not", "", (args[0],))
+    if verb in ("and", "or", "any", "all"):
+        return Piece({"any": "or", "all": "and"}.get(verb, verb), "", tuple(args))
+    if verb == "if" and 2 <= len(args) <= 3:
+        return Piece("choose", "", (*args, *([literal("")] if len(args) == 2 else ())))
+    return other(source)
+
+
+_ROS2_NAMED = {"var": "arg", "env": "env", "optenv": "env"}
+_ROS2_PLACES = {"find-pkg-share": "find", "find-pkg-prefix": "prefix", "find-exec": "program"}
+
+
+def spaced(values: list[Value]) -> Value:
+    """Values as one, blanks between them."""
+    parts: list[Value] = []
+    for value in values:
+        parts += (*([literal(" ")] if parts else ()), value)
+    return together(parts)
+
+
+# XML and YAML as one kind of tree
+
+
+class _Entity:
+    """An element of a launch file. attributes: the values as written, a list where YAML has one."""
+
+    __slots__ = ("attributes", "children", "line", "tag", "text")
+
+    def __init__(self, tag: str, line: int):
+        self.tag = tag
+        self.line = line
+        self.attributes: dict[str, str | list[str]] = {}
+        self.children: list[_Entity] = []
+        self.text = ""
+
+
+def _launch_xml(data: bytes) -> LaunchFile:
+    document = scan(data)
+    if not document.elements or document.elements[0].name != "launch":
+        return LaunchFile("xml", 0, (), (*document.problems, Problem(1, "has no `<launch>` element")))
+    generation = _generation(document)
+    entities: list[_Entity] = []
+    depths: list[int] = []
+    problems = list(document.problems)
+    for element in document.elements:
+        depth = depths[element.parent] + 1 if element.parent >= 0 else 0
+        entity = _Entity(element.name.lower(), document.place(element.offset)[0])
+        # XML's readers make blanks of line ends and tabs in values; the first of two attributes of a name counts.
+        for attribute in element.attributes:
+            entity.attributes.setdefault(attribute.name, _BLANK.sub(" ", attribute.value))
+        entity.text = _own_text(document, element) if element.text and entity.tag == "rosparam" else ""
+        entities.append(entity)
+        depths.append(depth)
+        if depth == DEEPEST:
+            problems.append(Problem(entity.line, f"nested more than {DEEPEST} deep"))
+        elif 0 < depth < DEEPEST:
+            entities[element.parent].children.append(entity)
+    reader = _Reader(generation)
+    actions = reader.actions(entities[0].children)
+    return LaunchFile("xml", generation, actions, (*problems, *reader.problems))
+
+
+_BLANK = re.compile(r"\r\n|[\r\n\t]")
+_COMMENT_OR_CDATA = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
+
+
+def _own_text(document: Document, element: Element) -> str:
+    """The text of an element without children as it stands, line ends around comments included: YAML needs them."""
+    opened = TOKEN.match(document.text, element.offset)
+    start = opened.end() if opened is not None else element.offset
+    end = document.text.find("</", start)
+    raw = document.text[start : end if end >= 0 else len(document.text)]
+    return unescape(_COMMENT_OR_CDATA.sub(lambda m: m[1] or "", raw))
+
+
+_ONLY_1 = re.compile(r"\$\((?:find|arg|optenv) ")
+_ONLY_2 = re.compile(r"\$\((?:var|find-pkg-share|find-pkg-prefix|find-exec|exec-in-pkg|not|and|or|equals|not-equals) ")
+_TAGS_1 = frozenset({"rosparam", "test", "machine"})
+
+
+def _generation(document: Document) -> int:
+    """1 or 2 by what only that generation writes, 0 where nothing tells."""
+    counts = [0, 0, 0]
+    for element in document.elements:
+        names = {a.name for a in element.attributes}
+        if element.name in _TAGS_1 or "ns" in names or (element.name == "node" and "type" in names):
+            counts[1] += 1
+        elif element.name in _KINDS_2 or names & {"exec", "namespace"} or (element.name == "param" and "from" in names):
+            counts[2] += 1
+        for attribute in element.attributes:
+            if "$(" in attribute.value:
+                counts[1] += bool(_ONLY_1.search(attribute.value))
+                counts[2] += bool(_ONLY_2.search(attribute.value))
+    return 1 if counts[1] > counts[2] else 2 if counts[2] else 0
+
+
+_KINDS_2 = {
+    "let": "let",
+    "lifecycle_node": "lifecycle",
+    "node_container": "container",
+    "composable_node_container": "container",
+    "composable_node": "composable",
+    "load_composable_node": "load",
+    "push_ros_namespace": "namespace",
+    "push-ros-namespace": "namespace",
+    "set_remap": "remap",
+    "set_parameter": "parameter",
+    "set_parameters_from_file": "parameter-file",
+    "set_use_sim_time": "parameter",
+    "set_env": "environment",
+    "executable": "process",
+    "timer": "group",
+}
+_KINDS = {
+    **_KINDS_2,
+    "node": "node",
+    "test": "test",
+    "include": "include",
+    "arg": "argument",
+    "group": "group",
+    "remap": "remap",
+    "param": "parameter",
+    "rosparam": "parameter-file",
+    "env": "environment",
+}
+# What starts nothing and sets nothing that a node could read.
+_IDLE = frozenset(
+    ("machine", "master", "log", "log_info", "shutdown", "unset_env", "reset", "keep", "extra_arg", "append_env",
+     "prepend_env", "set_ros_log_dir", "launch", "lifecycle_transition", "description", "on_exit", "emit_event"),
+)  # fmt: skip
+_ATTRIBUTES = {
+    "pkg": "package",
+    "type": "executable",
+    "exec": "executable",
+    "node-name": "name",
+    "test-name": "test-name",
+    "ns": "namespace",
+    "args": "arguments",
+    "clear_params": "clear",
+    "pass_all_args": "pass-all",
+    "target": "container",
+    "cmd": "command",
+    "subst_value": "substitute",
+    "allow_substs": "substitute",
+    "filename": "file",
+    "from": "from",
+    "to": "to",
+    **{
+        name: name
+        for name in (
+            *("plugin", "name", "namespace", "file", "value", "default", "command", "textfile", "binfile"),
+            *("scoped", "forwarding"),
+        )
+    },
+}
+
+
+class _Reader:
+    """Entities to actions."""
+
+    def __init__(self, generation: int):
+        self.generation = generation
+        self.problems: list[Problem] = []
+
+    def actions(self, entities: list[_Entity], inside: str = "") -> tuple[Action, ...]:
+        found: list[Action] = []
+        for entity in entities:
+            found += self.action(entity, inside)
+        return tuple(found)
+
+    def value(self, text: str | list[str]) -> Value:
+        if isinstance(text, list):
+            return together([literal("["), *_commas([self.value(item) for item in text]), literal("]")])
+        return substitutions(text, self.generation)
+
+    def action(self, entity: _Entity, inside: str) -> list[Action]:
+        kind = _KINDS.get(entity.tag)
+        if kind is None:
+            if entity.tag in _IDLE:
+                return []
+            return [Action("unknown", entity.line, (("text", literal(f"<{entity.tag}>")),), self.conditions(entity))]
+        if inside == "include" and kind in ("argument", "let"):
+            kind = "pass"
+        if entity.tag == "param" and "from" in entity.attributes:
+            kind = "parameter-file"
+        if kind == "parameter":
+            return self.parameter(entity, ())
+        attributes = self.attributes(entity, kind)
+        conditions = self.conditions(entity)
+        if entity.tag == "timer":
+            period = self.value(entity.attributes.get("period", ""))
+            conditions = (*conditions, Condition("after", together([period, literal(" s")]), entity.line))
+        if entity.tag == "rosparam" and entity.text:
+            fill = "subst_value" in entity.attributes
+            attributes.append(("text", self.value(entity.text) if fill else literal(entity.text)))
+        children = self.actions(entity.children, kind)
+        return [Action(kind, entity.line, tuple(attributes), conditions, children)]
+
+    def conditions(self, entity: _Entity) -> tuple[Condition, ...]:
+        return tuple(
+            Condition(kind, self.value(entity.attributes[kind]), entity.line)
+            for kind in ("if", "unless")
+            if kind in entity.attributes
+        )
+
+    def attributes(self, entity: _Entity, kind: str) -> list[tuple[str, Value]]:
+        found: list[tuple[str, Value]] = []
+        for name, text in entity.attributes.items():
+            if kind == "parameter-file":
+                # ROS 1's `ns` and `param` name what the file is loaded below, ROS 2's `from` the file
+                key = {"from": "file", "param": "name"}.get(name) or _ATTRIBUTES.get(name)
+                if key == "name" and "ns" in entity.attributes:
+                    continue
+                if name == "ns":
+                    below = [self.value(text)]
+                    if "param" in entity.attributes:
+                        below += (literal("/"), self.value(entity.attributes["param"]))
+                    found.append(("name", together(below)))
+                    continue
+            elif kind == "parameter" and name == "type":
+                key = "type"
+            elif name == "ros_args":
+                found += [("arguments", literal("--ros-args"))]
+                key = "arguments"
+            else:
+                key = _ATTRIBUTES.get(name)
+            if key == "arguments" or (key == "command" and kind == "process"):
+                found += [(key, word) for word in words(self.value(text))]
+            elif key is not None:
+                found.append((key, self.value(text)))
+        if kind in ("test", "node") and "test-name" in entity.attributes:
+            test = [value for key, value in found if key == "test-name"]
+            found = [(key, value) for key, value in found if key != "test-name"]
+            if "name" not in entity.attributes:
+                found.append(("name", test[0]))
+        return found
+
+    def parameter(self, entity: _Entity, above: tuple[Value, ...]) -> list[Action]:
+        """A parameter, or those nested in it, whose names are joined by dots."""
+        if entity.tag == "set_use_sim_time":
+            attributes = [("name", literal("use_sim_time")), *self.attributes(entity, "parameter")]
+            return [Action("parameter", entity.line, tuple(attributes), self.conditions(entity))]
+        attributes = self.attributes(entity, "parameter")
+        name = next((value for key, value in attributes if key == "name"), literal(""))
+        nested = [child for child in entity.children if child.tag == "param"]
+        if nested:
+            found: list[Action] = []
+            for child in nested:
+                found += self.parameter(child, (*above, name, literal(".")))
+            return found
+        attributes = [(key, together([*above, value]) if key == "name" else value) for key, value in attributes]
+        return [Action("parameter", entity.line, tuple(attributes), self.conditions(entity))]
+
+
+def _commas(values: list[Value]) -> Iterator[Value]:
+    for place, value in enumerate(values):
+        if place:
+            yield literal(", ")
+        yield value
+
+
+def words(value: Value) -> list[Value]:
+    """A command line as its words, split at the blanks of its literal pieces outside quotes; quotes are taken off."""
+    found: list[Value] = []
+    word: list[Value] = []
+    quote = ""
+    begun = False
+    for piece in value:
+        if piece.kind != "text":
+            word.append((piece,))
+            begun = True
+            continue
+        held = ""
+        for c in piece.text:
+            if quote:
+                if c == quote:
+                    quote = ""
+                else:
+                    held += c
+            elif c in "'\"":
+                quote, begun = c, True
+            elif c.isspace():
+                if held or begun:
+                    found.append(together([*word, literal(held)]))
+                word, held, begun = [], "", False
+            else:
+                held += c
+                begun = True
+        if held:
+            word.append(literal(held))
+    if word or begun:
+        found.append(together(word))
+    return found
+
+
+# YAML
+
+
+class _Node:
+    """A node of a YAML file. value: a scalar's value, the items of a list, or the (key, node) pairs of a mapping."""
+
+    __slots__ = ("height", "kind", "line", "value")
+
+    def __init__(self, kind: str, value: Any, line: int):
+        self.kind = kind
+        self.value = value
+        self.line = line
+        self.height = 0
+
+
+_BOOLEAN = {word: flag for flag, stems in ((True, ("true", "yes", "on")), (False, ("false", "no", "off")))
+            for stem in stems for word in (stem, stem.capitalize(), stem.upper())}  # fmt: skip
+_NULL = frozenset(("", "~", "null", "Null", "NULL"))
+_INTEGER = re.compile(r"[-+]?(?:0b[01_]+|0x[0-9a-fA-F_]+|0o?[0-7_]*|[1-9][0-9_]*)\Z")
+_FLOAT = re.compile(r"[-+]?(?:(?:\.[0-9]+|[0-9][0-9_]*\.[0-9_]*)(?:[eE][-+]?[0-9]+)?|[0-9]+[eE][-+]?[0-9]+)\Z")
+_NOT_FINITE = re.compile(r"([-+]?)\.(?:inf|Inf|INF)\Z|\.(?:nan|NaN|NAN)\Z")
+
+
+def scalar(text: str) -> Any:
+    """What a plain scalar of YAML stands for: None, bool, int, float or str. Integers beyond 64 bits stay text.
+
+    `1e-4` is a float, as for rcl; PyYAML, which ROS 1 reads with, would ask for a dot.
+    """
+    if text in _NULL:
+        return None
+    if text in _BOOLEAN:
+        return _BOOLEAN[text]
+    if text[:1] not in "+-.0123456789" or len(text) > 40:
+        return text
+    if _INTEGER.match(text):
+        digits = text.replace("_", "")
+        sign = -1 if digits[0] == "-" else 1
+        digits = digits.lstrip("+-")
+        try:
+            octal = len(digits) > 1 and digits[0] == "0" and digits[1].isdigit()
+            number = sign * (int(digits, 8) if octal else int(digits, 0))
+        except ValueError:
+            return text
+        return number if -(2**63) <= number < 2**63 else text
+    if _FLOAT.match(text):
+        return float(text.replace("_", ""))
+    special = _NOT_FINITE.match(text)
+    if special is not None:
+        return float(f"{special[1]}inf") if special[1] is not None else float("nan")
+    return text
+
+
+def _tree(text: str) -> tuple[_Node | None, list[Problem]]:
+    """The first document of a YAML text, as far as it can be read."""
+    import yaml
+
+    loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    problems: list[Problem] = []
+    root: list[_Node] = []
+    # Each level: the node, the key that waits for its value, and that key's line, which is also a block's.
+    levels: list[list[Any]] = []
+    anchors: dict[str, _Node] = {}
+    pending: list[str] = []
+
+    def add(node: _Node) -> None:
+        if not levels:
+            if not root:
+                root.append(node)
+            return
+        above, key, _ = levels[-1]
+        if above.kind == "list":
+            above.value.append(node)
+        elif key is None:
+            levels[-1][1] = str(node.value) if node.kind == "scalar" and node.value is not None else "~"
+            levels[-1][2] = node.line
+            return
+        else:
+            if node.kind != "scalar":
+                node.line = min(node.line, levels[-1][2])
+            above.value.append((key, node))
+            levels[-1][1] = None
+        above.height = max(above.height, node.height + 1)
+        if above.height > DEEPEST:
+            raise ValueError(f"nested more than {DEEPEST} deep")
+
+    try:
+        for event in yaml.parse(text, loader):
+            if isinstance(event, yaml.DocumentEndEvent):
+                break
+            if isinstance(event, yaml.ScalarEvent):
+                is_key = bool(levels) and levels[-1][0].kind == "map" and levels[-1][1] is None
+                bare = event.implicit[0] and not is_key
+                value = scalar(event.value) if bare else _clean(event.value)
+                if event.tag is not None and not is_key:
+                    value = _tagged(event.tag, value)
+                node = _Node("scalar", value, event.start_mark.line + 1)
+                if event.anchor:
+                    anchors[event.anchor] = node
+                add(node)
+            elif isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
+                kind = "map" if isinstance(event, yaml.MappingStartEvent) else "list"
+                if len(levels) >= DEEPEST:
+                    raise ValueError(f"nested more than {DEEPEST} deep")
+                levels.append([_Node(kind, [], event.start_mark.line + 1), None, 0])
+                pending.append(event.anchor or "")
+            elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
+                node = levels.pop()[0]
+                anchor = pending.pop()
+                if anchor:
+                    anchors[anchor] = node
+                add(node)
+            elif isinstance(event, yaml.AliasEvent):
+                node = anchors.get(event.anchor)
+                if node is None:
+                    problems.append(Problem(event.start_mark.line + 1, f"`*{event.anchor}` names nothing above it"))
+                    node = _Node("scalar", None, event.start_mark.line + 1)
+                add(node)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = min(mark.line if mark is not None else 0, text.count("\n")) + 1
+        problems.append(Problem(line, f"not readable as YAML: {getattr(error, 'problem', None) or 'syntax error'}"))
+    except (RecursionError, ValueError) as error:
+        problems.append(Problem(1, f"not readable as YAML: {error}"))
+    # What was open when reading ended still holds what it had.
+    while levels:
+        node = levels.pop()[0]
+        try:
+            add(node)
+        except ValueError:
+            break
+    return (root[0] if root else None), problems
+
+
+def _tagged(tag: str, value: str) -> Any:
+    """A scalar with a tag of its own: `!!str 5`, `!!int "5"`, rosparam's `!degrees 90`."""
+    if tag.endswith(":str") or tag == "!":
+        return value
+    number = scalar(value)
+    if tag == "!degrees" and isinstance(number, (int, float)):
+        return math.radians(number)
+    return number
+
+
+def _clean(text: str) -> str:
+    """Text that any encoding of facts can hold: escapes of YAML can write lone surrogates."""
+    return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")
+
+
+def parameters(data: bytes | str) -> ParameterFile:
+    """The values of a YAML file of parameters. Never raises; what cannot be read is a problem, the rest is kept."""
+    root, problems = _tree(decode(data) if isinstance(data, bytes) else _clean(data).lstrip("\ufeff"))
+    entries: list[Entry] = []
+    budget = [MOST_ENTRIES]
+    if root is not None and root.kind == "map":
+        _flatten(root, (), entries, budget)
+    elif root is not None and (root.kind == "list" or root.value is not None):
+        entries.append(Entry((), _plain_value(root, budget), root.line))
+    if budget[0] <= 0:
+        problems.append(Problem(1, f"has more than {MOST_ENTRIES} values"))
+    return ParameterFile(tuple(entries), tuple(problems))
+
+
+def _flatten(node: _Node, path: tuple[str, ...], entries: list[Entry], budget: list[int]) -> bool:
+    """Adds the values below a mapping; False when the budget is used up."""
+    own = {key for key, _ in node.value if key != "<<"}
+    for key, child in node.value:
+        if budget[0] <= 0:
+            return False
+        budget[0] -= 1
+        if key == "<<":
+            for source in child.value if child.kind == "list" else [child]:
+                if isinstance(source, _Node) and source.kind == "map":
+                    merged = _Node("map", [(k, n) for k, n in source.value if k not in own], source.line)
+                    if not _flatten(merged, path, entries, budget):
+                        return False
+        elif child.kind == "map" and child.value:
+            if not _flatten(child, (*path, key), entries, budget):
+                return False
+        else:
+            entries.append(Entry((*path, key), _plain_value(child, budget), child.line))
+    return True
+
+
+def _plain_value(node: _Node, budget: list[int]) -> Any:
+    budget[0] -= 1
+    if budget[0] <= 0:
+        return None
+    if node.kind == "list":
+        return [_plain_value(item, budget) for item in node.value]
+    if node.kind == "map":
+        return {key: _plain_value(item, budget) for key, item in node.value}
+    return node.value
+
+
+def _launch_yaml(data: bytes) -> LaunchFile:
+    root, problems = _tree(decode(data))
+    top = dict(root.value) if root is not None and root.kind == "map" else {}
+    body = top.get("launch")
+    if body is None:
+        return LaunchFile("yaml", 2, (), (*problems, Problem(1, "has no `launch:` list")))
+    reader = _Reader(2)
+    budget = [MOST_ENTRIES]
+    actions = reader.actions(_entities(body, budget))
+    if budget[0] <= 0:
+        problems.append(Problem(1, f"has more than {MOST_ENTRIES} elements"))
+    return LaunchFile("yaml", 2, actions, (*problems, *reader.problems))
+
+
+def _entities(node: _Node, budget: list[int]) -> list[_Entity]:
+    """The entities of a list of one-key mappings, or of one mapping."""
+    found: list[_Entity] = []
+    for item in node.value if node.kind == "list" else [node]:
+        if item.kind != "map":
+            continue
+        for tag, body in item.value:
+            budget[0] -= 1
+            if budget[0] <= 0:
+                return found
+            found += _entity(tag, body, budget)
+    return found
+
+
+def _entity(tag: str, body: _Node, budget: list[int]) -> list[_Entity]:
+    entity = _Entity(tag, body.line)
+    if body.kind == "list":
+        entity.children = _entities(body, budget)
+    elif body.kind == "map":
+        for key, value in body.value:
+            if value.kind == "scalar":
+                entity.attributes[key] = _as_text(value.value)
+            elif key == "children":
+                entity.children += _entities(value, budget)
+            elif value.kind == "list" and all(item.kind == "scalar" for item in value.value):
+                entity.attributes[key] = [_as_text(item.value) for item in value.value]
+            else:
+                for item in value.value if value.kind == "list" else [value]:
+                    entity.children += _entity(key, item, budget)
+    elif body.value is not None:
+        entity.text = _as_text(body.value)
+    return [entity]
+
+
+def _as_text(value: Any) -> str:
+    """A scalar as launch would write it."""
+    if value is None:
+        return ""
+    return ("true" if value else "false") if isinstance(value, bool) else str(value)

@@ -1,0 +1,432 @@
+"""C++ conditions to terms, with tree-sitter. Whatever is not understood is opaque; nothing raises."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import Any
+
+from .guard_terms import (
+    DEEPEST,
+    FALSE,
+    FLIPPED,
+    LONGEST,
+    NULL,
+    TRUE,
+    Piece,
+    Reading,
+    Term,
+    comparison,
+    join,
+    member,
+    negation,
+    number,
+    owner_of,
+    reading,
+)
+
+_WORDS = {"and": "&&", "or": "||", "not": "!", "not_eq": "!=", "compl": "~", "bitand": "&", "bitor": "|", "xor": "^"}
+_CASTS = ("static_cast", "const_cast", "reinterpret_cast")
+_INTEGERS = frozenset(("int", "long", "short", "unsigned", "signed", "char", "size_t"))
+_WHOLE_TYPE = re.compile(r"(?:std::)?u?int(?:_fast|_least)?\d*_t|(?:std::)?s?size_t")
+_PASSED_ON = frozenset(("std::move", "std::as_const", "std::forward", "std::ref", "std::cref"))
+_ABSOLUTE = frozenset(("abs", "std::abs", "fabs", "std::fabs", "fabsf"))
+_SUFFIX = re.compile(r"(?<=[\d.])[uUlLfFzZ]+$")
+_DURATION = re.compile(r"([\d.']+)(h|min|s|ms|us|ns)$")
+_SECONDS = {"h": "3600", "min": "60", "s": "1", "ms": "1e-3", "us": "1e-6", "ns": "1e-9"}
+_CATCH = re.compile(r"\bcatch\s*\(([^()]*)\)")
+_CAUGHT = re.compile(r"(?:const\s+)?(?:[\w:]*::)?(\w+(?:<.*>)?)(?:\s+const)?(?:\s*[&*]+\s*\w*|\s+(?!as\b)\w+)?")
+_DEFINED = re.compile(r"\bdefined\s+([A-Za-z_]\w*)")
+_HAS_INCLUDE = re.compile(r"<([^<>\s]+\.?[^<>\s]*)>")
+
+
+@lru_cache(1)
+def _parser() -> Any:
+    import tree_sitter_cpp
+    from tree_sitter import Language, Parser
+
+    return Parser(Language(tree_sitter_cpp.language()))
+
+
+def condition(text: str, holds: bool) -> Reading:
+    """What a condition says when it holds, or when it does not."""
+    text = text.strip()
+    text = text.removeprefix("constexpr ")
+    reader = _Reader(text)
+    node = reader.clause()
+    if node is None:
+        return Reading((opaque_piece(text, holds),))
+    return reading(reader.pieces(node, holds), reader.names)
+
+
+def expression(text: str) -> Term:
+    """The term of an expression."""
+    reader = _Reader(text.strip())
+    node = reader.clause()
+    return opaque(text) if node is None else reader.term(node, 0)
+
+
+def directive(text: str, holds: bool) -> Reading:
+    """What the condition of an #if says."""
+    text = _DEFINED.sub(r"defined(\1)", text)
+    if "__has_include" in text:
+        text = _HAS_INCLUDE.sub(r'"\1"', text)
+    return condition(text, holds)
+
+
+def opaque(text: str) -> Term:
+    return Term("opaque", " ".join(text.split()))
+
+
+def caught(declared: str) -> Term:
+    """That an exception was caught, whatever the variable is called and the namespace is."""
+    match = _CAUGHT.fullmatch(" ".join(declared.split()))
+    return Term("opaque", f"catch {match[1] if match else ' '.join(declared.split())}")
+
+
+def opaque_piece(text: str, holds: bool) -> Piece:
+    term = opaque(text)
+    return Piece(text if holds else f"!({text})", term if holds else negation(term))
+
+
+def loop(head: str) -> Reading:
+    """What the head of a range-for says: that there is an element."""
+    inside = head.strip()
+    match = re.match(r"for\s*\((.*)\)$", inside, re.DOTALL)
+    inside = match[1] if match else inside
+    # The colon that is no `::`, after the declaration.
+    split = re.search(r"(?<!:):(?!:)", inside)
+    variable = re.search(r"([A-Za-z_]\w*|\[[^\]]*\])\s*$", inside[: split.start()]) if split else None
+    if split is None or variable is None:
+        match = re.match(r"\w+\s*\(\s*(?:.*[\s&*])?([A-Za-z_]\w*)\s*,(.*)\)$", head.strip(), re.DOTALL)
+        if match is None:
+            return Reading((Piece(head, opaque(head)),))
+        bound, walked = [match[1]], match[2]
+    else:
+        bound, walked = re.findall(r"\w+", variable[1]), inside[split.end() :]
+    container = expression(walked)
+    element = Term("each", "", (container,))
+    names = (
+        [(bound[0], element)] if len(bound) == 1 else [(name, member(element, f"{i}")) for i, name in enumerate(bound)]
+    )
+    return Reading((Piece(f"for ({head})" if match is None else head, element),), tuple(names))
+
+
+class _Reader:
+    """Reads the tree of one condition. names: variables that the condition makes."""
+
+    def __init__(self, text: str) -> None:
+        self.names: list[tuple[str, Term]] = []
+        self.text = text
+        # What was caught stands between conditions where branches are put together.
+        text = _CATCH.sub(lambda match: f'catch_("{match[1]}")', text) if "catch" in text else text
+        self.source = b"void f() { if (" + text.encode("utf-8", "replace") + b"\n) ; }"
+
+    def clause(self) -> Any:
+        """The condition's node; None when the text is not one condition."""
+        if not self.text or len(self.text) > LONGEST or "\0" in self.text:
+            return None
+        root = _parser().parse(self.source).root_node
+        if root.has_error or root.named_child_count != 1:
+            return None
+        body = root.named_children[0].child_by_field_name("body")
+        if body is None or body.named_child_count != 1 or body.named_children[0].type != "if_statement":
+            return None
+        clause = body.named_children[0].child_by_field_name("condition")
+        if clause is None or clause.end_byte != len(self.source) - 4:
+            return None
+        for part in clause.named_children:
+            if part.type == "init_statement":
+                for declaration in part.named_children:
+                    self.declared(declaration, 0)
+        return clause.child_by_field_name("value")
+
+    def said(self, node: Any) -> str:
+        text = " ".join(self.source[node.start_byte : node.end_byte].decode("utf-8", "replace").split())
+        return re.sub(r'catch_\("([^"]*)"\)', r"catch (\1)", text) if "catch_" in text else text
+
+    def tokens(self, node: Any) -> str:
+        found: list[str] = []
+        waiting = [node]
+        while waiting:
+            node = waiting.pop()
+            if node.type == "comment":
+                continue
+            if node.child_count and node.type not in ("string_literal", "char_literal", "raw_string_literal"):
+                waiting.extend(reversed(node.children))
+            else:
+                found.append(self.said(node))
+        return " ".join(found)
+
+    def opaque(self, node: Any) -> Term:
+        return Term("opaque", self.tokens(node))
+
+    def inner(self, node: Any) -> Any:
+        """The node without parentheses around it."""
+        while node.type == "parenthesized_expression":
+            inside = [child for child in node.named_children if child.type != "comment"]
+            if len(inside) != 1:
+                return node
+            node = inside[0]
+        return node
+
+    def operator(self, node: Any) -> str:
+        operator = node.child_by_field_name("operator")
+        written = self.said(operator) if operator is not None else ""
+        return _WORDS.get(written, written)
+
+    def spine(self, node: Any) -> tuple[list[Any], list[str]]:
+        """Operands of a chain of binary operators that lean to the left, and the operators between them."""
+        operands: list[Any] = []
+        operators: list[str] = []
+        while node.type == "binary_expression":
+            operators.append(self.operator(node))
+            operands.append(node.child_by_field_name("right"))
+            node = node.child_by_field_name("left")
+        operands.append(node)
+        return operands[::-1], operators[::-1]
+
+    def pieces(self, node: Any, holds: bool) -> list[Piece]:
+        """What must hold, one after the other, for the condition to hold (or not to)."""
+        result: list[Piece] = []
+        waiting = [(node, holds)]
+        while waiting:
+            node, holds = waiting.pop()
+            node = self.inner(node)
+            if node.type == "unary_expression" and self.operator(node) == "!":
+                waiting.append((node.child_by_field_name("argument"), not holds))
+            elif node.type == "binary_expression" and self.operator(node) == ("&&" if holds else "||"):
+                waiting.append((node.child_by_field_name("right"), holds))
+                waiting.append((node.child_by_field_name("left"), holds))
+            else:
+                term = self.term(node, 0)
+                result.append(Piece(self.worded(node, holds), term if holds else negation(term)))
+        return result
+
+    def worded(self, node: Any, holds: bool) -> str:
+        text = self.said(node)
+        if holds:
+            return text
+        if node.type == "binary_expression":
+            flipped = FLIPPED.get(self.operator(node))
+            if flipped is None:
+                return f"!({text})"
+            left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+            return f"{self.said(left)} {flipped} {self.said(right)}"
+        simple = ("identifier", "field_expression", "call_expression", "qualified_identifier", "subscript_expression")
+        return f"!{text}" if node.type in simple else f"!({text})"
+
+    def term(self, node: Any, depth: int) -> Term:
+        node = self.inner(node)
+        read = _READ.get(node.type)
+        if read is None or depth > DEEPEST:
+            return self.opaque(node)
+        return read(self, node, depth + 1)
+
+    def field(self, node: Any, name: str, depth: int) -> Term:
+        part = node.child_by_field_name(name)
+        return self.opaque(node) if part is None else self.term(part, depth)
+
+    # Kinds of expression
+
+    def binary(self, node: Any, depth: int) -> Term:
+        operands, operators = self.spine(node)
+        result = self.term(operands[0], depth)
+        position = 0
+        while position < len(operators):
+            operator = operators[position]
+            if operator in ("&&", "||"):
+                parts = [result]
+                while position < len(operators) and operators[position] == operator:
+                    position += 1
+                    parts.append(self.term(operands[position], depth))
+                result = join("and" if operator == "&&" else "or", parts)
+                continue
+            position += 1
+            if position > DEEPEST:
+                return self.opaque(node)
+            right = self.term(operands[position], depth)
+            if operator in FLIPPED:
+                result = comparison(operator, result, right)
+            elif operator in ("+", "-", "*"):
+                result = Term(operator, "", (result, right))
+            else:
+                result = Term("op", operator, (result, right))
+        return result
+
+    def unary(self, node: Any, depth: int) -> Term:
+        operator = self.operator(node)
+        operand = self.field(node, "argument", depth)
+        if operator == "!":
+            return negation(operand)
+        if operator == "-":
+            return Term("-", "", (Term("whole", "0"), operand))
+        return operand if operator == "+" else Term("op", operator, (operand,))
+
+    def path(self, node: Any, depth: int) -> Term:
+        text = re.sub(r"\s+", "", self.tokens(node)).removeprefix("::")
+        if text in ("std::nullopt", "nullopt", "boost::none"):
+            return NULL
+        return Term("name", text)
+
+    def member(self, node: Any, depth: int) -> Term:
+        field = node.child_by_field_name("field")
+        owner = node.child_by_field_name("argument")
+        if field is None or owner is None:
+            return self.opaque(node)
+        return member(self.term(owner, depth), re.sub(r"^template\s*|\s+", "", self.tokens(field)))
+
+    def call(self, node: Any, depth: int) -> Term:
+        listed = node.child_by_field_name("arguments")
+        called = node.child_by_field_name("function")
+        if listed is None or called is None:
+            return self.opaque(node)
+        arguments = [self.term(child, depth) for child in listed.named_children if child.type != "comment"]
+        called = self.inner(called)
+        if len(arguments) == 1:
+            cast = self.cast_to(called)
+            if cast is not None:
+                return self.as_type(cast, arguments[0])
+        function = self.term(called, depth)
+        if function.text == "catch_" and len(arguments) == 1 and arguments[0].kind == "string":
+            return caught(arguments[0].text[1:-1])
+        if function.kind == "name" and len(arguments) == 1:
+            if function.text in _PASSED_ON:
+                return arguments[0]
+            if function.text in _ABSOLUTE:
+                return Term("abs", "", (arguments[0],))
+        if not arguments:
+            owner, method = owner_of(function)
+            if owner is not None:
+                if method == "size":
+                    return Term("size", "", (owner,))
+                if method == "empty":
+                    return comparison("==", Term("size", "", (owner,)), Term("whole", "0"))
+                if method == "has_value":
+                    return Term("truth", "", (owner,))
+        return Term("call", "", (function, *arguments))
+
+    def cast_to(self, called: Any) -> str | None:
+        """The type, when what is called is a type or a cast."""
+        if called.type == "template_function":
+            name = called.child_by_field_name("name")
+            types = called.child_by_field_name("arguments")
+            if name is not None and types is not None and self.said(name) in _CASTS:
+                return self.said(types)[1:-1].strip()
+            return None
+        if called.type in ("primitive_type", "sized_type_specifier"):
+            return self.said(called)
+        if called.type in ("identifier", "qualified_identifier") and _WHOLE_TYPE.fullmatch(self.said(called)):
+            return self.said(called)
+        return None
+
+    def as_type(self, type_: str, value: Term) -> Term:
+        """A cast is left out, save one that cuts a fraction off or asks for the truth."""
+        if type_ == "bool":
+            return Term("truth", "", (value,))
+        whole = _WHOLE_TYPE.fullmatch(type_) or _INTEGERS.issuperset(type_.split())
+        return Term("op", "cut", (value,)) if whole and _fractional(value) else value
+
+    def cast(self, node: Any, depth: int) -> Term:
+        type_ = node.child_by_field_name("type")
+        return self.as_type(self.said(type_) if type_ is not None else "", self.field(node, "value", depth))
+
+    def index(self, node: Any, depth: int) -> Term:
+        indices = node.child_by_field_name("indices")
+        inside = indices.named_children if indices is not None else []
+        parts = (self.term(child, depth) for child in inside if child.type != "comment")
+        return Term("index", "", (self.field(node, "argument", depth), *parts))
+
+    def choice(self, node: Any, depth: int) -> Term:
+        parts = (self.field(node, name, depth) for name in ("condition", "consequence", "alternative"))
+        return Term("choice", "", tuple(parts))
+
+    def number(self, node: Any, depth: int) -> Term:
+        text = self.said(node).replace("'", "")
+        duration = _DURATION.match(text)
+        if duration:
+            count, unit = number(duration[1]), number(_SECONDS[duration[2]])
+            return self.opaque(node) if count is None or unit is None else Term("*", "", (count, unit))
+        try:
+            if text[:2] in ("0x", "0X", "0b", "0B"):
+                return number(str(int(re.sub(r"[uUlLzZ]+$", "", text)[:_LONGEST_HEX], 0))) or self.opaque(node)
+            plain = _SUFFIX.sub("", text)
+            if plain.isdigit() and plain.startswith("0"):
+                return number(str(int(plain, 8))) or self.opaque(node)
+        except ValueError:
+            return self.opaque(node)
+        return number(plain) or self.opaque(node)
+
+    def string(self, node: Any, depth: int) -> Term:
+        return Term("string", re.sub(r"\s*\n\s*", "", self.said(node)))
+
+    def assigned(self, node: Any, depth: int) -> Term:
+        """`a = b` has the value of b, which a stands for further in."""
+        left = node.child_by_field_name("left")
+        value = self.field(node, "right", depth)
+        if self.operator(node) != "=" or left is None or left.type != "identifier":
+            return self.opaque(node)
+        self.names.append((self.said(left), value))
+        return value
+
+    def declared(self, node: Any, depth: int) -> Term:
+        """`auto p = f()` has the value of f()."""
+        declarator = node.child_by_field_name("declarator")
+        value = node.child_by_field_name("value")
+        if declarator is not None and declarator.type == "init_declarator":
+            value = declarator.child_by_field_name("value")
+            declarator = declarator.child_by_field_name("declarator")
+        if declarator is None or value is None:
+            return self.opaque(node)
+        if value.type in ("initializer_list", "argument_list"):
+            inside = [child for child in value.named_children if child.type != "comment"]
+            if len(inside) != 1:
+                return self.opaque(node)
+            value = inside[0]
+        term = self.term(value, depth)
+        name = re.search(r"([A-Za-z_]\w*)$", self.said(declarator))
+        if name:
+            self.names.append((name[1], term))
+        return term
+
+    def constant(self, node: Any, depth: int) -> Term:
+        return {"true": TRUE, "false": FALSE, "null": NULL}[node.type]
+
+    def this(self, node: Any, depth: int) -> Term:
+        return Term("name", "this")
+
+    def measured(self, node: Any, depth: int) -> Term:
+        return Term("op", self.tokens(node))
+
+
+def _fractional(value: Term) -> bool:
+    return value.kind == "real" or (value.kind in ("+", "-", "*", "op") and any(map(_fractional, value.parts)))
+
+
+_LONGEST_HEX = 40
+_READ = {
+    "binary_expression": _Reader.binary,
+    "unary_expression": _Reader.unary,
+    "pointer_expression": _Reader.unary,
+    "identifier": _Reader.path,
+    "qualified_identifier": _Reader.path,
+    "template_function": _Reader.path,
+    "field_expression": _Reader.member,
+    "call_expression": _Reader.call,
+    "cast_expression": _Reader.cast,
+    "subscript_expression": _Reader.index,
+    "conditional_expression": _Reader.choice,
+    "number_literal": _Reader.number,
+    "user_defined_literal": _Reader.number,
+    "string_literal": _Reader.string,
+    "raw_string_literal": _Reader.string,
+    "concatenated_string": _Reader.string,
+    "char_literal": _Reader.string,
+    "assignment_expression": _Reader.assigned,
+    "declaration": _Reader.declared,
+    "sizeof_expression": _Reader.measured,
+    "true": _Reader.constant,
+    "false": _Reader.constant,
+    "null": _Reader.constant,
+    "this": _Reader.this,
+}

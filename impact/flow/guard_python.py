@@ -1,0 +1,291 @@
+"""Python conditions to terms. Whatever is not understood is opaque; nothing raises."""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+
+from .guard_terms import (
+    DEEPEST,
+    FALSE,
+    FLIPPED,
+    LONGEST,
+    NULL,
+    TRUE,
+    Piece,
+    Reading,
+    Term,
+    comparison,
+    join,
+    member,
+    negation,
+    number,
+    reading,
+)
+
+_COMPARED = {ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
+_OPERATORS = {
+    ast.Div: "/",
+    ast.FloorDiv: "//",
+    ast.Mod: "%",
+    ast.Pow: "**",
+    ast.LShift: "<<",
+    ast.RShift: ">>",
+    ast.BitOr: "|",
+    ast.BitAnd: "&",
+    ast.BitXor: "^",
+    ast.MatMult: "@",
+}
+_MOST_MEMBERS = 50
+
+
+def condition(text: str, holds: bool) -> Reading:
+    """What a condition says when it holds, or when it does not."""
+    reader = _Reader()
+    node = parsed(text)
+    if node is None:
+        return Reading((opaque_piece(text, holds),))
+    return reading(reader.pieces(node, holds), reader.names)
+
+
+def expression(text: str) -> Term:
+    """The term of an expression."""
+    node = parsed(text)
+    return opaque(text) if node is None else _Reader().term(node, 0)
+
+
+def opaque(text: str) -> Term:
+    return Term("opaque", " ".join(text.split()))
+
+
+def opaque_piece(text: str, holds: bool) -> Piece:
+    term = opaque(text)
+    return Piece(text if holds else f"not ({text})", term if holds else negation(term))
+
+
+def parsed(text: str) -> ast.expr | None:
+    """The syntax tree; None when there is none. Python 2's `<>` is known."""
+    if not text.strip() or len(text) > LONGEST:
+        return None
+    for written in (text, text.replace("<>", "!=")):
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                return ast.parse(f"(\n{written}\n)", mode="eval").body
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            continue
+    return None
+
+
+def loop(head: str) -> Reading:
+    """What the head of a `for` says: that there is an element."""
+    inside = re.sub(r"^\s*(?:async\s+)?for\s+|:\s*$", "", head).strip()
+    try:
+        statement = ast.parse(f"for {inside}: pass").body[0]
+    except (SyntaxError, ValueError, RecursionError, MemoryError, IndexError):
+        return Reading((Piece(head, opaque(head)),))
+    if not isinstance(statement, ast.For) or len(inside) > LONGEST:
+        return Reading((Piece(head, opaque(head)),))
+    element = Term("each", "", (_Reader().term(statement.iter, 0),))
+    return Reading((Piece(f"for {inside}", element),), tuple(_unpacked(statement.target, element)))
+
+
+def _unpacked(target: ast.expr, value: Term) -> list[tuple[str, Term]]:
+    if isinstance(target, ast.Name):
+        return [(target.id, value)]
+    if isinstance(target, (ast.Tuple, ast.List)):
+        parts = enumerate(target.elts)
+        return [pair for place, part in parts for pair in _unpacked(part, member(value, f"{place}"))]
+    return []
+
+
+def matched(subject: Term, pattern: str) -> Reading:
+    """What `case pattern` says of a subject."""
+    try:
+        statement = ast.parse(f"match _:\n case {pattern}: pass").body[0]
+    except (SyntaxError, ValueError, RecursionError, MemoryError, IndexError):
+        return Reading((Piece("", comparison("==", subject, opaque(pattern))),))
+    if not isinstance(statement, ast.Match) or len(statement.cases) != 1 or statement.cases[0].guard:
+        return Reading((Piece("", comparison("==", subject, opaque(pattern))),))
+    names: list[tuple[str, Term]] = []
+    term = _pattern(subject, statement.cases[0].pattern, names, 0)
+    return Reading((Piece("", term),), tuple(names))
+
+
+def _pattern(subject: Term, pattern: ast.pattern, names: list[tuple[str, Term]], depth: int) -> Term:
+    if isinstance(pattern, ast.MatchValue):
+        return comparison("==", subject, _Reader().term(pattern.value, depth))
+    if isinstance(pattern, ast.MatchSingleton):
+        return _is(subject, {None: NULL, True: TRUE, False: FALSE}[pattern.value])
+    if isinstance(pattern, ast.MatchOr) and depth < DEEPEST:
+        return join("or", [_pattern(subject, part, names, depth + 1) for part in pattern.patterns])
+    if isinstance(pattern, ast.MatchAs):
+        if pattern.name:
+            names.append((pattern.name, subject))
+        return TRUE if pattern.pattern is None else _pattern(subject, pattern.pattern, names, depth + 1)
+    try:
+        return Term("op", "matches", (subject, opaque(ast.unparse(pattern))))
+    except RecursionError:
+        return Term("op", "matches", (subject,))
+
+
+def _is(left: Term, right: Term) -> Term:
+    """`left is right`."""
+    if NULL in (left, right):
+        return comparison("==", left, right)
+    return Term("op", "is", tuple(sorted((left, right))))
+
+
+class _Reader:
+    """Reads the tree of one condition. names: variables that the condition makes."""
+
+    def __init__(self) -> None:
+        self.names: list[tuple[str, Term]] = []
+
+    def opaque(self, node: ast.AST) -> Term:
+        try:
+            return opaque(ast.unparse(node))
+        except (RecursionError, ValueError):
+            return opaque("too deep")
+
+    def pieces(self, node: ast.expr, holds: bool) -> list[Piece]:
+        """What must hold, one after the other, for the condition to hold (or not to)."""
+        result: list[Piece] = []
+        waiting = [(node, holds)]
+        while waiting:
+            node, holds = waiting.pop()
+            if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+                waiting.append((node.operand, not holds))
+            elif isinstance(node, ast.BoolOp) and isinstance(node.op, ast.And if holds else ast.Or):
+                waiting.extend((part, holds) for part in reversed(node.values))
+            else:
+                term = self.term(node, 0)
+                result.append(Piece(self.worded(node, holds), term if holds else negation(term)))
+        return result
+
+    def worded(self, node: ast.expr, holds: bool) -> str:
+        text = self.opaque(node).text
+        if holds:
+            return text
+        if isinstance(node, ast.Compare) and len(node.ops) == 1:
+            left, right = self.opaque(node.left).text, self.opaque(node.comparators[0]).text
+            operator = node.ops[0]
+            words = {ast.Is: "is not", ast.IsNot: "is", ast.In: "not in", ast.NotIn: "in"}
+            flipped = words.get(type(operator)) or FLIPPED[_COMPARED[type(operator)]]
+            return f"{left} {flipped} {right}"
+        simple = isinstance(node, (ast.Name, ast.Attribute, ast.Call, ast.Subscript))
+        return f"not {text}" if simple else f"not ({text})"
+
+    def term(self, node: ast.expr, depth: int) -> Term:
+        read = _READ.get(type(node))
+        if read is None or depth > DEEPEST:
+            return self.opaque(node)
+        return read(self, node, depth + 1)
+
+    # Kinds of expression
+
+    def both(self, node: ast.BoolOp, depth: int) -> Term:
+        parts = [self.term(part, depth) for part in node.values]
+        return join("and" if isinstance(node.op, ast.And) else "or", parts)
+
+    def unary(self, node: ast.UnaryOp, depth: int) -> Term:
+        operand = self.term(node.operand, depth)
+        if isinstance(node.op, ast.Not):
+            return negation(operand)
+        if isinstance(node.op, ast.USub):
+            return Term("-", "", (Term("whole", "0"), operand))
+        return operand if isinstance(node.op, ast.UAdd) else Term("op", "~", (operand,))
+
+    def compared(self, node: ast.Compare, depth: int) -> Term:
+        terms = [self.term(part, depth) for part in (node.left, *node.comparators)]
+        links: list[Term] = []
+        for place, operator in enumerate(node.ops):
+            left, right = terms[place], terms[place + 1]
+            if isinstance(operator, (ast.In, ast.NotIn)):
+                link = self.within(left, node.comparators[place], right, depth)
+                links.append(negation(link) if isinstance(operator, ast.NotIn) else link)
+            elif isinstance(operator, (ast.Is, ast.IsNot)):
+                link = _is(left, right)
+                links.append(negation(link) if isinstance(operator, ast.IsNot) else link)
+            else:
+                links.append(comparison(_COMPARED[type(operator)], left, right))
+        return join("and", links)
+
+    def within(self, left: Term, written: ast.expr, right: Term, depth: int) -> Term:
+        """`left in (a, b)` as `left == a or left == b`; anything else is as it is."""
+        listed = written.elts if isinstance(written, (ast.Tuple, ast.List, ast.Set)) else None
+        if listed is None or len(listed) > _MOST_MEMBERS or any(isinstance(part, ast.Starred) for part in listed):
+            return Term("op", "in", (left, right))
+        if not listed:
+            return FALSE
+        return join("or", [comparison("==", left, self.term(part, depth)) for part in listed])
+
+    def arithmetic(self, node: ast.BinOp, depth: int) -> Term:
+        left, right = self.term(node.left, depth), self.term(node.right, depth)
+        for kind, sign in ((ast.Add, "+"), (ast.Sub, "-"), (ast.Mult, "*")):
+            if isinstance(node.op, kind):
+                return Term(sign, "", (left, right))
+        return Term("op", _OPERATORS[type(node.op)], (left, right))
+
+    def choice(self, node: ast.IfExp, depth: int) -> Term:
+        return Term("choice", "", tuple(self.term(part, depth) for part in (node.test, node.body, node.orelse)))
+
+    def name(self, node: ast.Name, depth: int) -> Term:
+        return Term("name", "this" if node.id == "self" else node.id)
+
+    def attribute(self, node: ast.Attribute, depth: int) -> Term:
+        return member(self.term(node.value, depth), node.attr)
+
+    def constant(self, node: ast.Constant, depth: int) -> Term:
+        value = node.value
+        if value is None:
+            return NULL
+        if isinstance(value, bool):
+            return TRUE if value else FALSE
+        if isinstance(value, (int, float)):
+            try:
+                return number(repr(value)) or self.opaque(node)
+            except ValueError:
+                return opaque("a large number")
+        if isinstance(value, (str, bytes)):
+            return Term("string", repr(value))
+        return self.opaque(node)
+
+    def index(self, node: ast.Subscript, depth: int) -> Term:
+        return Term("index", "", (self.term(node.value, depth), self.term(node.slice, depth)))
+
+    def call(self, node: ast.Call, depth: int) -> Term:
+        function = self.term(node.func, depth)
+        arguments = [self.term(argument, depth) for argument in node.args]
+        named = sorted((word.arg or "**", self.term(word.value, depth)) for word in node.keywords)
+        if len(arguments) == 1 and not named and isinstance(node.func, ast.Name):
+            known = {"len": "size", "bool": "truth", "abs": "abs"}.get(node.func.id)
+            if known:
+                return Term(known, "", (arguments[0],))
+        return Term("call", "", (function, *arguments, *(Term("op", f"{name}=", (value,)) for name, value in named)))
+
+    def assigned(self, node: ast.NamedExpr, depth: int) -> Term:
+        value = self.term(node.value, depth)
+        if isinstance(node.target, ast.Name):
+            self.names.append((node.target.id, value))
+        return value
+
+    def awaited(self, node: ast.Await, depth: int) -> Term:
+        return self.term(node.value, depth)
+
+
+_READ = {
+    ast.BoolOp: _Reader.both,
+    ast.UnaryOp: _Reader.unary,
+    ast.Compare: _Reader.compared,
+    ast.BinOp: _Reader.arithmetic,
+    ast.IfExp: _Reader.choice,
+    ast.Name: _Reader.name,
+    ast.Attribute: _Reader.attribute,
+    ast.Constant: _Reader.constant,
+    ast.Subscript: _Reader.index,
+    ast.Call: _Reader.call,
+    ast.NamedExpr: _Reader.assigned,
+    ast.Await: _Reader.awaited,
+}

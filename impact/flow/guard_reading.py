@@ -1,0 +1,164 @@
+"""What each kind of guard says, as pieces that must all hold."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Literal
+
+from ..model.flow.graph import GuardAt
+from . import guard_cpp, guard_python
+from .guard_terms import Piece, Reading, Term, define, join, names_in, negation, rebuilt, renamed, substituted
+
+Language = Literal["cpp", "python"]
+
+
+def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
+    """The language the guards are written in, as their paths tell it; a script without an ending is Python."""
+    for way in ways:
+        for guard in way:
+            ending = guard.path.rpartition("/")[2].rpartition(".")[1:]
+            return "python" if (ending[0] == "" and guard.path) or ending[1] in ("py", "pyw") else "cpp"
+    return "cpp"
+
+
+def pieces_of(
+    way: Sequence[GuardAt], language: Language, renames: Mapping[str, str], meanings: Mapping[str, str]
+) -> tuple[Piece, ...]:
+    """All that must hold on one way, outermost first, with variables of loops and conditions put back into what they
+    stand for, and so are those in meanings (name to expression)."""
+    result: list[Piece] = []
+    meant = {name: _meaning(language, text) for name, text in meanings.items()}
+    names: dict[str, dict[str, Term]] = {}
+    for place, guard in enumerate(way):
+        known = names.setdefault(guard.of, dict(meant))
+        reading = read(language, guard.kind, guard.text)
+        for piece in reading.pieces:
+            term = substituted(piece.term, known) if known else piece.term
+            if renames:
+                term = renamed(term, renames)
+            if term.kind != "true":
+                result.append(Piece(piece.text, term, place))
+        for name, value in reading.names:
+            define(known, name, value)
+    return tuple(result)
+
+
+@lru_cache(4096)
+def _meaning(language: Language, text: str) -> Term:
+    return guard_cpp.expression(text) if language == "cpp" else guard_python.expression(text)
+
+
+def this_left_out(sides: Sequence[Sequence[Sequence[Piece]]]) -> tuple[tuple[tuple[Piece, ...], ...], ...]:
+    """C++ sides (of ways, of pieces) with `this->x` as `x`, unless one side has both."""
+    for side in sides:
+        named = {name for way in side for piece in way for name in names_in(piece.term)}
+        ours = {name.removeprefix("this.").partition(".")[0] for name in named if name.startswith("this.")}
+        if any(name.partition(".")[0] in ours for name in named):
+            return tuple(tuple(tuple(way) for way in side) for side in sides)
+    return tuple(
+        tuple(tuple(piece._replace(term=_bare(piece.term)) for piece in way) for way in side) for side in sides
+    )
+
+
+def _bare(term: Term) -> Term:
+    if term.kind == "name" and term.text.startswith("this."):
+        return Term("name", term.text.removeprefix("this."))
+    if not term.parts:
+        return term
+    return rebuilt(term.kind, term.text, tuple(map(_bare, term.parts)))
+
+
+@lru_cache(16384)
+def read(language: Language, kind: str, text: str) -> Reading:
+    """One guard by itself; kind and text as in facts."""
+    reader = guard_cpp if language == "cpp" else guard_python
+    if kind in ("if", "while"):
+        return reader.condition(text, True)
+    if kind == "unless":
+        if re.match(r"(?:catch|except)\b", text):
+            return Reading((Piece(f"no {text}", negation(_caught(text))),))
+        return reader.condition(text, False)
+    if kind == "cpp":
+        return guard_cpp.directive(text, True)
+    if kind == "case":
+        return case(language, text)
+    if kind == "for":
+        return reader.loop(text)
+    if kind in ("do", "with"):
+        # What runs once at least, or inside a context, runs under no condition.
+        return Reading()
+    if kind == "catch":
+        return Reading((Piece(f"catch ({text})", _caught(text)),))
+    return Reading((Piece(text, Term("opaque", f"{kind} {' '.join(text.split())}")),))
+
+
+def _caught(text: str) -> Term:
+    """That an exception was caught; the text is what is caught, alone or after `catch` or `except`."""
+    match = re.match(r"catch\s*\((.*)\)$|except\b(.*)", text.strip())
+    inside = match[1] or match[2] or "" if match else text
+    return guard_cpp.caught(re.sub(r"\s+as\s+\w+$", "", inside.strip()))
+
+
+def case(language: Language, text: str) -> Reading:
+    """`subject == a or b` or `subject other than a, b`."""
+    subject, other, values = text.partition(" other than ")
+    if other:
+        named = _split(values, ",")
+    else:
+        subject, _, values = text.partition(" == ")
+        named = _split(values, " or ")
+    reader = guard_cpp if language == "cpp" else guard_python
+    asked = reader.expression(subject)
+    alternatives: list[Term] = []
+    names: tuple[tuple[str, Term], ...] = ()
+    for value in named:
+        # Where each value comes with the subject again.
+        value = value.removeprefix(f"{subject} == ")
+        if language == "python":
+            reading = guard_python.matched(asked, value)
+            alternatives.append(reading.pieces[0].term)
+            names += reading.names
+        else:
+            alternatives.append(_case_value(asked, value))
+    if not alternatives:
+        return Reading()
+    term = join("or", alternatives)
+    return Reading((Piece(text, negation(term) if other else term),), () if other else names)
+
+
+def _case_value(subject: Term, value: str) -> Term:
+    first, dots, last = value.partition(" ... ")
+    if dots:
+        low, high = guard_cpp.expression(first), guard_cpp.expression(last)
+        return join("and", (guard_cpp.comparison("<=", low, subject), guard_cpp.comparison("<=", subject, high)))
+    return guard_cpp.comparison("==", subject, guard_cpp.expression(value))
+
+
+def _split(text: str, separator: str) -> list[str]:
+    """The parts of a text between separators outside brackets and quotes."""
+    parts: list[str] = []
+    depth = start = position = 0
+    quote = ""
+    while position < len(text):
+        character = text[position]
+        if quote:
+            if character == "\\":
+                position += 1
+            elif character == quote:
+                quote = ""
+        elif character in "\"'":
+            quote = character
+        elif character in "([{":
+            depth += 1
+        elif character in ")]}":
+            depth -= 1
+        elif depth <= 0 and text.startswith(separator, position):
+            parts.append(text[start:position])
+            position += len(separator)
+            start = position
+            continue
+        position += 1
+    parts.append(text[start:])
+    return [part.strip() for part in parts if part.strip()]

@@ -1,0 +1,412 @@
+"""Whether one condition implies another, decided with z3.
+
+Numbers are real unless they are known to be whole, so that an implication that is proved holds for integers and for
+floating point alike (NaN and overflow aside). That one does *not* hold is believed only when whole numbers, not
+negative, show it too, wherever the terms could be of such a type. What lies between these two is not decided.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from fractions import Fraction
+
+from .guard_reading import Language
+from .guard_terms import FORMULAS, NULL, Term, owner_of
+
+_ENUMERATOR = re.compile(r"(?P<scope>.+)::(?:[A-Z]|k[A-Z])\w*|(?P<class>.+)\.[A-Z][A-Z0-9_]+")
+_CONSTANT = re.compile(r"[A-Z][A-Z0-9_]+|k[A-Z]\w*")
+_COUNTS = frozenset(
+    ("count", "getNumSubscribers", "get_subscription_count", "get_num_connections", "getNumPublishers", "use_count")
+) | {"get_intra_process_subscription_count", "get_publisher_count", "get_subscriber_count", "qsize"}
+_RESOURCES_PER_MILLISECOND = 500
+
+
+class Undecided(Exception):
+    """The limit was reached, or the conditions are nested too deep."""
+
+
+class Solver:
+    """Compares two conditions of one language.
+
+    types: of names, as they are written where they are declared. milliseconds: for each question, turned into an amount
+    of work that is the same on every machine.
+    """
+
+    def __init__(self, language: Language, types: Mapping[str, str], milliseconds: int) -> None:
+        self.python = language == "python"
+        self.types = types
+        self.milliseconds = max(milliseconds, 1)
+        self.numbers: dict[Term, str] = {}
+        self.truths: dict[Term, str] = {}
+        self.nulls: dict[Term, str] = {}
+        self.texts: dict[str, str] = {}
+        self.script: list[str] = []
+        self.valued: set[Term] = set()
+        self.counted: set[Term] = set()
+        # Told to be less than something that is a number; told to be less than anything, or calculated with.
+        self.ordered: set[Term] = set()
+        self.measured: set[Term] = set()
+        self.fractional: set[Term] = set()
+        self.signed: set[Term] = set()
+        self.equated: dict[Term, set[Term]] = {}
+
+    # Questions
+
+    def relation(self, old: Term, new: Term) -> tuple[bool | None, bool | None, bool]:
+        """Whether new implies old, and old implies new (None: true of some types only), and whether that is so of
+        conditions that can hold at all. Raises Undecided."""
+        before, after = self.stated(old, new)
+        loses, gains = f"(and {before} (not {after}))", f"(and {after} (not {before}))"
+        ask = self.asked(before=before, after=after, loses=loses, gains=gains)
+        lost, gained = ask("loses", "supposed"), ask("gains", "supposed")
+        if lost and gained:
+            return False, False, True
+        forward = False if gained else None if ask("gains") else True
+        backward = False if lost else None if ask("loses") else True
+        return forward, backward, (lost or ask("before")) and (gained or ask("after"))
+
+    def possible(self, term: Term) -> bool:
+        """Whether a condition can hold. Raises Undecided."""
+        (asked,) = self.stated(term)
+        return self.asked(asked=asked)("asked")
+
+    def stated(self, *terms: Term) -> list[str]:
+        """The terms as formulas, in the language of SMT-LIB; `script` says what is in them."""
+        try:
+            for term in terms:
+                self.look(term, False)
+            return [self.truth(term) for term in terms]
+        except RecursionError as error:
+            raise Undecided from error
+
+    def asked(self, **formulas: str) -> Callable[..., bool]:
+        """A function that tells whether some of the formulas, by their names, hold together for some values. Besides
+        them there is `supposed`: see supposed()."""
+        import z3
+
+        formulas["supposed"] = _all(self.supposed())
+        known = [f"(assert {fact})" for fact in self.known()]
+        named = [f"(declare-const {name} Bool)(assert (=> {name} {formula}))" for name, formula in formulas.items()]
+        solver = z3.SimpleSolver()
+        solver.set("rlimit", self.milliseconds * _RESOURCES_PER_MILLISECOND)
+        # Should the amount of work be misjudged, it ends all the same.
+        solver.set("timeout", self.milliseconds * 20)
+        try:
+            solver.from_string("".join((*self.script, *known, *named)))
+        except z3.Z3Exception as error:
+            raise Undecided from error
+
+        def ask(*names: str) -> bool:
+            try:
+                answer = solver.check(*(z3.Bool(name) for name in names))
+            except z3.Z3Exception as error:
+                raise Undecided from error
+            if answer == z3.unknown:
+                raise Undecided
+            return answer == z3.sat
+
+        return ask
+
+    # What terms are used as
+
+    def look(self, term: Term, valued: bool) -> None:
+        """Notes what terms are used as. valued: as a number rather than for its truth."""
+        kind, parts = term.kind, term.parts
+        if kind in ("and", "or", "not", "truth"):
+            for part in parts:
+                self.look(part, False)
+        elif kind == "compare":
+            self.look_compared(term)
+        elif kind == "choice":
+            self.look(parts[0], False)
+            self.look(parts[1], valued)
+            self.look(parts[2], valued)
+        elif self.is_arithmetic(term):
+            for part in parts:
+                self.look(part, True)
+        elif kind == "size":
+            self.counted.add(parts[0])
+        elif kind == "abs":
+            self.look(parts[0], True)
+        elif valued and kind not in ("whole", "real", "string", "null", "true", "false"):
+            self.valued.add(term)
+
+    def look_compared(self, term: Term) -> None:
+        left, right = term.parts
+        if term.text == "==":
+            for one, other in ((left, right), (right, left)):
+                if one.kind in ("true", "false", "null"):
+                    self.look(other, False)
+                    return
+                if one.kind in ("string", "whole", "real") or self.is_constant(one):
+                    self.equated.setdefault(other, set()).add(one)
+            if left.kind in FORMULAS or right.kind in FORMULAS:
+                self.look(left, False)
+                self.look(right, False)
+                return
+        self.look(left, True)
+        self.look(right, True)
+        bases = {base for part in term.parts for base in self.bases(part)}
+        literals = [literal for part in term.parts for literal in self.literals(part)]
+        calculated = self.is_arithmetic(left) or self.is_arithmetic(right)
+        if term.text != "==" and (literals or calculated):
+            self.ordered |= bases
+        if term.text != "==" or calculated:
+            self.measured |= bases
+        if any(literal.kind == "real" for literal in literals):
+            self.fractional |= bases
+        if any(Fraction(literal.text) < 0 for literal in literals) or any(part.kind == "-" for part in term.parts):
+            self.signed |= bases
+        if (term.text == "<" and self.fold(right) == 0) or (term.text == "<=" and self.fold(left) == 0):
+            self.signed |= bases
+
+    def bases(self, term: Term) -> Iterable[Term]:
+        """The unknowns in an arithmetic expression."""
+        if self.is_arithmetic(term) or term.kind == "abs":
+            for part in term.parts:
+                yield from self.bases(part)
+        elif term.kind == "choice":
+            yield from self.bases(term.parts[1])
+            yield from self.bases(term.parts[2])
+        elif term.kind not in ("whole", "real", "string", "null", "true", "false"):
+            yield term
+
+    def literals(self, term: Term) -> Iterable[Term]:
+        if term.kind in ("whole", "real"):
+            yield term
+        elif self.is_arithmetic(term):
+            for part in term.parts:
+                yield from self.literals(part)
+
+    def is_arithmetic(self, term: Term) -> bool:
+        """Whether a term is a sum or a multiple of others."""
+        if term.kind in ("+", "-"):
+            if any(part.kind == "string" for part in term.parts):
+                return False
+            return term.kind == "+" or not any(self.type_of(part) == "unsigned" for part in term.parts)
+        if term.kind == "*":
+            return any(self.fold(part) is not None for part in term.parts)
+        if term.kind == "op" and term.text == "/" and len(term.parts) == 2:
+            divisor = self.fold(term.parts[1])
+            # 1 / 2 is 0 or 0.5.
+            return bool(divisor) and any(
+                literal.kind == "real" for part in term.parts for literal in self.literals(part)
+            )
+        return False
+
+    def is_constant(self, term: Term) -> bool:
+        return term.kind == "name" and bool(_ENUMERATOR.fullmatch(term.text) or _CONSTANT.fullmatch(term.text))
+
+    def fold(self, term: Term) -> Fraction | None:
+        """The number that a term of literals alone is."""
+        if term.kind in ("whole", "real"):
+            return Fraction(term.text)
+        if term.kind in ("+", "-", "*"):
+            left, right = self.fold(term.parts[0]), self.fold(term.parts[1])
+            if left is None or right is None:
+                return None
+            return left + right if term.kind == "+" else left - right if term.kind == "-" else left * right
+        return None
+
+    def type_of(self, term: Term) -> str:
+        """`float`, `integer`, `unsigned`, `bool`, `pointer`, `optional`, or empty for what is not known."""
+        if term.kind == "size":
+            return "integer" if self.python else "unsigned"
+        if term.kind == "call":
+            return "integer" if owner_of(term.parts[0])[1] in _COUNTS else ""
+        if term.kind == "op" and term.text == "cut":
+            return "integer"
+        return type_class(self.types.get(term.text, "")) if term.kind == "name" else ""
+
+    # Terms to formulas
+
+    def fresh(self, sort: str) -> str:
+        name = f"{sort[0].lower()}{len(self.script)}"
+        self.script.append(f"(declare-const {name} {sort})")
+        return name
+
+    def number_of(self, term: Term) -> str:
+        """The unknown number that a term is."""
+        if term.kind == "*" or (term.kind == "op" and term.text in ("&", "|", "^")):
+            term = Term(term.kind, term.text, tuple(sorted(term.parts)))
+        if term not in self.numbers:
+            self.numbers[term] = self.fresh("Real")
+        return self.numbers[term]
+
+    def value(self, term: Term) -> str:
+        kind, parts = term.kind, term.parts
+        folded = self.fold(term)
+        if folded is not None:
+            return _real(folded)
+        if kind in FORMULAS:
+            return f"(ite {self.truth(term)} 1.0 0.0)"
+        if kind == "choice":
+            return f"(ite {self.truth(parts[0])} {self.value(parts[1])} {self.value(parts[2])})"
+        if self.is_arithmetic(term):
+            return f"({term.text or kind} {self.value(parts[0])} {self.value(parts[1])})"
+        if kind == "abs":
+            inside = self.value(parts[0])
+            return f"(ite (>= {inside} 0.0) {inside} (- {inside}))"
+        if kind == "null" and not self.python:
+            return "0.0"
+        if kind == "string":
+            if term.text not in self.texts:
+                self.texts[term.text] = self.fresh("Real")
+            return self.texts[term.text]
+        return self.number_of(term)
+
+    def truth(self, term: Term) -> str:
+        kind, parts = term.kind, term.parts
+        if kind in ("true", "false"):
+            return kind
+        if kind in ("and", "or", "not"):
+            return f"({kind} {' '.join(map(self.truth, parts))})"
+        if kind == "truth":
+            return self.truth(parts[0])
+        if kind == "compare":
+            return self.compared(term.text, *parts)
+        if kind == "choice":
+            return f"(ite {' '.join(map(self.truth, parts))})"
+        if kind == "null" or (kind == "string" and self.python and is_empty(term.text)):
+            return "false"
+        if kind == "string":
+            return "true"
+        measured = kind in ("whole", "real", "size", "abs") or self.is_arithmetic(term)
+        if measured or (not self.python and term in self.valued and self.type_of(term) != "optional"):
+            return f"(not (= {self.value(term)} 0.0))"
+        if term not in self.truths:
+            self.truths[term] = self.fresh("Bool")
+        return self.truths[term]
+
+    def compared(self, operator: str, left: Term, right: Term) -> str:
+        if operator != "==":
+            return f"({operator} {self.value(left)} {self.value(right)})"
+        for one, other in ((left, right), (right, left)):
+            if one.kind == "null":
+                return self.is_null(other)
+        for one, other in ((left, right), (right, left)):
+            if one.kind in ("true", "false"):
+                # Who compares with `true` has a bool.
+                truth = self.truth(other)
+                return truth if one.kind == "true" else f"(not {truth})"
+        if left.kind in FORMULAS or right.kind in FORMULAS:
+            return f"(= {self.truth(left)} {self.truth(right)})"
+        return f"(= {self.value(left)} {self.value(right)})"
+
+    def is_null(self, term: Term) -> str:
+        if not self.python:
+            return f"(not {self.truth(term)})"
+        if term == NULL:
+            return "true"
+        if term.kind in FORMULAS or term.kind in ("whole", "real", "string", "size") or self.is_arithmetic(term):
+            return "false"
+        if term not in self.nulls:
+            self.nulls[term] = self.fresh("Bool")
+        return self.nulls[term]
+
+    # What is known of them
+
+    def known(self) -> list[str]:
+        """What holds of the terms whatever their types are."""
+        result = list(self.known_in_python()) if self.python else []
+        for term, others in self.equated.items():
+            for text in sorted(other for other in others if other.kind == "string" and term in self.counted):
+                size, equal = self.value(Term("size", "", (term,))), f"(= {self.value(term)} {self.value(text)})"
+                same = is_empty(text.text)
+                result.append(f"(= {equal} (= {size} 0.0))" if same else f"(=> {equal} (> {size} 0.0))")
+        scopes: dict[str, list[str]] = {"a text": list(self.texts.values())}
+        for term, value in self.numbers.items():
+            match = _ENUMERATOR.fullmatch(term.text) if term.kind == "name" else None
+            if match:
+                scopes.setdefault(match["scope"] or match["class"], []).append(value)
+            type_ = self.type_of(term)
+            if type_ in ("integer", "unsigned", "bool"):
+                result.append(f"(is_int {value})")
+            if type_ in ("unsigned", "bool") or (term.kind in ("size", "call") and type_ == "integer"):
+                result.append(f"(>= {value} 0.0)")
+            if type_ == "bool":
+                result.append(f"(<= {value} 1.0)")
+        result.extend(f"(distinct {' '.join(values)})" for values in scopes.values() if len(values) > 1)
+        return result
+
+    def known_in_python(self) -> Iterable[str]:
+        """What the truth of a value, its being None, its length and its being equal to something have to do with each
+        other."""
+        for term, truth in self.truths.items():
+            there = f"(not {self.nulls[term]})" if term in self.nulls else "true"
+            type_ = self.type_of(term)
+            if term in self.counted:
+                yield f"(= {truth} (and {there} (not (= {self.value(Term('size', '', (term,)))} 0.0))))"
+            elif term in self.valued and (term in self.ordered or type_ in ("integer", "float", "bool")):
+                yield f"(= {truth} (and {there} (not (= {self.value(term)} 0.0))))"
+            else:
+                yield f"(=> {truth} {there})"
+        for term, others in self.equated.items():
+            for other in sorted(others):
+                if term not in self.valued:
+                    continue
+                equal = f"(= {self.value(term)} {self.value(other)})"
+                if term in self.nulls:
+                    yield f"(=> {equal} (not {self.nulls[term]}))"
+                if term in self.truths and not self.is_constant(other):
+                    truth = self.truths[term]
+                    yield f"(=> {equal} (= {truth} {self.truth(other)}))"
+                    if other.kind == "string" and is_empty(other.text) and self.type_of(term) == "str":
+                        yield f"(=> (not {truth}) {equal})"
+
+    def supposed(self) -> list[str]:
+        """What may hold of them besides: a difference that only shows otherwise is not believed."""
+        result: list[str] = []
+        constants: list[str] = []
+        for term, value in self.numbers.items():
+            if self.type_of(term) == "float":
+                continue
+            if term.kind == "name" and _CONSTANT.fullmatch(term.text):
+                constants.append(value)
+            # Whether numbers are whole does not matter where they are only said to be equal or not.
+            if term in self.measured and term not in self.fractional:
+                result.append(f"(is_int {value})")
+                if term not in self.signed and self.type_of(term) != "integer":
+                    result.append(f"(>= {value} 0.0)")
+        if len(constants) > 1:
+            result.append(f"(distinct {' '.join(constants)})")
+        return result
+
+
+def _all(formulas: list[str]) -> str:
+    return f"(and {' '.join(formulas)})" if formulas else "true"
+
+
+def _real(number: Fraction) -> str:
+    """A number in the language of SMT-LIB."""
+    written = f"{abs(number.numerator)}.0"
+    if number.denominator != 1:
+        written = f"(/ {written} {number.denominator}.0)"
+    return f"(- {written})" if number < 0 else written
+
+
+def is_empty(literal: str) -> bool:
+    """Whether a string literal is the empty string."""
+    return bool(re.fullmatch(r"\w*(\"\"|''|R\"\(\)\")", literal))
+
+
+_FLOATING = re.compile(r"\b(?:double|float|float32_t|float64_t)\b")
+_UNSIGNED = re.compile(r"\b(?:unsigned|uint(?:_fast|_least)?\d*_t|uint|uint\d+|size_t|size_type)\b")
+_SIGNED = re.compile(r"\b(?:int|long|short|s?size_t|int(?:_fast|_least)?\d*_t|int\d+)\b")
+
+
+def type_class(type_: str) -> str:
+    """`float`, `integer`, `unsigned`, `bool`, `pointer`, `optional`, `str` or empty, for a type as it is written."""
+    if not type_:
+        return ""
+    if "optional" in type_ or "Optional" in type_:
+        return "optional"
+    if "*" in type_ or re.search(r"(?:Ptr|_ptr)\b", type_):
+        return "pointer"
+    if "<" in type_ or "[" in type_:
+        return ""
+    for pattern, name in ((_FLOATING, "float"), (_UNSIGNED, "unsigned"), (_SIGNED, "integer")):
+        if pattern.search(type_):
+            return name
+    return {"bool": "bool", "str": "str"}.get(type_.replace("const", "").strip(), "")

@@ -1,0 +1,130 @@
+"""In words, what guards ask for that they did not, and what they ask for no longer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import takewhile
+
+from .guard_terms import Piece, Term, names_in
+
+_LONGEST = 100
+_MOST = 4
+_AROUND = 3
+_BLOCKS = ("macro ", "catch ")
+
+Asked = Callable[[Sequence[Piece], Piece], bool]
+"""Whether some pieces together already ask for another."""
+
+
+def words(before: Sequence[Piece], after: Sequence[Piece], asked: Asked) -> str:
+    """One clause about two conjunctions; empty when there is nothing to tell. asked: see Asked."""
+    removed, added = _without(before, after), _without(after, before)
+    clauses: list[str] = []
+    for piece in list(added):
+        other = next((other for other in removed if _is_other_form(other.term, piece.term)), None)
+        if other is not None:
+            removed.remove(other)
+            added.remove(piece)
+            clauses.append(_instead(other, piece))
+    removed = [piece for piece in removed if not asked(after, piece)]
+    added = [piece for piece in added if not asked(before, piece)]
+    if len(removed) == len(added) == 1 and not clauses and _is_block(added[0]) == _is_block(removed[0]):
+        return _instead(removed[0], added[0])
+    more = " too" if before else ""
+    for place, pieces in (("when", [p for p in added if not _is_block(p)]), ("inside", list(filter(_is_block, added)))):
+        if pieces:
+            clauses.append(f"only {place} {_listed(pieces)}{more}")
+    for place, pieces in (
+        ("asks for", [piece for piece in removed if not _is_block(piece)]),
+        ("inside", list(filter(_is_block, removed))),
+    ):
+        if pieces:
+            clauses.append(f"no longer {place} {_listed(pieces)}")
+    return ", ".join(clauses)
+
+
+def words_of_ways(before: Sequence[Sequence[Piece]], after: Sequence[Sequence[Piece]], asked: Asked) -> str:
+    """One clause about ways that lead to a statement."""
+    old_ways, new_ways = {_terms(way) for way in before}, {_terms(way) for way in after}
+    removed = [way for way in before if _terms(way) not in new_ways]
+    added = [way for way in after if _terms(way) not in old_ways]
+    if len(removed) == len(added) == 1:
+        return words(removed[0], added[0], asked)
+    clauses = [f"also {_when(way)}" for way in added] + [f"no longer {_when(way)}" for way in removed]
+    return ", ".join(clauses)
+
+
+def _when(way: Sequence[Piece]) -> str:
+    return f"when {_listed(way)}" if way else "without any condition"
+
+
+def _terms(way: Sequence[Piece]) -> frozenset[Term]:
+    return frozenset(piece.term for piece in way)
+
+
+def _without(pieces: Sequence[Piece], others: Sequence[Piece]) -> list[Piece]:
+    """The pieces that the others have not, each once."""
+    known = {piece.term for piece in others}
+    result: list[Piece] = []
+    for piece in pieces:
+        if piece.term not in known:
+            known.add(piece.term)
+            result.append(piece)
+    return result
+
+
+def _instead(old: Piece, new: Piece) -> str:
+    """What one condition became; of long ones the part that differs, with a few words around it."""
+    was, now = old.text.split(" "), new.text.split(" ")
+    if max(len(old.text), len(new.text)) > _LONGEST:
+        start = sum(1 for _ in takewhile(_same, zip(was, now, strict=False)))
+        same = sum(1 for _ in takewhile(_same, zip(was[start:][::-1], now[start:][::-1], strict=False)))
+        was, now = _part(was, start, same), _part(now, start, same)
+    return f"{_shown(' '.join(now))} was {_shown(' '.join(was))}"
+
+
+def _same(pair: tuple[str, str]) -> bool:
+    return pair[0] == pair[1]
+
+
+def _part(words: list[str], start: int, end: int) -> list[str]:
+    """The words without those of a beginning and an end that are too far from the rest."""
+    first, last = max(start - _AROUND, 0), min(len(words) - end + _AROUND, len(words))
+    return ["…"] * (first > 0) + words[first:last] + ["…"] * (last < len(words))
+
+
+def _is_other_form(old: Term, new: Term) -> bool:
+    """Whether a condition is about what another one was about, as far as names tell."""
+    was, now = _about(old), _about(new)
+    if was == now:
+        return bool(was)
+    return _kind(old) == _kind(new) in ("and", "or", "compare") and bool(was & now)
+
+
+def _about(term: Term) -> frozenset[str]:
+    """The names in a condition that are no constants."""
+    return frozenset(name for name in names_in(term) if not name.rpartition("::")[2].isupper())
+
+
+def _kind(term: Term) -> str:
+    return term.parts[0].kind if term.kind == "not" else term.kind
+
+
+def _is_block(piece: Piece) -> bool:
+    term = piece.term
+    return term.kind == "each" or (term.kind == "opaque" and term.text.startswith(_BLOCKS))
+
+
+def _listed(pieces: Sequence[Piece]) -> str:
+    quoted = [_quoted(piece) for piece in pieces]
+    if len(quoted) > _MOST:
+        quoted = [*quoted[: _MOST - 1], f"{len(quoted) - _MOST + 1} more"]
+    return " and ".join(([", ".join(quoted[:-1])] if quoted[:-1] else []) + quoted[-1:])
+
+
+def _quoted(piece: Piece) -> str:
+    return _shown(piece.text)
+
+
+def _shown(text: str) -> str:
+    return f"`{text if len(text) <= _LONGEST else text[: _LONGEST - 1] + '…'}`"

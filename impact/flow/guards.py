@@ -1,0 +1,185 @@
+"""What happened to the conditions of a publish statement between two revisions.
+
+    compare(old, new)            # "tightened", "widened", "equivalent" or "changed"
+    explain(old, new)            # "only when `scan_received_` too"
+
+All of it is about the same moment: a name, and a call with the same arguments, has the same value wherever it stands in
+the two conditions. That calls have effects and that variables are assigned between two guards is not seen, save where
+guards would then contradict each other: nothing but what stands in both is then known of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal
+
+from ..model.flow.graph import GuardAt
+from .guard_reading import Language, language_of, pieces_of, this_left_out
+from .guard_solver import Solver, Undecided
+from .guard_terms import FALSE, TRUE, Piece, Term, join
+from .guard_words import words_of_ways
+
+Kind = Literal["tightened", "widened", "equivalent", "changed"]
+Guards = Sequence[GuardAt]
+Ways = Sequence[Guards]
+_Side = tuple[tuple[Piece, ...], ...]
+
+MILLISECONDS = 100
+_NOTHING: Mapping[str, str] = {}
+_NO_MEANINGS = (_NOTHING, _NOTHING)
+
+
+def compare(
+    old: Guards,
+    new: Guards,
+    renames: Mapping[str, str] = _NOTHING,
+    language: Language | None = None,
+    types: Mapping[str, str] = _NOTHING,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
+    milliseconds: int = MILLISECONDS,
+) -> Kind:
+    """What happened to the guards of one statement, outermost first.
+
+    renames: identifiers of the old revision that are called otherwise in the new one. language: as the guards' paths
+    tell it when it is not given. types: of names as the new revision has them, as they are declared; they decide
+    whether `n > 0` is `n >= 1` and `n != 0`. meanings: local variables of the old and of the new revision that are
+    assigned once, with the expression they are assigned: `if (n)` after `n = v.size()` is `if (v.size())`; namespaces
+    with what they are short for.
+    milliseconds: what each of the few questions to z3 may take, on any machine the same work; `changed` when that is
+    not enough.
+    """
+    return compare_ways((old,), (new,), renames, language, types, meanings, milliseconds)
+
+
+def compare_ways(
+    old: Ways,
+    new: Ways,
+    renames: Mapping[str, str] = _NOTHING,
+    language: Language | None = None,
+    types: Mapping[str, str] = _NOTHING,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
+    milliseconds: int = MILLISECONDS,
+) -> Kind:
+    """As compare(), for a statement that several ways lead to: it runs when all guards of one of them hold."""
+    if not renames and meanings[0] == meanings[1] and _written(old) == _written(new):
+        return "equivalent"
+    language = language or language_of((*old, *new))
+    before, after = _sides(old, new, renames, language, meanings)
+    if _said(before) == _said(after):
+        return "equivalent"
+
+    def solver() -> Solver:
+        return Solver(language, types, milliseconds)
+
+    try:
+        forward, backward, possible = solver().relation(_any_way(before), _any_way(after))
+        if not possible and not all(_is_settled(side, solver) for side in (before, after)):
+            forward, backward, _ = solver().relation(_any_way(before, _as_whole), _any_way(after, _as_whole))
+    except Undecided:
+        return "changed"
+    if forward and backward:
+        return "equivalent"
+    if forward and backward is False:
+        return "tightened"
+    return "widened" if backward and forward is False else "changed"
+
+
+def explain(
+    old: Guards,
+    new: Guards,
+    renames: Mapping[str, str] = _NOTHING,
+    language: Language | None = None,
+    types: Mapping[str, str] = _NOTHING,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
+    milliseconds: int = MILLISECONDS,
+) -> str:
+    """One clause that tells people what was added or removed, with code in backticks: "only when `a` too", "no longer
+    asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same. Arguments as of compare()."""
+    return explain_ways((old,), (new,), renames, language, types, meanings, milliseconds)
+
+
+def explain_ways(
+    old: Ways,
+    new: Ways,
+    renames: Mapping[str, str] = _NOTHING,
+    language: Language | None = None,
+    types: Mapping[str, str] = _NOTHING,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
+    milliseconds: int = MILLISECONDS,
+) -> str:
+    """As explain(), for a statement that several ways lead to."""
+    if compare_ways(old, new, renames, language, types, meanings, milliseconds) == "equivalent":
+        return ""
+    language = language or language_of((*old, *new))
+    before, after = _sides(old, new, renames, language, meanings)
+
+    def asked(pieces: Sequence[Piece], piece: Piece) -> bool:
+        try:
+            forward, _, possible = Solver(language, types, milliseconds).relation(piece.term, _all_of(pieces))
+        except Undecided:
+            return False
+        return forward is True and possible
+
+    return words_of_ways(before, after, asked)
+
+
+def impossible(guards: Guards, language: Language | None = None, milliseconds: int = MILLISECONDS) -> bool:
+    """Whether guards contradict each other. That tells that the statement never runs only where nothing they name is
+    assigned between them."""
+    language = language or language_of((guards,))
+    pieces = pieces_of(guards, language, _NOTHING, _NOTHING)
+    try:
+        return not Solver(language, _NOTHING, milliseconds).possible(_all_of(pieces))
+    except Undecided:
+        return False
+
+
+def _written(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
+    return frozenset(tuple((guard.kind, guard.text) for guard in way) for way in ways)
+
+
+def _sides(
+    old: Ways,
+    new: Ways,
+    renames: Mapping[str, str],
+    language: Language,
+    meanings: tuple[Mapping[str, str], Mapping[str, str]],
+) -> tuple[_Side, _Side]:
+    before = tuple(pieces_of(way, language, renames, meanings[0]) for way in old)
+    after = tuple(pieces_of(way, language, _NOTHING, meanings[1]) for way in new)
+    if language == "cpp":
+        before, after = this_left_out((before, after))
+    return before, after
+
+
+def _said(side: _Side) -> frozenset[frozenset[Term]]:
+    return frozenset(frozenset(piece.term for piece in way) for way in side)
+
+
+def _is_settled(side: _Side, solver: Callable[[], Solver]) -> bool:
+    """Whether a side can hold, or does not since on each way one guard contradicts itself: nothing is assigned within
+    a guard. Raises Undecided."""
+    if solver().possible(_any_way(side)):
+        return True
+    for way in side:
+        guards = [[piece for piece in way if piece.guard == place] for place in {piece.guard for piece in way}]
+        if all(solver().possible(_all_of(pieces)) for pieces in guards):
+            return False
+    return True
+
+
+def _as_whole(term: Term) -> Term:
+    """The term as something of which nothing is known."""
+    return Term("op", "whole", (term,))
+
+
+def _as_it_is(term: Term) -> Term:
+    return term
+
+
+def _all_of(pieces: Sequence[Piece], seen=_as_it_is) -> Term:
+    return join("and", [seen(piece.term) for piece in pieces]) if pieces else TRUE
+
+
+def _any_way(side: _Side, seen=_as_it_is) -> Term:
+    return join("or", [_all_of(way, seen) for way in side]) if side else FALSE

@@ -1,0 +1,282 @@
+"""The commits of a repository and the packages of each, read from git's objects; nothing is checked out."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Iterator, Mapping
+from datetime import datetime, timezone
+from typing import Any, NamedTuple
+
+from ..facts import kinds
+from ..model.package import role_of_folder
+from ..tree import IGNORE_MARKERS, GitTree, TreeError, shown
+
+_MODE_FOLDER, _MODE_LINK, _MODE_SUBMODULE = 0o040000, 0o120000, 0o160000
+_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+_NAME = re.compile(rb"<name\b[^>]*>\s*([^<\s]+)\s*</name>")
+_AMENT = re.compile(rb"\bament_(?:cmake|python)|<build_type>\s*ament")
+_WANTED = frozenset(("cpp", "python", "cmake", "setup_py"))
+
+
+class Commit(NamedTuple):
+    """A commit that is compared with its parent. parent: empty for the first of a history. date: of the commit, ISO
+    8601 in UTC; summary: the first line of its message."""
+
+    id: str
+    parent: str
+    date: str
+    summary: str
+
+
+class File(NamedTuple):
+    """A file of a package. path: relative to the package; kind: `cpp`, `python`, `cmake` or `setup_py`."""
+
+    path: str
+    id: str
+    kind: str
+
+
+class State(NamedTuple):
+    """A package as one commit has it. path: of its folder in the repository; ros: the generation its manifest is
+    written for. files: those that tell of the flow of messages, tests left out. key: the same for packages of one name
+    and generation that hold the same files, wherever they lie."""
+
+    name: str
+    path: str
+    ros: int
+    files: tuple[File, ...]
+    key: bytes
+
+    def whole(self, path: str) -> str:
+        """A path of the package as a path of the repository."""
+        return f"{self.path}/{path}" if self.path else path
+
+
+class _Found(NamedTuple):
+    """A folder with a manifest. path: below the folder that was asked for."""
+
+    path: str
+    folder: Any
+    manifest: Any
+    rosbuild: bool
+
+
+class History:
+    """The commits of a repository.
+
+    repository: it, or a folder in it: then only the packages below that folder are looked at. Raises TreeError when
+    there is no such repository.
+    """
+
+    def __init__(self, repository: str | os.PathLike[str]):
+        self.tree = GitTree(repository)
+        self.repo = self.tree._repo
+        self.path = self.repo.path
+        self.name = self.tree.name
+        self.folder = _below(os.fsdecode(repository), self.repo)
+        self._packages: dict[Any, tuple[_Found, ...]] = {}
+        self._files: dict[tuple[Any, bool], tuple[File, ...]] = {}
+        self._manifests: dict[Any, tuple[str, int]] = {}
+        self._scripts: dict[Any, bool] = {}
+        self._keys: dict[tuple[Any, str, int], tuple[tuple[File, ...], bytes]] = {}
+        self._roots: dict[str, dict[str, State]] = {}
+
+    # Commits
+
+    def commits(self, range: str = "", number: int | None = None, since: str = "") -> list[Commit]:
+        """The commits that are compared with their parent, newest first; merges are left out, each side's commits are
+        there by themselves.
+
+        range: `A..B`, those of B that A has not; `B` alone: all of its history; HEAD's when empty. number: the newest
+        so many of them. since: a day or time in ISO 8601. Raises TreeError for what git does not know, ValueError for
+        a time that cannot be read.
+        """
+        import pygit2
+
+        start, dots, end = range.partition("..")
+        if not dots:
+            start, end = "", range
+        order = pygit2.enums.SortMode.TOPOLOGICAL | pygit2.enums.SortMode.TIME
+        walker = self.repo.walk(self._commit(end.lstrip(".") or "HEAD"), order)
+        if dots:
+            walker.hide(self._commit(start or "HEAD"))
+        oldest = _time(since) if since else None
+        found: list[Commit] = []
+        for commit in walker:
+            if len(commit.parents) > 1 or (oldest is not None and commit.commit_time < oldest):
+                continue
+            if number is not None and len(found) >= number:
+                break
+            parents = commit.parent_ids
+            date = datetime.fromtimestamp(commit.commit_time, timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+            summary = commit.raw_message.decode("utf-8", "replace").strip().partition("\n")[0]
+            found.append(Commit(str(commit.id), str(parents[0]) if parents else "", date, summary.strip()))
+        return found
+
+    def _commit(self, revision: str):
+        import pygit2
+
+        return pygit2.Oid(hex=self.tree.at(revision).commit)
+
+    # Packages
+
+    def packages(self, commit: str) -> Mapping[str, State]:
+        """The packages of a commit by their names; of several with one name, those after the first by name and path.
+
+        Packages are catkin's, ament's and rosbuild's, told by their manifests. None for the parent of a first commit.
+        Raises KeyError when the commit is not in the repository (a history that was cut off).
+        """
+        if not commit:
+            return {}
+        known = self._roots.get(commit)
+        if known is None:
+            if len(self._roots) > 64:
+                self._roots.clear()
+            known = self._roots[commit] = dict(self._states(self._root(commit)))
+        return known
+
+    def same_tree(self, one: str, other: str) -> bool:
+        """Whether two commits hold the same files."""
+        return bool(one and other) and self._root(one) == self._root(other)
+
+    def _root(self, commit: str):
+        found = self.repo[commit].tree
+        for part in self.folder.split("/") if self.folder else ():
+            if part not in found:
+                return None
+            found = found[part]
+        return found.id if found.type_str == "tree" else None
+
+    def _states(self, root) -> Iterator[tuple[str, State]]:
+        seen: set[str] = set()
+        for found in self._found(root) if root is not None else ():
+            path = _joined(self.folder, found.path)
+            name, ros = self._manifest(found.manifest, found.rosbuild)
+            name = name or path.rpartition("/")[2] or self.name
+            files, key = self._content(found, name, ros)
+            state = State(name, path, ros, files, key)
+            yield (name if name not in seen else f"{name} in {path}"), state
+            seen.add(name)
+
+    def _content(self, found: _Found, name: str, ros: int) -> tuple[tuple[File, ...], bytes]:
+        asked = (found.folder, name, ros)
+        known = self._keys.get(asked)
+        if known is None:
+            files = self._listed(found.folder, found.rosbuild, top=True)
+            files = tuple(file for file in files if role_of_folder(file.path) != "test")
+            stamp = hashlib.sha1(f"{name} {ros}\n".encode())
+            for file in files:
+                stamp.update(f"{file.path} {file.id} {file.kind}\n".encode("utf-8", "surrogateescape"))
+            known = self._keys[asked] = (files, stamp.digest())
+        return known
+
+    def _found(self, folder) -> tuple[_Found, ...]:
+        """The packages at and below a folder, in the order of their paths."""
+        known = self._packages.get(folder)
+        if known is not None:
+            return known
+        items = self.tree._list(folder)
+        names = {name: item for name, mode, item in items if mode not in (_MODE_FOLDER, _MODE_LINK, _MODE_SUBMODULE)}
+        found: list[_Found] = []
+        if not any(name in IGNORE_MARKERS for name in names):
+            if "package.xml" in names:
+                found.append(_Found("", folder, names["package.xml"], False))
+            else:
+                if "manifest.xml" in names:
+                    found.append(_Found("", folder, names["manifest.xml"], True))
+                for name, mode, item in items:
+                    if mode == _MODE_FOLDER:
+                        found.extend(one._replace(path=_joined(name, one.path)) for one in self._found(item))
+        known = self._packages[folder] = tuple(found)
+        return known
+
+    def _manifest(self, blob, rosbuild: bool) -> tuple[str, int]:
+        """Name (empty where the manifest has none) and generation that a manifest tells."""
+        known = self._manifests.get(blob)
+        if known is None:
+            name, ros = "", 1
+            data = b"" if rosbuild else _COMMENT.sub(b"", self.read(str(blob))[:200_000])
+            match = _NAME.search(data)
+            if match:
+                name = match[1].decode("utf-8", "replace")
+            if _AMENT.search(data):
+                ros = 2
+            known = self._manifests[blob] = (name, ros)
+        return known
+
+    def _listed(self, folder, rosbuild: bool, top: bool = False) -> tuple[File, ...]:
+        """The files of interest at and below a folder, packages below a rosbuild package left out."""
+        known = self._files.get((folder, rosbuild)) if not top else None
+        if known is not None:
+            return known
+        found: list[File] = []
+        items = self.tree._list(folder)
+        for name, mode, item in items:
+            if mode == _MODE_FOLDER:
+                if not (rosbuild and self._found(item)):
+                    found.extend(file._replace(path=f"{name}/{file.path}") for file in self._listed(item, rosbuild))
+            elif mode not in (_MODE_LINK, _MODE_SUBMODULE):
+                kind = kinds.kind_of(name)
+                if kind == "script" and not name.endswith(".cfg") and self._is_python(item):
+                    kind = "python"
+                if kind in _WANTED:
+                    found.append(File(name, str(item), kind))
+        known = tuple(found)
+        if not top:
+            self._files[folder, rosbuild] = known
+        return known
+
+    def _is_python(self, blob) -> bool:
+        known = self._scripts.get(blob)
+        if known is None:
+            known = self._scripts[blob] = kinds.script_kind(self.read(str(blob))[:512]) == "python"
+        return known
+
+    # Contents
+
+    def read(self, blob: str) -> bytes:
+        """The bytes of a file; none where the object is missing (a partial clone)."""
+        try:
+            return self.repo[blob].data
+        except (KeyError, ValueError):
+            return b""
+
+    def renames(self, parent: str, commit: str) -> dict[str, str]:
+        """Files of the parent to what they are called in the commit, as git's similarity has it."""
+        import pygit2
+
+        if not parent:
+            return {}
+        diff = self.repo[parent].tree.diff_to_tree(self.repo[commit].tree, context_lines=0)
+        diff.find_similar(pygit2.enums.DiffFind.FIND_RENAMES, 50, 50, 50, 400)
+        return {
+            delta.old_file.path: delta.new_file.path
+            for delta in diff.deltas
+            if delta.status == pygit2.enums.DeltaStatus.RENAMED
+        }
+
+
+def _joined(folder: str, path: str) -> str:
+    return f"{folder}/{path}" if folder and path else folder or path
+
+
+def _below(place: str, repo) -> str:
+    """The folder of the repository that a path names, empty for its root."""
+    real = os.path.realpath(place)
+    if repo.is_bare or not repo.workdir or f"{real}/".startswith(f"{os.path.realpath(repo.path)}/"):
+        return ""
+    inner = os.path.relpath(real, os.path.realpath(repo.workdir)).replace(os.sep, "/")
+    return "" if inner == "." or inner.startswith("..") else inner
+
+
+def _time(text: str) -> int:
+    try:
+        when = datetime.fromisoformat(text.strip().replace("Z", "+00:00"))
+    except ValueError:
+        raise ValueError(f"`{shown(text)}` is no date; write it as 2024-03-01") from None
+    return int((when if when.tzinfo else when.replace(tzinfo=timezone.utc)).timestamp())
+
+
+__all__ = ["Commit", "File", "History", "State", "TreeError"]

@@ -1,0 +1,201 @@
+"""Which publish statement of one revision is which of the next: they move, and what they stand in is renamed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple, TypeVar
+
+from ..model.flow.code import around, tail
+from .statements import Digest, Outlet, Said
+
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_ENOUGH = 9
+_PLAIN: Mapping[str, str] = {}
+_T = TypeVar("_T")
+
+
+class At(NamedTuple):
+    """A statement with where it is: its package, the package's digest, and its path in the repository."""
+
+    package: str
+    digest: Digest
+    said: Said
+    path: str
+
+    @property
+    def outlets(self) -> list[Outlet]:
+        """The publishers that it may use."""
+        return [self.digest.outlets[place] for place in self.said.outlets]
+
+    @property
+    def topics(self) -> frozenset[str]:
+        """As the node knows them."""
+        return frozenset(outlet.topic for outlet in self.outlets if outlet.topic)
+
+
+class OutletAt(NamedTuple):
+    """A publisher with where it is. content: the id of the file's content."""
+
+    package: str
+    outlet: Outlet
+    path: str
+    content: str
+
+
+class Names(NamedTuple):
+    """What is called otherwise in the new revision. words: identifiers; files: paths of the repository."""
+
+    words: Mapping[str, str] = _PLAIN
+    files: Mapping[str, str] = _PLAIN
+
+    def text(self, text: str) -> str:
+        """A text of the old revision in the words of the new one."""
+        words = self.words
+        return _WORD.sub(lambda match: words.get(match[0], match[0]), text) if words else text
+
+    def path(self, path: str) -> str:
+        """A path of the old revision in the new one."""
+        return self.files.get(path, path)
+
+
+SAME = Names()
+
+
+def matched(old: Sequence[At], new: Sequence[At], names: Names) -> tuple[list[tuple[At, At]], list[At], list[At]]:
+    """(pairs, gone, come). Statements that stand where they stood, as they did, are matched first; then those that have
+    most in common, unless that is too little."""
+    pairs: list[tuple[At, At]] = []
+    for key in (_exact, _near):
+        found, old, new = _equal(old, new, key, names)
+        pairs += found
+    found, gone, come = _closest(old, new, lambda one, other: _alike(one, other, names), _lines)
+    return pairs + found, gone, come
+
+
+def matched_outlets(old: Sequence[OutletAt], new: Sequence[OutletAt], names: Names) -> list[tuple[OutletAt, OutletAt]]:
+    """Pairs of publishers that are the same one; those that are new or gone are in none."""
+    pairs: list[tuple[OutletAt, OutletAt]] = []
+    for key in (_outlet, _outlet_place):
+        found, old, new = _equal(old, new, key, names)
+        pairs += found
+    found, _, _ = _closest(old, new, lambda one, other: _outlets_alike(one, other, names), lambda *_: 0)
+    return pairs + found
+
+
+def _equal(
+    old: Sequence[_T], new: Sequence[_T], key: Callable[[_T, Names], tuple], names: Names
+) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
+    """Pairs of one key, in their order; and what is left of both."""
+    waiting: dict[tuple, list[_T]] = {}
+    for one in new:
+        waiting.setdefault(key(one, SAME), []).append(one)
+    pairs: list[tuple[_T, _T]] = []
+    left: list[_T] = []
+    for one in old:
+        same = waiting.get(key(one, names))
+        if same:
+            pairs.append((one, same.pop(0)))
+        else:
+            left.append(one)
+    unmatched = {id(one) for same in waiting.values() for one in same}
+    return pairs, left, [one for one in new if id(one) in unmatched]
+
+
+def _closest(
+    old: Sequence[_T], new: Sequence[_T], alike: Callable[[_T, _T], int], apart: Callable[[_T, _T], int]
+) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
+    """Pairs of those that are most alike; of equals, the least apart. And what is left of both."""
+    scored = sorted(
+        (-score, apart(one, other), first, second)
+        for first, one in enumerate(old)
+        for second, other in enumerate(new)
+        if (score := alike(one, other)) >= _ENOUGH
+    )
+    taken_old: set[int] = set()
+    taken_new: set[int] = set()
+    pairs: list[tuple[_T, _T]] = []
+    for _, _, first, second in scored:
+        if first not in taken_old and second not in taken_new:
+            taken_old.add(first)
+            taken_new.add(second)
+            pairs.append((old[first], new[second]))
+    gone = [one for place, one in enumerate(old) if place not in taken_old]
+    come = [one for place, one in enumerate(new) if place not in taken_new]
+    return pairs, gone, come
+
+
+def asked(said: Said, names: Names = SAME) -> frozenset[tuple]:
+    """All that decides when a statement runs, as written, in the words of the new revision."""
+    return frozenset(
+        (way.start.kind, names.text(way.start.detail), tuple((gate.kind, names.text(gate.text)) for gate in way.gates))
+        for way in said.ways
+    )
+
+
+def _place(at: At, names: Names) -> tuple:
+    said = at.said
+    return names.path(at.path), names.text(_bare(said.function)), names.text(tail(said.variable))
+
+
+def _exact(at: At, names: Names) -> tuple:
+    return (*_near(at, names), asked(at.said, names))
+
+
+def _near(at: At, names: Names) -> tuple:
+    return (*_place(at, names), at.topics, names.text(at.said.expression))
+
+
+def _lines(one: At, other: At) -> int:
+    return abs(one.said.line - other.said.line)
+
+
+def _alike(one: At, other: At, names: Names) -> int:
+    """How much two statements have in common; too little where they publish on topics that are known to differ, unless
+    they stand in one place."""
+    first, second = one.said, other.said
+    if first.language != second.language:
+        return 0
+    file, function, variable = _place(one, names)
+    other_file, other_function, other_variable = _place(other, SAME)
+    score = 0
+    same_variable = variable == other_variable and bool(variable)
+    same_function = function == other_function
+    one_topics, other_topics = one.topics, other.topics
+    if one_topics and other_topics:
+        if one_topics & other_topics:
+            score += 6
+        elif not (same_variable and same_function):
+            return 0
+    if first.type and second.type:
+        score += 1 if first.type == second.type else -3
+    score += 4 * same_variable + 3 * (file == other_file) + 2 * same_function
+    score += 2 * (not same_function and tail(function) == tail(other_function))
+    score += around(function) == around(other_function)
+    expression = names.text(first.expression)
+    score += 3 * (expression == second.expression and bool(expression))
+    score += 3 * bool(asked(first, names) & asked(second))
+    return score
+
+
+def _bare(function: str) -> str:
+    """A function's name, lambdas by what they stand in: their places move."""
+    return re.sub(r"lambda@[\d:]+", "lambda", function)
+
+
+def _outlet(at: OutletAt, names: Names) -> tuple:
+    return (*_outlet_place(at, names), at.outlet.topic, at.outlet.type)
+
+
+def _outlet_place(at: OutletAt, names: Names) -> tuple:
+    outlet = at.outlet
+    return names.path(at.path), names.text(_bare(outlet.function)), names.text(tail(outlet.variable)) or outlet.topic
+
+
+def _outlets_alike(one: OutletAt, other: OutletAt, names: Names) -> int:
+    first, second = one.outlet, other.outlet
+    variable = names.text(tail(first.variable))
+    score = 6 * (first.topic == second.topic and bool(first.topic))
+    score += 5 * (variable == tail(second.variable) and bool(variable))
+    score += 3 * (names.path(one.path) == other.path) + 2 * (first.type == second.type and bool(first.type))
+    return score

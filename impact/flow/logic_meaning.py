@@ -1,0 +1,184 @@
+"""What guards mean: local variables and predicates in them put back into what they stand for.
+
+A condition that was given a name, or moved into a function that returns it, is then the same condition as before.
+"""
+
+from __future__ import annotations
+
+import re
+
+from ..facts.flow import Expr
+from ..model.flow.code import Code, Fn
+from ..model.flow.graph import GuardAt
+
+_DEEPEST = 3
+_LONGEST = 1000
+_CUT = 119
+"""An expression as long as this may have been cut off when it was read."""
+_IDENTIFIER = re.compile(r"(?<![\w.>:\"'])(?:(?:this->|self\.)?)([A-Za-z_]\w*)(?![\w:\"'])")
+_PLAIN = re.compile(r"[\w.:]+(\(\))?")
+
+
+class Meaning:
+    """Meanings of guards in a body of code."""
+
+    def __init__(self, code: Code):
+        self.code = code
+        self._known: dict[tuple[str, str, str], str] = {}
+
+    def of(self, guard: GuardAt) -> str:
+        """What a guard's text means; empty when that is what it says."""
+        if guard.kind not in ("if", "unless", "while"):
+            return ""
+        asked = (guard.path, guard.of, guard.text)
+        known = self._known.get(asked)
+        if known is None:
+            fn = self.code.by_name.get((guard.path, guard.of))
+            found = self._expanded(guard.text, fn, 0) if fn is not None else guard.text
+            known = self._known[asked] = found if found != guard.text and len(found) <= _LONGEST else ""
+        return known
+
+    def _expanded(self, text: str, fn: Fn, depth: int) -> str:
+        if depth >= _DEEPEST or len(text) > _LONGEST:
+            return text
+        parts: list[str] = []
+        position = 0
+        for match in _IDENTIFIER.finditer(text):
+            if match.start() < position:
+                continue
+            end = match.end()
+            if text[end : end + 1] == "(":
+                close = _closing(text, end)
+                value = self._predicate(match[0], text[end + 1 : close], fn, depth) if close else None
+                end = close + 1
+            else:
+                bare = match[0] == match[1]
+                value = self._local(match[1], fn, depth) if bare and text[end : end + 2] not in ("->", "[") else None
+                if value is not None and text[end : end + 1] in (".", "[", "-") and text[end : end + 2] != "- ":
+                    value = None
+            if value is None:
+                continue
+            parts += (text[position : match.start()], value)
+            position = end
+        return "".join((*parts, text[position:]))
+
+    def _local(self, name: str, fn: Fn, depth: int) -> str | None:
+        """What a local variable was initialised with, when it is never assigned again."""
+        made = fn.assigned.get(name, [])
+        if len(made) != 1 or made[0].operator != "=" or any(p.name == name for p in fn.facts.parameters):
+            return None
+        python = fn.source.facts.language == "python"
+        if not made[0].type and not python:
+            return None
+        if any(access.path == name and access.kind in ("write", "escape") for access in fn.facts.accesses):
+            return None
+        return self._written(made[0].value, fn, depth)
+
+    def _predicate(self, callee: str, arguments: str, fn: Fn, depth: int) -> str | None:
+        """What a function of the code returns, when returning is all that it does."""
+        path = callee.replace("this->", "this.").replace("self.", "this.")
+        targets = self.code.targets(path, fn)
+        if len(targets) != 1:
+            return None
+        target = targets[0].facts
+        rows = list(target.assignments)
+        if not rows or rows[-1].operator != "return" or any(row.operator == "return" for row in rows[:-1]):
+            return None
+        if rows[-1].guard != -1 or len(rows) > 4:
+            return None
+        value = self._written(rows[-1].value, targets[0], depth)
+        given = _split(arguments)
+        if value is None or len(given) != len(target.parameters):
+            return None
+        for parameter, argument in zip(target.parameters, given, strict=True):
+            said = argument if _PLAIN.fullmatch(argument) else f"({argument})"
+            value = re.sub(rf"(?<![\w.>]){re.escape(parameter.name)}\b", lambda _, said=said: said, value)
+        return value
+
+    def _written(self, value: Expr, fn: Fn, depth: int) -> str | None:
+        """An expression as source in which names are put back too; None for one that decides nothing by itself."""
+        if value.kind not in ("other", "call", "choice", "name"):
+            return None
+        text = written(value, fn.source.facts.language == "python")
+        if text is None or not text or "lambda" in text or "{" in text:
+            return None
+        if value.kind == "name" and text in ("true", "false", "True", "False", "None", "nullptr", "NULL"):
+            return None
+        text = self._expanded(text, fn, depth + 1)
+        return text if _PLAIN.fullmatch(text) else f"({text})"
+
+
+def written(value: Expr, python: bool) -> str | None:
+    """An expression as source; None where that was cut off or is not known."""
+    if value.kind == "other":
+        return value.text if len(value.text) < _CUT else None
+    if value.kind == "name" or value.kind == "number":
+        return value.text.replace("this.", "self." if python else "this->")
+    if value.kind == "text":
+        return f'"{value.text}"'
+    parts = [written(part, python) for part in value.parts]
+    given = [part for part in parts if part is not None]
+    if len(given) != len(parts):
+        return None
+    if value.kind == "call":
+        return f"{value.text.replace('this.', 'self.' if python else 'this->')}({', '.join(given)})"
+    if value.kind == "choice" and len(given) == 3:
+        first, second, third = given
+        if not python:
+            return f"({first}) ? ({second}) : ({third})"
+        if first == third:
+            return f"({first}) and ({second})"
+        return f"({first}) or ({third})" if first == second else f"({second}) if ({first}) else ({third})"
+    return None
+
+
+def _closing(text: str, start: int) -> int:
+    """Where the bracket that opens at `start` closes, 0 when it does not."""
+    depth = 0
+    for place in range(start, len(text)):
+        if text[place] in "([{":
+            depth += 1
+        elif text[place] in ")]}":
+            depth -= 1
+            if depth == 0:
+                return place
+    return 0
+
+
+def _split(text: str) -> list[str]:
+    """Arguments of a call, split at the commas between them."""
+    found: list[str] = []
+    depth = start = 0
+    for place, sign in enumerate(text):
+        if sign in "([{":
+            depth += 1
+        elif sign in ")]}":
+            depth -= 1
+        elif sign == "," and depth == 0:
+            found.append(text[start:place].strip())
+            start = place + 1
+    last = text[start:].strip()
+    return [*found, last] if last or found else []
+
+
+def conjuncts(text: str) -> list[str]:
+    """What a condition asks for at once, split at its outermost `&&` or `and`; the whole where an `||` stands there."""
+    found: list[str] = []
+    depth = start = place = 0
+    while place < len(text):
+        sign = text[place]
+        if sign in "([{":
+            depth += 1
+        elif sign in ")]}":
+            depth -= 1
+        elif depth == 0:
+            if text.startswith(("||", " or "), place):
+                return [text]
+            width = 2 if text.startswith("&&", place) else 5 if text.startswith(" and ", place) else 0
+            if width:
+                found.append(text[start:place].strip())
+                place += width
+                start = place
+                continue
+        place += 1
+    return [*found, text[start:].strip()]

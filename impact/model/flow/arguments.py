@@ -1,0 +1,164 @@
+"""The command line as code reads it: `argv[1]`, copies without ROS's own arguments, `argparse`."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import io
+import re
+from collections.abc import Iterator, Sequence
+
+from ...facts.flow import Expr
+from .code import Code, Fn, Variable, around, tail
+
+# Functions that give argv without what is ROS's; those of C++ put it into their third argument or return it.
+_COPIES = frozenset(
+    ("myargv", "removeROSArgs", "remove_ros_arguments", "remove_ros_args", "init_and_remove_ros_arguments")
+)
+_COMPARED = re.compile(r"\(?\s*(?:argc|\w*args?\w*\.size\(\))\s*(==|!=|<=|>=|<|>)\s*(\d+)\s*\)?\Z")
+_DEEPEST = 5
+
+
+class CommandLine:
+    """Which expressions of a body of code are the command line, or of it."""
+
+    def __init__(self, code: Code):
+        self.code = code
+        self._parsers: dict[Variable, list[tuple[tuple[str, ...], dict[str, object]]] | None] = {}
+
+    def start(self, value: Expr, fn: Fn, depth: int = 0) -> int | None:
+        """The place in argv at which the list that an expression is begins: 0 for argv itself; None for other lists."""
+        if depth > _DEEPEST:
+            return None
+        if value.kind in ("make", "keyword") and value.parts:
+            # `std::vector<std::string> args(argv + 1, argv + argc)`
+            return self.start(value.parts[0], fn, depth + 1)
+        if value.kind == "index" and len(value.parts) == 2 and value.parts[1].kind == "other":
+            first, colon, last = value.parts[1].text.partition(":")
+            begun = self.start(value.parts[0], fn, depth + 1) if colon and not last.strip() else None
+            return None if begun is None or not (first.strip() or "0").isdigit() else begun + int(first.strip() or 0)
+        if value.kind == "join" and len(value.parts) == 2 and value.parts[1].kind == "number":
+            begun = self.start(value.parts[0], fn, depth + 1)
+            return begun + int(value.parts[1].text) if begun is not None and value.parts[1].text.isdigit() else None
+        if value.kind == "call":
+            return 0 if tail(value.text) in _COPIES else None
+        if value.kind != "name":
+            return None
+        if fn.source.facts.language == "python" and self.code.meant(value.text, fn.source) == "sys.argv":
+            return 0
+        if fn.name == "main" and [parameter.name for parameter in fn.facts.parameters[1:2]] == [value.text]:
+            return 0
+        variable = self.code.identity(value.text, fn)
+        for call in fn.facts.calls:
+            if tail(call.callee) in _COPIES and len(call.arguments) == 3 and call.arguments[2] == value:
+                return 0
+        for writer, each in self.code.writes.get(variable, ()):
+            if each.value != value and each.operator == "=":
+                begun = self.start(each.value, writer, depth + 1)
+                if begun is not None:
+                    return begun
+        return None
+
+    def places(self, container: Expr, index: Expr, fn: Fn) -> range | None:
+        """The places of argv that an element may be of, None for what is no element of it; open ended where the index
+        is not a number."""
+        begun = self.start(container, fn)
+        if begun is None:
+            return None
+        if index.kind == "number":
+            if not index.text.lstrip("-").isdigit() or int(index.text) < 0:
+                return None
+            return range(begun + int(index.text), begun + int(index.text) + 1)
+        first = 0
+        if index.kind == "name":
+            for _, each in self.code.writes.get(self.code.identity(index.text, fn), ()):
+                if each.operator == "=" and each.value.kind == "number" and each.value.text.isdigit():
+                    first = int(each.value.text)
+                    break
+        return range(begun + first, 10_000)
+
+    def excluded(self, fn: Fn, guard: int, number: int) -> bool:
+        """Whether a guard cannot hold with argc being number."""
+        guards, seen = fn.facts.guards, 0
+        while 0 <= guard < len(guards) and seen < 64:
+            one = guards[guard]
+            held = [_holds(part, number) for part in one.text.split("&&")] if "||" not in one.text else [None]
+            if (one.kind == "if" and False in held) or (one.kind == "unless" and all(each is True for each in held)):
+                return True
+            guard, seen = one.outer, seen + 1
+        return False
+
+    # argparse
+
+    def parsed(self, path: str, fn: Fn, arguments: Sequence[str] | None) -> Iterator[tuple[str, str]]:
+        """What `args.topic` is: texts with `given` for those of the command line, and `default`.
+
+        arguments: what is given to the program, None where that is not known. Nothing where it is none of argparse's.
+        """
+        head, name = around(path), tail(path)
+        if not head or fn.source.facts.language != "python":
+            return
+        for writer, each in self.code.writes.get(self.code.identity(head, fn), ()):
+            value = each.value.parts[0] if each.value.kind == "index" and each.value.parts else each.value
+            if value.kind != "call" or tail(value.text) not in ("parse_args", "parse_known_args"):
+                continue
+            options = list(self._options(around(value.text), writer))
+            found = _read(options, name, arguments)
+            if found is not None:
+                yield found
+
+    def _options(self, parser: str, fn: Fn) -> Iterator[tuple[tuple[str, ...], dict[str, object]]]:
+        """What `parser.add_argument()` is told, as far as it is literal."""
+        wanted = self.code.identity(parser, fn)
+        for call in fn.facts.calls:
+            if tail(call.callee) not in ("add_argument", "add_option"):
+                continue
+            if self.code.identity(around(call.callee), fn) != wanted:
+                continue
+            names = tuple(a.text for a in call.arguments if a.kind == "text")
+            told = {a.text: _literal(a.parts[0]) for a in call.arguments if a.kind == "keyword" and a.parts}
+            kept = ("dest", "default", "nargs", "action")
+            yield names, {key: value for key, value in told.items() if key in kept and value is not None}
+
+
+def _literal(value: Expr) -> object:
+    if value.kind == "text":
+        return value.text
+    if value.kind == "number":
+        named = {"True": True, "False": False, "None": None}
+        if value.text in named:
+            return named[value.text]
+        with contextlib.suppress(ValueError):
+            return int(value.text)
+        with contextlib.suppress(ValueError):
+            return float(value.text)
+    if value.kind == "list":
+        return [_literal(part) for part in value.parts]
+    return None
+
+
+def _read(options, name: str, arguments: Sequence[str] | None) -> tuple[str, str] | None:
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    for names, told in options:
+        # What cannot be built of literals is left out.
+        with contextlib.suppress(Exception):
+            parser.add_argument(*names, **told)
+    default = next((action.default for action in parser._actions if action.dest == name), None)
+    if arguments is not None:
+        with contextlib.redirect_stderr(io.StringIO()), contextlib.suppress(SystemExit, Exception):
+            value = getattr(parser.parse_known_args(list(arguments))[0], name, None)
+            if isinstance(value, str):
+                return value, "default" if value == default and value not in arguments else "given"
+    return (default, "default") if isinstance(default, str) else None
+
+
+def _holds(text: str, number: int) -> bool | None:
+    """Whether a comparison of argc holds; None for what is none."""
+    found = _COMPARED.match(text.strip())
+    if found is None:
+        return None
+    other = int(found[2])
+    return {
+        "==": number == other, "!=": number != other, "<": number < other, ">": number > other,
+        "<=": number <= other, ">=": number >= other,
+    }[found[1]]  # fmt: skip

@@ -1,0 +1,331 @@
+"""Calls and objects of the code that a row of the table of frameworks describes, and what their arguments are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+from ...facts.flow import Call, Expr
+from .code import Code, Fn, Variable, around, parts_of, tail
+from .frameworks import Frameworks, Row, Spot
+from .types import Type, parsed, split
+
+# Names that mean something else in most code: their receiver has to be known to be of the framework.
+_COMMON = frozenset(
+    ("publish", "subscribe", "advertise", "param", "get", "getCached", "init", "call", "sendTransform", "Register",
+     "Notify", "load", "Subscriber", "Publisher", "Service", "Timer", "ActionServer", "ActionClient")
+)  # fmt: skip
+
+
+class Use(NamedTuple):
+    """A call, or an object that is made, that a row describes. call: with the arguments; for an object a call of its
+    constructor. sure: False where only the name tells."""
+
+    fn: Fn
+    row: Row
+    call: Call
+    sure: bool = True
+
+
+class Calls:
+    """All uses of frameworks in a body of code."""
+
+    def __init__(self, code: Code, table: Frameworks):
+        self.code, self.table = code, table
+        self._kinds: dict[Type, frozenset[str]] = {}
+        self._uses: dict[int, Use | None] = {}
+
+    @cached_property
+    def uses(self) -> list[Use]:
+        """In the order of files and lines."""
+        found: list[Use] = []
+        for fn in self.code.functions:
+            for call in fn.facts.calls:
+                use = self.use_of(fn, call)
+                if use is not None:
+                    found.append(use)
+            found.extend(self._objects(fn))
+        found.sort(key=lambda use: (use.fn.source.path, use.call.line, use.call.column))
+        return found
+
+    def kinds_of(self, kind: Type, fn: Fn) -> frozenset[str]:
+        """Kinds of framework classes that a type belongs to, by itself or by its bases."""
+        if not kind.name:
+            return frozenset()
+        known = self._kinds.get(kind)
+        if known is None:
+            found = {self.table.kind_of(kind.name)}
+            cls = self.code.class_of(kind.name, fn.source, fn.scope)
+            if cls is not None:
+                found |= {self.table.kind_of(name) for name in self.code.base_names(cls) if name}
+            known = self._kinds[kind] = frozenset(found - {""})
+        return known
+
+    def own_kinds(self, fn: Fn) -> frozenset[str]:
+        """Kinds of the class that a function belongs to."""
+        return self.kinds_of(Type(fn.facts.owner), fn) if fn.facts.owner else frozenset()
+
+    def use_of(self, fn: Fn, call: Call) -> Use | None:
+        """The use that a call is, None when no row describes it."""
+        rows = self.table.calls.get(tail(call.callee))
+        if not rows:
+            return None
+        key = id(call)
+        if key not in self._uses:
+            self._uses[key] = self._find_use(fn, call, rows)
+        return self._uses[key]
+
+    def _find_use(self, fn: Fn, call: Call, rows: list[Row]) -> Use | None:
+        language = fn.source.facts.language
+        receiver, kinds, free = self._receiver(fn, call)
+        weak = None
+        for row in rows:
+            if row.language and row.language != language:
+                continue
+            if row.first and not self._first_fits(row.first, fn, call):
+                continue
+            if row.free or row.on:
+                if free is not None and (free in row.free and (free or not receiver)):
+                    return Use(fn, row, call)
+                if kinds & set(row.on):
+                    return Use(fn, row, call)
+                unknown = row.on and receiver and not kinds and not self.code.targets(call.callee, fn)
+                # A receiver of a type that is none of ours is not of the framework.
+                if weak is None and unknown and not self._typed(receiver, fn) and self._distinct(row, call):
+                    weak = Use(fn, row, call, False)
+                continue
+            if free is not None and free not in ("rclcpp", "this", "") and "::" in call.callee:
+                continue
+            if self.code.targets(call.callee, fn) and not kinds & {"node"}:
+                continue  # a function of the code's own that has the same name
+            return Use(fn, row, call)
+        return weak
+
+    def _receiver(self, fn: Fn, call: Call) -> tuple[str, frozenset[str], str | None]:
+        """The receiver as written, its kinds, and the scope of a function that has no receiver."""
+        callee = call.callee
+        if fn.source.facts.language == "python":
+            receiver = around(callee)
+            if receiver in ("this", "super()"):
+                return receiver, self.own_kinds(fn), None
+            meant = self.code.meant(callee, fn.source)
+            head = parts_of(callee)[0] if callee else ""
+            imported = meant != callee or head in self.code.aliases[fn.source.path]
+            if not receiver or imported:
+                return receiver, frozenset(), around(meant)
+            return receiver, self.kinds_of(self.code.type_of(Expr("name", receiver), fn), fn), None
+        if "." in callee:
+            receiver = callee.rpartition(".")[0]
+            if receiver == "this":
+                return receiver, self.own_kinds(fn), None
+            if receiver.endswith("()"):
+                kind = self.code.type_of_call(receiver, fn)
+            else:
+                kind = self.code.type_of(Expr("name", receiver), fn)
+            return receiver, self.kinds_of(kind, fn) | self._getter(receiver), None
+        if "::" in callee:
+            return "", frozenset(), around(self.code.meant(callee, fn.source, fn.scope))
+        return "", self.own_kinds(fn), ""
+
+    def _getter(self, receiver: str) -> frozenset[str]:
+        """What well-known functions give: nodelets hand out node handles."""
+        name = tail(receiver.removesuffix("()")) if receiver.endswith("()") else ""
+        return frozenset(("handle",)) if name.endswith("NodeHandle") and name.startswith("get") else frozenset()
+
+    def _typed(self, receiver: str, fn: Fn) -> bool:
+        return bool(not receiver.endswith("()") and self.code.type_of(Expr("name", receiver), fn).name)
+
+    def _distinct(self, row: Row, call: Call) -> bool:
+        if row.does in ("publisher", "subscriber") and call.types:
+            return True
+        return tail(call.callee) not in _COMMON or row.does == "publish"
+
+    def _first_fits(self, wanted: str, fn: Fn, call: Call) -> bool:
+        positional = [argument for argument in call.arguments if argument.kind != "keyword"]
+        if not positional:
+            return wanted == "text" and bool(call.arguments)
+        return self.is_node(positional[0], fn) == (wanted == "node")
+
+    def is_node(self, value: Expr, fn: Fn) -> bool:
+        """Whether an argument is a node, a node handle, or what stands for one."""
+        if value.kind == "name":
+            if value.text == "this" or value.text in ("self", "*this"):
+                return True
+            if self.kinds_of(self.code.type_of(value, fn), fn) & {"node", "handle", "image_transport"}:
+                return True
+            kind = self.code.type_of(value, fn).name
+            return tail(kind) in ("NodeT", "NodeType", "Node") or (not kind and tail(value.text).strip("_") in _NODES)
+        if value.kind == "call":
+            name = tail(value.text)
+            if self.kinds_of(self.code.type_of(value, fn), fn) & {"node", "handle"}:
+                return True
+            return name in ("shared_from_this", "lock", "get_node_base_interface", "getNodeHandle") or (
+                name.endswith("NodeHandle") or name.startswith("get_node")
+            )
+        return value.kind == "other" and "this" in value.text
+
+    def _objects(self, fn: Fn) -> Iterator[Use]:
+        seen = set()
+        for name, call in self._made(fn):
+            for row in self.table.objects_of(name, fn.source.facts.language == "python") if name else ():
+                if row.does == "node" and not call.arguments:
+                    continue
+                if row.first and not self._first_fits(row.first, fn, call):
+                    continue
+                key = (row.types, call.line, call.target)
+                if key not in seen:
+                    seen.add(key)
+                    yield Use(fn, row, call)
+
+    def _made(self, fn: Fn) -> Iterator[tuple[str, Call]]:
+        """Objects with the call that makes them: declared, initialised as members or bases, or made by make_shared."""
+        code, source, scope = self.code, fn.source, fn.scope
+        for call in fn.facts.calls:
+            last = tail(call.callee)
+            if last in ("make_shared", "make_unique") and call.types:
+                kind = code.meant_type(call.types, source, scope)
+                yield kind.name, _with_types(call, kind)
+            elif last == "make_shared" and "::" in call.callee:
+                yield code.meant(around(call.callee), source, scope), call
+            for argument in call.arguments if source.facts.language == "cpp" else ():
+                for make in _nested(argument):
+                    kind = code.meant_type(make.text, source, scope)
+                    target = around(call.callee) if last == "reset" else ""
+                    arguments = ", ".join(kind.arguments)
+                    yield kind.name, Call(make.text, make.parts, call.line, call.column, call.guard, arguments, target)
+            if source.facts.language == "python" and last:
+                yield from self._made_in_python(fn, call, last)
+        yield from self._made_by_members(fn)
+        for each in fn.facts.assignments:
+            value = each.value
+            base = code.base_made(fn, each)
+            if base is not None:
+                yield base[0], Call(base[0], base[1], each.line, 0, each.guard)
+                continue
+            for make in _nested(value):
+                if not make.text:
+                    continue
+                kind = code.meant_type(make.text, source, scope)
+                yield (
+                    kind.name,
+                    Call(make.text, make.parts, each.line, 0, each.guard, ", ".join(kind.arguments), each.target),
+                )
+            if value.kind == "make" and value.text:
+                continue
+            if value.kind in ("list", "make") or each.target.startswith("this."):
+                kind = self._initialised(fn, each.target)
+                if kind.name and value.kind in ("list", "make", "name", "text", "call"):
+                    arguments = value.parts if value.kind in ("list", "make") else (value,)
+                    yield (
+                        kind.name,
+                        Call(kind.name, arguments, each.line, 0, each.guard, ", ".join(kind.arguments), each.target),
+                    )
+
+    def _made_by_members(self, fn: Fn) -> Iterator[tuple[str, Call]]:
+        """Members that a class has by value and that its constructors do not initialise, told once."""
+        owner = self.code.owner_of(fn) if fn.source.facts.language == "cpp" and fn.facts.owner else None
+        if owner is None:
+            return
+        functions = self.code.functions_of(owner)
+        constructors = [one for one in functions if tail(one.name) == tail(owner.name)]
+        # A class without a constructor of its own has them made by whatever makes it.
+        if (constructors or functions)[:1] != [fn]:
+            return
+        begun = {each.target for one in constructors for each in one.facts.assignments}
+        for member in owner.facts.members:
+            target = f"this.{member.name}"
+            if member.value is None and target not in begun and "*" not in member.type and "&" not in member.type:
+                kind = self.code.meant_type(member.type, owner.source, owner.name)
+                if parsed(member.type).name == member.type.partition("<")[0]:
+                    types = ", ".join(kind.arguments)
+                    yield kind.name, Call(kind.name, (), fn.facts.line, 0, -1, types, target)
+
+    def _made_in_python(self, fn: Fn, call: Call, last: str) -> Iterator[tuple[str, Call]]:
+        if call.callee == "super().__init__":
+            owner = self.code.owner_of(fn)
+            for base in self.code.base_names(owner) if owner else ():
+                yield base, call
+        elif last[:1].isupper():
+            yield self.code.meant(call.callee, fn.source), call
+        elif last == "__init__":
+            yield self.code.meant(around(call.callee), fn.source), call
+
+    def _initialised(self, fn: Fn, target: str) -> Type:
+        variable = self.code.identity(target, fn)
+        text, source, scope = self.code.declared_type(variable, fn)
+        return self.code.meant_type(text, source, scope) if text else Type("")
+
+    # Arguments
+
+    def argument(self, use: Use, spots: tuple[Spot, ...]) -> Expr | None:
+        """The first of some spots that a use has."""
+        call = use.call
+        positional = [argument for argument in call.arguments if argument.kind != "keyword"]
+        for spot in spots:
+            if isinstance(spot, int):
+                if spot < len(positional):
+                    return positional[spot]
+            elif spot.startswith("="):
+                return Expr("text", spot[1:])
+            elif spot.startswith("text "):
+                place = int(spot[5:])
+                if place < len(positional) and self.textual(positional[place], use.fn):
+                    return positional[place]
+            elif spot.startswith("<"):
+                continue
+            elif spot == "after topic":
+                topic = self.argument(use, use.row.topic)
+                place = positional.index(topic) + 1 if topic in positional else len(positional)
+                if place < len(positional):
+                    return positional[place]
+            else:
+                for argument in call.arguments:
+                    if argument.kind == "keyword" and argument.text == spot and argument.parts:
+                        return argument.parts[0]
+        return None
+
+    def textual(self, value: Expr, fn: Fn) -> bool:
+        """Whether an expression shows itself to be a string."""
+        if value.kind in ("text", "join"):
+            return True
+        kind = self.code.type_of(value, fn).name
+        if value.kind == "make":
+            return tail(kind) == "string"
+        return tail(kind) in ("string", "str", "char") or (
+            not kind
+            and value.kind in ("name", "call")
+            and any(part in value.text.lower() for part in ("name", "topic"))
+        )
+
+    def template_argument(self, use: Use, number: int) -> str:
+        """A template argument as written, empty when there is none."""
+        arguments = split(use.call.types) if use.call.types else []
+        return arguments[number] if number < len(arguments) else ""
+
+    def receiver_of(self, use: Use) -> str:
+        """The receiver of a method's call as written, empty for none."""
+        callee = use.call.callee
+        return callee.rpartition(".")[0] if "." in callee else ""
+
+    def kept_in(self, use: Use) -> Variable | None:
+        """The variable that a use's result is kept in."""
+        return self.code.identity(use.call.target, use.fn) if use.call.target else None
+
+
+_NODES = frozenset(("node", "nh", "n", "pnh", "private_nh", "node_handle", "nodehandle", "parent", "node_ptr"))
+
+
+def _with_types(call: Call, kind: Type) -> Call:
+    return Call(call.callee, call.arguments, call.line, call.column, call.guard, ", ".join(kind.arguments), call.target)
+
+
+def _nested(value: Expr, depth: int = 0) -> Iterator[Expr]:
+    if value.kind == "make":
+        yield value
+    elif depth < 3 and value.kind in ("call", "choice", "bind", "list"):
+        for part in value.parts:
+            yield from _nested(part, depth + 1)
+
+
+__all__ = ["Calls", "Use", "parsed"]

@@ -1,0 +1,675 @@
+"""The sources of a workspace or a package as one body of code: functions, classes and variables by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+from ...facts.flow import Alias, Assignment, Call, Class, Expr, FlowFile, Function, Parameter
+from .types import UNKNOWN, Type, parsed
+
+
+class Source(NamedTuple):
+    """A file of the code. package: its name, empty for none."""
+
+    path: str
+    package: str
+    facts: FlowFile
+
+
+class Fn:
+    """A function with the file it stands in."""
+
+    __slots__ = ("assigned", "facts", "is_lambda", "locals", "name", "owner", "scope", "source")
+
+    def __init__(self, source: Source, facts: Function):
+        self.source, self.facts = source, facts
+        self.name = facts.name
+        # Namespaces and class around the function, joined as its language does.
+        self.scope = around(facts.name)
+        self.owner = parts_of(facts.owner)
+        self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(tail(facts.name)))
+        self.assigned: dict[str, list[Assignment]] = {}
+        for each in facts.assignments:
+            self.assigned.setdefault(each.target, []).append(each)
+        # What is declared here hides members of the same name.
+        python = source.facts.language == "python"
+        self.locals = {p.name for p in facts.parameters} | {
+            each.target
+            for each in facts.assignments
+            if "." not in each.target and (each.type or (python and each.operator == "="))
+        }
+        # What a module of Python assigns is everybody's in it.
+        self.locals = set() if python and not facts.name else self.locals - set(facts.outside)
+
+    def __repr__(self) -> str:
+        return f"Fn({self.source.path}:{self.facts.line} {self.facts.name})"
+
+
+class Cls(NamedTuple):
+    """A class with the file it stands in."""
+
+    source: Source
+    facts: Class
+
+    @property
+    def name(self) -> str:
+        return self.facts.name
+
+
+class Variable(NamedTuple):
+    """Which variable a name means. kind: `member` (owner: the class's name), `local` (owner: the function's place) or
+    `global` (owner: path of the file)."""
+
+    kind: str
+    owner: str
+    name: str
+
+
+@lru_cache(maxsize=100_000)
+def parts_of(name: str) -> tuple[str, ...]:
+    """The parts of a path or qualified name of either language."""
+    return tuple(part for part in name.replace("::", ".").split(".") if part)
+
+
+@lru_cache(maxsize=100_000)
+def tail(name: str) -> str:
+    """The last part of a path or qualified name."""
+    return parts_of(name)[-1] if name else ""
+
+
+def around(name: str) -> str:
+    """What stands before the last part of a qualified name."""
+    return name.rpartition("::" if "::" in name else ".")[0]
+
+
+class Code:
+    """Functions, classes and variables of many files. outside: classes of other packages by name, for bases."""
+
+    def __init__(self, sources: Iterable[Source]):
+        self.sources = list(sources)
+        self.functions: list[Fn] = []
+        self.by_tail: dict[str, list[Fn]] = {}
+        self.by_name: dict[tuple[str, str], Fn] = {}
+        self.classes: dict[str, list[Cls]] = {}
+        self.aliases: dict[str, dict[str, list[Alias]]] = {}
+        self.shared_aliases: dict[tuple[str, str], list[Alias]] = {}
+        for source in self.sources:
+            known = self.aliases.setdefault(source.path, {})
+            for alias in source.facts.aliases:
+                known.setdefault(alias.name, []).append(alias)
+                if source.facts.language == "cpp" and alias.name != "*":
+                    self.shared_aliases.setdefault((source.package, alias.name), []).append(alias)
+            for cls in source.facts.classes:
+                self.classes.setdefault(tail(cls.name), []).append(Cls(source, cls))
+            for facts in source.facts.functions:
+                fn = Fn(source, facts)
+                self.functions.append(fn)
+                self.by_tail.setdefault(tail(facts.name), []).append(fn)
+                self.by_name.setdefault((source.path, facts.name), fn)
+        self._bases: dict[str, list[Cls]] = {}
+        self._class_of: dict[tuple[str, str, str], Cls | None] = {}
+        self._owner_of: dict[int, Cls | None] = {}
+        self._methods_of: dict[tuple[str, str, str], list[Fn]] = {}
+        self._overrides: dict[tuple[str, str], list[Fn]] = {}
+        self._targets: dict[tuple[str, int], list[Fn]] = {}
+        self._identities: dict[tuple[str, int], Variable] = {}
+
+    # Names
+
+    def meant(self, name: str, source: Source, scope: str = "") -> str:
+        """A name with aliases of its file (and, in C++, its package's headers) resolved, at most five times over."""
+        for _ in range(5):
+            head, separator, rest = _first(name)
+            alias = self._alias(head, source, scope)
+            if alias is None:
+                break
+            target = parsed(alias.target).name if source.facts.language == "cpp" and not rest else alias.target
+            new = f"{target}{separator}{rest}" if rest else target
+            if new == name or not new:
+                break
+            name = new
+        return name
+
+    def meant_type(self, text: str, source: Source, scope: str = "") -> Type:
+        """A type as written, aliases resolved; those that stand for types with template arguments too."""
+        kind = parsed(text)
+        for _ in range(5):
+            head, _, rest = _first(kind.name)
+            alias = self._alias(head, source, scope)
+            if alias is None:
+                break
+            if rest:
+                new = Type(f"{parsed(alias.target).name}{'::' if '::' in kind.name else '.'}{rest}", kind.arguments)
+                # `using Msg = a::B; Msg::SharedPtr`
+                new = Type(parsed(new.name).name, new.arguments or parsed(alias.target).arguments)
+            else:
+                new = parsed(alias.target)
+                new = Type(new.name, new.arguments or kind.arguments)
+            if new == kind or not new.name:
+                break
+            kind = new
+        return kind
+
+    def _alias(self, head: str, source: Source, scope: str) -> Alias | None:
+        found = self.aliases[source.path].get(head)
+        if found is None and source.facts.language == "cpp":
+            found = self.shared_aliases.get((source.package, head))
+        if not found:
+            return None
+        fitting = [alias for alias in found if not alias.scope or _within(scope, alias.scope)]
+        if not fitting and len({alias.target for alias in found}) == 1:
+            fitting = found[:1]
+        return max(fitting, key=lambda alias: len(alias.scope), default=None)
+
+    def class_of(self, name: str, source: Source, scope: str = "") -> Cls | None:
+        """The class that a name means in a file and scope; None when there is none, or several that fit as well."""
+        key = (name, source.path, scope)
+        try:
+            return self._class_of[key]
+        except KeyError:
+            found = self._class_of[key] = self._find_class(name, source, scope)
+            return found
+
+    def _find_class(self, name: str, source: Source, scope: str) -> Cls | None:
+        name = self.meant(parsed(name).name if "<" in name else name, source, scope)
+        if not name:
+            return None
+        wanted = parts_of(name)
+        found = [cls for cls in self.classes.get(wanted[-1], ()) if parts_of(cls.name)[-len(wanted) :] == wanted]
+        if not found and source.facts.language == "python" and len(wanted) > 1:
+            # Imported: the module is in the path, not in the class's name.
+            found = [cls for cls in self.classes.get(wanted[-1], ()) if _module_of(cls.source.path, wanted[:-1])]
+        if len(found) > 1:
+            found = max(_groups(found, source, scope).items(), default=(0, found))[1]
+        names = {(cls.name, cls.source.package) for cls in found}
+        # Of several bodies under one name (behind `#if`, say) the largest.
+        return max(found, key=lambda cls: cls.facts.end - cls.facts.line) if len(names) == 1 else None
+
+    def bases(self, cls: Cls) -> list[Cls]:
+        """The class and those it derives from, nearest first, as far as they are in the code."""
+        known = self._bases.get(cls.name + cls.source.path)
+        if known is None:
+            known, queue = [], [cls]
+            while queue and len(known) < 30:
+                one = queue.pop(0)
+                if one in known:
+                    continue
+                known.append(one)
+                for base in one.facts.bases:
+                    found = self.class_of(base, one.source, one.name)
+                    if found is not None:
+                        queue.append(found)
+            self._bases[cls.name + cls.source.path] = known
+        return known
+
+    @cached_property
+    def derived(self) -> dict[str, list[Cls]]:
+        """Name of a class to the classes of the code that derive from it, at any distance."""
+        found: dict[str, list[Cls]] = {}
+        for group in self.classes.values():
+            for cls in group:
+                for base in self.bases(cls)[1:]:
+                    found.setdefault(base.name, []).append(cls)
+        return found
+
+    def base_made(self, fn: Fn, each: Assignment) -> tuple[str, tuple[Expr, ...]] | None:
+        """The base class, as meant, and the arguments that a constructor's initialiser gives it; None for others."""
+        if fn.source.facts.language != "cpp" or not each.target.startswith("this."):
+            return None
+        owner = self.owner_of(fn)
+        name = each.target[5:]
+        for base in owner.facts.bases if owner is not None else ():
+            if tail(parsed(base).name) == tail(name):
+                kind = self.meant_type(base, owner.source, owner.name) if owner is not None else UNKNOWN
+                value = each.value
+                made = value.kind in ("make", "list") and not value.text
+                return kind.name, value.parts if made else (value,)
+        return None
+
+    def base_names(self, cls: Cls) -> Iterator[str]:
+        """Names of all bases, those outside of the code too, aliases resolved."""
+        for one in self.bases(cls):
+            for base in one.facts.bases:
+                yield self.meant_type(base, one.source, one.name).name
+
+    def owner_of(self, fn: Fn) -> Cls | None:
+        """The class a function belongs to; that of the function around it for a lambda."""
+        if not fn.owner:
+            return None
+        key = id(fn)
+        if key not in self._owner_of:
+            self._owner_of[key] = self.class_of(fn.facts.owner, fn.source, fn.scope)
+        return self._owner_of[key]
+
+    def method(self, cls: Cls, name: str) -> list[Fn]:
+        """Bodies of a method, of the nearest class that has some; overloads are several."""
+        if name not in self.by_tail:
+            return []
+        key = (cls.source.path, cls.name, name)
+        known = self._methods_of.get(key)
+        if known is None:
+            known = []
+            for one in self.bases(cls):
+                known = [fn for fn in self.by_tail[name] if self._is_of(fn, one)]
+                if known:
+                    break
+            self._methods_of[key] = known
+        return known
+
+    def _is_of(self, fn: Fn, cls: Cls) -> bool:
+        return bool(fn.owner) and not fn.is_lambda and self._owned(fn, cls, parts_of(cls.name))
+
+    def overrides(self, cls: Cls, name: str) -> list[Fn]:
+        """Bodies of a method in classes that derive from a class."""
+        derived = self.derived.get(cls.name)
+        if not derived or name not in self.by_tail:
+            return []
+        key = (cls.name, name)
+        known = self._overrides.get(key)
+        if known is None:
+            known = [fn for one in derived for fn in self.by_tail[name] if self._is_of(fn, one)]
+            self._overrides[key] = known
+        return known
+
+    def enclosing(self, fn: Fn) -> Fn | None:
+        """The function that a lambda, or a function of Python, stands in."""
+        if not fn.scope or (not fn.is_lambda and (fn.source.path, fn.scope) in self._class_bodies):
+            return None
+        return self.by_name.get((fn.source.path, fn.scope))
+
+    @cached_property
+    def _class_bodies(self) -> set[tuple[str, str]]:
+        return {(source.path, cls.name) for source in self.sources for cls in source.facts.classes}
+
+    def chain(self, fn: Fn) -> Iterator[Fn]:
+        """The function, and for a lambda those around it."""
+        seen = 0
+        while fn is not None and seen < 10:
+            yield fn
+            fn, seen = self.enclosing(fn), seen + 1  # type: ignore[assignment]
+
+    # Variables
+
+    def variable(self, path: str, fn: Fn) -> tuple[Variable, list[str]]:
+        """What the head of a path means in a function, and the parts that follow it."""
+        parts = [part for part in path.replace("[]", "").split(".") if part]
+        if not parts:
+            return Variable("local", _place(fn), path), []
+        head, rest = parts[0], parts[1:]
+        if head == "this":
+            if not rest:
+                return Variable("this", fn.facts.owner, "this"), []
+            return self.member(fn, rest[0]), rest[1:]
+        for one in self.chain(fn):
+            if head in one.locals:
+                return Variable("local", _place(one), head), rest
+        if fn.source.facts.language == "cpp" and fn.facts.owner and "::" not in head:
+            owner = self.owner_of(fn)
+            if owner is not None:
+                for cls in self.bases(owner):
+                    if any(member.name == head for member in cls.facts.members):
+                        return Variable("member", cls.name, head), rest
+            elif head.endswith("_"):
+                return Variable("member", fn.facts.owner, head), rest
+        return Variable("global", fn.source.path, head), rest
+
+    def member(self, fn: Fn, name: str) -> Variable:
+        """The member of a function's class, under the name of the class that declares it."""
+        owner = self.owner_of(fn)
+        if owner is None:
+            return Variable("member", fn.facts.owner, name)
+        declaring = [cls for cls in self.bases(owner) if any(member.name == name for member in cls.facts.members)]
+        return Variable("member", (declaring[-1] if declaring else owner).name, name)
+
+    def identity(self, path: str, fn: Fn, depth: int = 0) -> Variable:
+        """The variable that a whole path means: that of its last part, in the class of what stands before it.
+
+        depth: how far types are followed already; from 5 on only declared ones count."""
+        key = (path, id(fn))
+        if depth == 0 and key in self._identities:
+            return self._identities[key]
+        found, rest = self.variable(path, fn)
+        for part in rest:
+            kind = self.type_of_variable(found, fn, depth)
+            cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
+            found = Variable("member", cls.name if cls else f"{found.owner}.{found.name}", part)
+        if depth == 0:
+            self._identities[key] = found
+        return found
+
+    def functions_of_class(self, name: str) -> list[Fn]:
+        """All functions whose owner is a class of this name, lambdas in them included."""
+        return self._by_owner.get(tail(name), [])
+
+    def functions_of(self, cls: Cls) -> list[Fn]:
+        """The functions of one class, lambdas in them included."""
+        wanted = parts_of(cls.name)
+        return [fn for fn in self._by_owner.get(wanted[-1], ()) if self._owned(fn, cls, wanted)]
+
+    def _owned(self, fn: Fn, cls: Cls, wanted: tuple[str, ...]) -> bool:
+        own = fn.owner
+        if own[-len(wanted) :] != wanted and wanted[-len(own) :] != own:
+            return False
+        return fn.source.path == cls.source.path or fn.source.package == cls.source.package
+
+    @cached_property
+    def _by_owner(self) -> dict[str, list[Fn]]:
+        found: dict[str, list[Fn]] = {}
+        for fn in self.functions:
+            if fn.facts.owner:
+                found.setdefault(tail(fn.facts.owner), []).append(fn)
+        return found
+
+    @cached_property
+    def writes(self) -> dict[Variable, list[tuple[Fn, Assignment]]]:
+        """All assignments, by the variable they change."""
+        found: dict[Variable, list[tuple[Fn, Assignment]]] = {}
+        for fn in self.functions:
+            for each in fn.facts.assignments:
+                if each.target:
+                    found.setdefault(self.identity(each.target, fn, 9), []).append((fn, each))
+        return found
+
+    @cached_property
+    def results(self) -> dict[Variable, list[tuple[Fn, Call]]]:
+        """Calls whose result is kept, by the variable that keeps it."""
+        found: dict[Variable, list[tuple[Fn, Call]]] = {}
+        for fn in self.functions:
+            for call in fn.facts.calls:
+                if call.target:
+                    found.setdefault(self.identity(call.target, fn, 9), []).append((fn, call))
+        return found
+
+    def declared_type(self, variable: Variable, fn: Fn) -> tuple[str, Source, str]:
+        """The type a variable is declared with, as written, and the file and scope in which to read it."""
+        if variable.kind == "member":
+            for cls in self.classes.get(tail(variable.owner), ()):
+                if cls.name == variable.owner:
+                    for member in cls.facts.members:
+                        if member.name == variable.name and member.type:
+                            return member.type, cls.source, cls.name
+        elif variable.kind == "local":
+            for one in self.chain(fn):
+                if _place(one) == variable.owner:
+                    for parameter in one.facts.parameters:
+                        if parameter.name == variable.name and parameter.type:
+                            return parameter.type, one.source, one.name
+                    for each in one.assigned.get(variable.name, ()):
+                        if each.type and parsed(each.type).name:
+                            return each.type, one.source, one.name
+        else:
+            for constant in fn.source.facts.constants:
+                if constant.name == variable.name and constant.type:
+                    return constant.type, fn.source, ""
+        return "", fn.source, fn.scope
+
+    def type_of_variable(self, variable: Variable, fn: Fn, depth: int = 0) -> Type:
+        """The type of a variable, also where `auto` or Python leave it to what it is made from."""
+        if variable.kind == "this":
+            return Type(variable.owner)
+        text, source, scope = self.declared_type(variable, fn)
+        kind = self.meant_type(text, source, scope) if text else UNKNOWN
+        if kind.name or depth > 4:
+            return kind
+        for writer, each in self.writes.get(variable, ()):
+            kind = self.type_of(each.value, writer, depth + 1)
+            if kind.name:
+                return kind
+        return UNKNOWN
+
+    def type_of(self, value: Expr, fn: Fn, depth: int = 0) -> Type:
+        """The type of an expression as far as it shows."""
+        if value.kind == "make":
+            return self.meant_type(value.text, fn.source, fn.scope)
+        if value.kind == "name":
+            variable, rest = self.variable(value.text, fn)
+            if rest:
+                variable = self.identity(value.text, fn, depth + 1)
+            return self.type_of_variable(variable, fn, depth)
+        if value.kind == "call":
+            return self.type_of_call(value.text, fn, depth)
+        if (value.kind == "list" and len(value.parts) == 1) or (value.kind == "index" and value.parts):
+            # The type of a container is that of its elements.
+            return self.type_of(value.parts[0], fn, depth)
+        return UNKNOWN
+
+    def type_of_call(self, callee: str, fn: Fn, depth: int = 0) -> Type:
+        """The type that a call gives: the class for a constructor, the declared type of a function of the code."""
+        name = callee.removesuffix("()")
+        if depth > 4:
+            return UNKNOWN
+        last = tail(name)
+        if last in ("make_shared", "make_unique") or (last == "create" and "::" in name):
+            scope = around(name)
+            return self.meant_type(scope, fn.source, fn.scope) if scope not in ("std", "boost", "") else UNKNOWN
+        for target in self.targets(name, fn, depth + 1):
+            if target.facts.returns:
+                return self.meant_type(target.facts.returns, target.source, target.scope)
+        meant = self.meant(name, fn.source, fn.scope)
+        if tail(meant)[:1].isupper():
+            return Type(meant)
+        return UNKNOWN
+
+    # Calls
+
+    def targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
+        """The functions of the code that a call may reach; none when it leaves the code or cannot be told."""
+        key = (callee, id(fn))
+        known = self._targets.get(key)
+        if known is None:
+            known = self._find_targets(callee, fn, depth)
+            if depth == 0:
+                self._targets[key] = known
+        return known
+
+    def _find_targets(self, callee: str, fn: Fn, depth: int) -> list[Fn]:
+        last = tail(callee)
+        candidates = self.by_tail.get(last)
+        if not candidates and last not in self.classes:
+            return []
+        head = callee.rpartition(".")[0] if "." in callee else ""
+        if "." in callee:
+            return self._methods(head, last, fn, depth)
+        if "::" in callee:
+            meant = self.meant(callee, fn.source, fn.scope)
+            cls = self.class_of(around(meant), fn.source, fn.scope)
+            if cls is not None and last in {tail(f.name) for f in self.functions_of_class(cls.name)}:
+                return self.method(cls, last)
+            wanted = parts_of(meant)
+            found = [f for f in candidates or () if not f.facts.owner and parts_of(f.name)[-len(wanted) :] == wanted]
+            return self._nearest(found, fn)
+        for one in self.chain(fn):
+            local = self.by_name.get(
+                (fn.source.path, f"{one.name}{'::' if fn.source.facts.language == 'cpp' else '.'}{last}")
+            )
+            if local is not None:
+                return [local]
+        if fn.source.facts.language == "cpp":
+            owner = self.owner_of(fn)
+            if owner is not None:
+                found = self.method(owner, last)
+                if found:
+                    return [*found, *self.overrides(owner, last)]
+        elif last in self.aliases[fn.source.path]:
+            wanted = parts_of(self.meant(last, fn.source))
+            return [f for f in candidates or () if not f.facts.owner and _module_of(f.source.path, wanted[:-1])]
+        return self._nearest([f for f in candidates or () if not f.facts.owner and f.name], fn)
+
+    def _methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
+        if receiver in ("this", "super()", "super"):
+            owner = self.owner_of(fn)
+            if owner is None:
+                return [f for f in self.by_tail.get(name, ()) if f.facts.owner == fn.facts.owner]
+            found = self.method(owner, name)
+            if receiver != "this":
+                return [f for f in found if f.facts.owner != fn.facts.owner]
+            return [*found, *self.overrides(owner, name)]
+        if fn.source.facts.language == "python":
+            meant = self.meant(f"{receiver}.{name}", fn.source)
+            if meant != f"{receiver}.{name}":
+                module = parts_of(meant)[:-1]
+                found = [
+                    f for f in self.by_tail.get(name, ()) if not f.facts.owner and _module_of(f.source.path, module)
+                ]
+                if found:
+                    return found
+        if receiver.endswith("()"):
+            kind = self.type_of_call(receiver, fn, depth + 1)
+        else:
+            kind = self.type_of(Expr("name", receiver), fn, depth)
+        cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
+        if cls is None:
+            return []
+        return [*self.method(cls, name), *self.overrides(cls, name)]
+
+    def _nearest(self, found: list[Fn], fn: Fn) -> list[Fn]:
+        for near in (
+            [f for f in found if f.source.path == fn.source.path],
+            [
+                f
+                for f in found
+                if f.source.package == fn.source.package and f.source.facts.language == fn.source.facts.language
+            ],
+        ):
+            if near:
+                return near
+        return []
+
+    @cached_property
+    def callers(self) -> dict[int, list[tuple[Fn, Call]]]:
+        """Calls that reach a function of the code, by the function's id()."""
+        found: dict[int, list[tuple[Fn, Call]]] = {}
+        for fn in self.functions:
+            for call in fn.facts.calls:
+                for target in self.targets(call.callee, fn):
+                    if target is not fn:
+                        found.setdefault(id(target), []).append((fn, call))
+        return found
+
+    @cached_property
+    def passed(self) -> dict[Variable, list[tuple[Fn, Call, int]]]:
+        """Calls of functions of the code that a variable is passed to, with the argument's number."""
+        found: dict[Variable, list[tuple[Fn, Call, int]]] = {}
+        for fn in self.functions:
+            if fn.source.facts.language != "cpp":
+                continue
+            for call in fn.facts.calls:
+                if tail(call.callee) not in self.by_tail:
+                    continue
+                for place, argument in enumerate(call.arguments):
+                    if argument.kind == "name":
+                        found.setdefault(self.identity(argument.text, fn), []).append((fn, call, place))
+        return found
+
+    @cached_property
+    def bound(self) -> dict[int, list[tuple[Fn, tuple[Expr, ...]]]]:
+        """Functions of the code that are bound with arguments (std::bind, partial), by their id()."""
+        found: dict[int, list[tuple[Fn, tuple[Expr, ...]]]] = {}
+
+        def walk(value: Expr, fn: Fn, depth: int) -> None:
+            if value.kind == "bind" and value.parts and value.parts[0].kind in ("function", "name"):
+                name, arguments = value.parts[0].text, value.parts[1:]
+                method = "::" in name and bool(arguments) and arguments[0].text == "this"
+                for target in self.targets(name, fn):
+                    found.setdefault(id(target), []).append((fn, arguments[1:] if method else arguments))
+            if depth < 3:
+                for part in value.parts:
+                    walk(part, fn, depth + 1)
+
+        for fn in self.functions:
+            for call in fn.facts.calls:
+                for argument in call.arguments:
+                    walk(argument, fn, 0)
+            for each in fn.facts.assignments:
+                walk(each.value, fn, 0)
+        return found
+
+    @cached_property
+    def constructions(self) -> dict[str, list[tuple[Fn, tuple[Expr, ...], int]]]:
+        """Where objects of a class of the code are made: name of the class to function, arguments and line."""
+        found: dict[str, list[tuple[Fn, tuple[Expr, ...], int]]] = {}
+        for fn in self.functions:
+            for name, arguments, line in made_in(fn, self):
+                if tail(name) in self.classes:
+                    cls = self.class_of(name, fn.source, fn.scope)
+                    if cls is not None:
+                        found.setdefault(cls.name, []).append((fn, arguments, line))
+        return found
+
+
+def made_in(fn: Fn, code: Code) -> Iterator[tuple[str, tuple[Expr, ...], int]]:
+    """Objects that a function makes: type as meant (template arguments kept), arguments, line."""
+    for call in fn.facts.calls:
+        last = tail(call.callee)
+        if last in ("make_shared", "make_unique", "allocate_shared") and call.types:
+            yield call.types, call.arguments, call.line
+        elif last == "make_shared" and "::" in call.callee:
+            yield around(call.callee), call.arguments, call.line
+        elif fn.source.facts.language == "python" and last[:1].isupper():
+            yield code.meant(call.callee, fn.source), call.arguments, call.line
+        for argument in call.arguments:
+            for value in _makes(argument):
+                yield value.text, value.parts, call.line
+    for each in fn.facts.assignments:
+        for value in _makes(each.value):
+            yield value.text, value.parts, each.line
+
+
+def _makes(value: Expr, depth: int = 0) -> Iterator[Expr]:
+    if value.kind == "make" and value.text:
+        yield value
+    if depth < 4:
+        for part in value.parts:
+            yield from _makes(part, depth + 1)
+
+
+def parameter_of(fn: Fn, name: str) -> tuple[int, Parameter] | None:
+    """The place and facts of a parameter; `self` is not counted."""
+    rows = fn.facts.parameters
+    offset = 1 if rows and rows[0].name in ("self", "cls") and fn.source.facts.language == "python" else 0
+    for place, parameter in enumerate(rows):
+        if parameter.name == name:
+            return place - offset, parameter
+    return None
+
+
+def _place(fn: Fn) -> str:
+    return f"{fn.source.path}:{fn.facts.line}:{fn.name}"
+
+
+def _first(name: str) -> tuple[str, str, str]:
+    """Head, separator and rest of a qualified name."""
+    one, other = name.find("::"), name.find(".")
+    if one < 0 and other < 0:
+        return name, "", ""
+    if other < 0 or (0 <= one < other):
+        return name[:one], "::", name[one + 2 :]
+    return name[:other], ".", name[other + 1 :]
+
+
+def _within(scope: str, outer: str) -> bool:
+    return scope == outer or scope.startswith((outer + "::", outer + "."))
+
+
+def _module_of(path: str, module: Sequence[str]) -> bool:
+    """Whether a path may be that of a Python module."""
+    parts = path.removesuffix(".py").split("/")
+    if parts and parts[-1] == "__init__":
+        parts = parts[:-1]
+    names = [name for name in module if name]
+    return bool(names) and parts[-len(names) :] == names
+
+
+def _groups(found: list[Cls], source: Source, scope: str) -> Mapping[int, list[Cls]]:
+    """Classes by how near they are to whoever names them."""
+    groups: dict[int, list[Cls]] = {}
+    for cls in found:
+        near = 4 * (cls.source.path == source.path) + 2 * (cls.source.package == source.package)
+        near += _within(scope, around(cls.name)) if around(cls.name) else 0
+        groups.setdefault(near, []).append(cls)
+    return groups
+
+
+Lookup = Callable[[str], Cls | None]

@@ -1,0 +1,205 @@
+"""What of a workspace's message flow is sure enough to be judged: endpoints of one certain name, and their pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cache, cached_property
+from typing import NamedTuple
+
+from ...targets.fields import default_fields
+from ..workspace import Workspace
+from .graph import Endpoint, Graph, Node
+from .launches import Launch
+
+# Of these the workspace says what runs; plugins and libraries get their names from whoever loads them.
+_RUNNING = frozenset(("executable", "script", "component", "nodelet"))
+# A type of a package outside of the workspace may be a class that stands for a message.
+_INTERFACES = ("_msgs", "_interfaces", "_srvs", "_actions", "turtlesim", "dynamic_reconfigure")
+_SURE = frozenset(("literal", "given", "launch"))
+_OTHER_SIDE = {
+    "publisher": "subscriber", "subscriber": "publisher", "server": "client", "client": "server",
+    "action server": "action client", "action client": "action server",
+}  # fmt: skip
+_SIDES = (("publisher", "subscriber"), ("server", "client"), ("action server", "action client"))
+_WHAT = {"publisher": "topic", "subscriber": "topic", "server": "service", "client": "service"}
+
+
+class Sure(NamedTuple):
+    """An endpoint whose name is certain, with the node that runs it."""
+
+    node: Node
+    endpoint: Endpoint
+
+
+class Pair(NamedTuple):
+    """A publisher (or server) and a subscriber (or client) of one name, in a flow. launch: the launch file that surely
+    starts both, empty where nothing tells that they run together."""
+
+    flow: Flow
+    giver: Sure
+    taker: Sure
+    launch: str = ""
+
+    @property
+    def together(self) -> str:
+        """A clause that says why both run together, empty where nothing tells."""
+        return f", and `{self.launch}` starts both" if self.launch else ""
+
+
+class Flow:
+    """A graph, asked for what is sure in it. surely: ids of nodes that surely run under their names, all when None.
+    around: the flow of the whole workspace, this one when None."""
+
+    def __init__(
+        self,
+        graph: Graph,
+        interfaces: Mapping[str, set[str]],
+        surely: set[str] | None = None,
+        around: Flow | None = None,
+    ):
+        self.graph, self.interfaces, self.surely, self.around = graph, interfaces, surely, around
+        self.nodes = {node.id: node for node in graph.nodes}
+        names: dict[tuple, set[str]] = {}
+        for one in graph.endpoints:
+            names.setdefault((one.node, one.role, one.path, one.line, one.written), set()).add(one.topic)
+        self._alone = {key for key, topics in names.items() if len(topics) == 1}
+        self.known: dict[tuple[str, str], list[Endpoint]] = {}
+        for one in graph.endpoints:
+            if one.topic:
+                self.known.setdefault((_kind(one.role), one.topic), []).append(one)
+
+    def sure(self, *roles: str) -> Iterator[Sure]:
+        """Endpoints whose name is certain, of some roles or of all: in the order of the graph."""
+        for one in self.graph.endpoints:
+            node = self.nodes.get(one.node)
+            if node is None or (roles and one.role not in roles) or not self.is_sure(one):
+                continue
+            if self.surely is None or node.id in self.surely:
+                yield Sure(node, one)
+
+    def is_sure(self, one: Endpoint) -> bool:
+        """Whether an endpoint has one certain name, and belongs to something that surely runs by itself."""
+        node = self.nodes.get(one.node)
+        runs = node is not None and node.kind in _RUNNING and (node.line or node.kind != "executable")
+        alone = (one.node, one.role, one.path, one.line, one.written) in self._alone
+        return bool(runs and one.topic and one.how in _SURE and alone)
+
+    def type_of(self, endpoint: Endpoint) -> str:
+        """The type of an endpoint, empty where it is not known to be a message's (or a service's, or an action's)."""
+        package, _, name = endpoint.type.partition("/")
+        own = self.interfaces.get(package)
+        if own is None:
+            own = _defined(package, self.graph.ros)
+        known = name in own if own else package.endswith(_INTERFACES)
+        return endpoint.type if name and known else ""
+
+    def others(self, endpoint: Endpoint) -> list[Endpoint]:
+        """The other side of an endpoint's topic, service or action, sure or not."""
+        wanted = _OTHER_SIDE[endpoint.role]
+        return [one for one in self.known.get((_kind(endpoint.role), endpoint.topic), ()) if one.role == wanted]
+
+    def may_have(self, role: str, type_: str) -> bool:
+        """Whether something in the workspace of this role and type has a name that is not known or not certain."""
+        return bool(self._unsure.get(role, set()) & {type_, "", "*"})
+
+    @cached_property
+    def _unsure(self) -> dict[str, set[str]]:
+        if self.around is not None:
+            return self.around._unsure
+        found: dict[str, set[str]] = {}
+        for one in self.graph.endpoints:
+            if not self.is_sure(one):
+                found.setdefault(one.role, set()).add(one.type)
+        return found
+
+    def of_node(self, one: Endpoint) -> list[Endpoint]:
+        """Everything of the same node and role at the same name: code may choose among several."""
+        same = self.known.get((_kind(one.role), one.topic), ())
+        return [other for other in same if other.node == one.node and other.role == one.role]
+
+    def pairs(self, launch: str = "") -> Iterator[Pair]:
+        """Every two sure endpoints that meet under a name, each two places of source once."""
+        seen = set()
+        for giving, taking in _SIDES:
+            givers: dict[str, list[Sure]] = {}
+            for one in self.sure(giving):
+                givers.setdefault(one.endpoint.topic, []).append(one)
+            for taker in self.sure(taking):
+                for giver in givers.get(taker.endpoint.topic, ()):
+                    key = (*_place(giver.endpoint), *_place(taker.endpoint))
+                    if key not in seen:
+                        seen.add(key)
+                        yield Pair(self, giver, taker, launch)
+
+
+def flows(workspace: Workspace) -> Iterator[tuple[str, Flow]]:
+    """What each launch file surely starts, by its path; then the whole workspace, with an empty path."""
+    whole = whole_flow(workspace)
+    for launch in workspace.launches:
+        yield launch.path, launched_flow(whole, launch)
+    yield "", whole
+
+
+def whole_flow(workspace: Workspace) -> Flow:
+    """The flow of a whole workspace, under the names that its source gives."""
+    return Flow(workspace.flow, {each.name: workspace.interface_names.get(each.name, set()) for each in workspace})
+
+
+def launched_flow(whole: Flow, launch: Launch) -> Flow:
+    """The flow of what a launch file surely starts."""
+    surely = {start.node for start in launch.starts if not start.uncertain}
+    return Flow(launch.graph, whole.interfaces, surely, whole)
+
+
+def met(workspace: Workspace) -> Iterator[Pair]:
+    """Pairs that a launch file starts, then pairs that nothing starts together and that have nobody else to talk to:
+    the workspace's programs need not be made to run together, but these have no other use."""
+    seen = set()
+    for launch, flow in flows(workspace):
+        for pair in flow.pairs(launch):
+            key = (*_place(pair.giver.endpoint), *_place(pair.taker.endpoint))
+            if key in seen or (not launch and not _left_to_each_other(flow, pair)):
+                continue
+            seen.add(key)
+            yield pair
+
+
+def unstarted(workspace: Workspace) -> Flow:
+    """The workspace's flow as far as no launch file starts its nodes: these have the names that the source gives."""
+    flow = whole_flow(workspace)
+    started = {start.program for launch in workspace.launches for start in launch.starts}
+    flow.surely = flow.nodes.keys() - started
+    return flow
+
+
+def _left_to_each_other(flow: Flow, pair: Pair) -> bool:
+    """Whether neither side has a partner of its own type in the workspace."""
+    giver, taker = pair.giver.endpoint, pair.taker.endpoint
+    return not (
+        any(_fit(giver, other) for other in flow.others(giver) if _place(other) != _place(taker))
+        or any(_fit(taker, other) for other in flow.others(taker) if _place(other) != _place(giver))
+    )
+
+
+def _fit(one: Endpoint, other: Endpoint) -> bool:
+    return one.type == other.type or not one.type or not other.type or "*" in (one.type, other.type)
+
+
+@cache
+def _defined(package: str, ros: int) -> frozenset[str]:
+    """The interfaces that a released package ever had, none when it is not known."""
+    history = default_fields().history(package, ros)
+    return frozenset(name.rpartition("/")[2] for name in history.interfaces) if history is not None else frozenset()
+
+
+def _kind(role: str) -> str:
+    return _WHAT.get(role, "action")
+
+
+def _place(endpoint: Endpoint) -> tuple[str, int]:
+    return endpoint.path, endpoint.line
+
+
+def said(node: Node) -> str:
+    """A node as a message names it: its name in a running system where a launch tells it, else what is started."""
+    return node.name if node.started else node.executable or node.plugin or node.id

@@ -1,0 +1,118 @@
+"""The table of frameworks: which calls and objects make publishers, subscribers and their like, and where what stands.
+
+The table itself is frameworks.toml, whose head says how to read it.
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib  # pyright: ignore[reportMissingImports]
+
+Spot = int | str
+TABLE = Path(__file__).with_name("frameworks.toml")
+
+
+class Also(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A further endpoint that a row makes, unless one of some words is among the arguments."""
+
+    role: str
+    topic: str
+    type: str
+    unless: tuple[str, ...] = ()
+
+
+class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A row of the table. Spots (topic, type, ...) are in the order in which they are tried; see frameworks.toml."""
+
+    framework: str
+    does: str
+    names: tuple[str, ...] = ()
+    types: tuple[str, ...] = ()
+    language: str = ""
+    on: tuple[str, ...] = ()
+    free: tuple[str, ...] = ()
+    first: str = ""
+    topic: tuple[Spot, ...] = ()
+    type: tuple[Spot, ...] = ()
+    queue: tuple[Spot, ...] = ()
+    qos: tuple[Spot, ...] = ()
+    callback: tuple[Spot, ...] = ()
+    latch: tuple[Spot, ...] = ()
+    period: tuple[Spot, ...] = ()
+    default: tuple[Spot, ...] = ()
+    variable: tuple[Spot, ...] = ()
+    message: tuple[Spot, ...] = ()
+    namespace: tuple[Spot, ...] = ()
+    remaps: tuple[Spot, ...] = ()
+    declares: bool = False
+    camera_info: bool = False
+    also: tuple[Also, ...] = ()
+
+
+class Frameworks:
+    """The table, ready to be asked. calls: rows by the last part of the callee; objects: rows by the last part of the
+    type that is made; kinds: last part of a class's name to its full names and their kinds."""
+
+    def __init__(self, table: dict[str, Any]):
+        """table: as frameworks.toml has it. Raises msgspec.ValidationError that names what is wrong."""
+        self.calls: dict[str, list[Row]] = {}
+        self.objects: dict[str, list[Row]] = {}
+        self.kinds: dict[str, list[tuple[str, str]]] = {}
+        for row in map(_row, table.get("call", ())):
+            for name in row.names:
+                self.calls.setdefault(name, []).append(row)
+        for row in map(_row, table.get("object", ())):
+            for name in row.types:
+                self.objects.setdefault(last(name), []).append(row)
+        for kind, names in table.get("kinds", {}).items():
+            for name in names:
+                self.kinds.setdefault(last(name), []).append((name, kind))
+
+    def kind_of(self, name: str) -> str:
+        """The kind of a class by its name, as qualified as it is known; empty for none."""
+        for full, kind in self.kinds.get(last(name), ()):
+            if _ends(full, name):
+                return kind
+        return ""
+
+    def objects_of(self, name: str, python: bool = False) -> list[Row]:
+        """Rows about objects of a class, by its name as qualified as it is known. python: whether Python makes it."""
+        return [
+            row
+            for row in self.objects.get(last(name), ())
+            if any(("::" in full) != python and _ends(full, name) for full in row.types)
+        ]
+
+
+def last(name: str) -> str:
+    """The last part of a qualified name of either language."""
+    return name.replace("::", ".").rpartition(".")[2]
+
+
+def _ends(full: str, name: str) -> bool:
+    one, other = full.replace("::", ".").split("."), name.replace("::", ".").strip(".").split(".")
+    return one[-len(other) :] == other or other[-len(one) :] == one
+
+
+def _row(raw: dict[str, Any]) -> Row:
+    spots = (
+        "topic", "type", "queue", "qos", "callback", "latch", "period", "default", "variable", "message", "namespace",
+        "remaps",
+    )  # fmt: skip
+    fixed = {name: value if isinstance(value, list) else [value] for name, value in raw.items() if name in spots}
+    return msgspec.convert({**raw, **fixed}, Row)
+
+
+@cache
+def frameworks() -> Frameworks:
+    """The shipped table."""
+    return Frameworks(tomllib.loads(TABLE.read_text(encoding="utf-8")))

@@ -1,0 +1,197 @@
+"""The message-flow graph of a workspace: nodes, what they publish and subscribe to, and under which guards.
+
+Every entry names its place. What is not known is empty, and `reason` says why.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+Role = Literal["publisher", "subscriber", "server", "client", "action server", "action client"]
+How = Literal["literal", "default", "launch", "given", "unresolved"]
+"""How a name became known: written so in the source; the default of a parameter, which whoever starts the node may
+change; set by the launch file; fixed by the framework (`/tf`, `/rosout`), or given on the command line;
+or not at all."""
+
+
+class Node(msgspec.Struct, frozen=True):
+    """A node. id: its name where a launch file starts it, else `package/executable` or `package/Class`.
+
+    name: with its namespace, as in a running system; the name that the source gives where no launch file says another.
+    kind: `executable`, `component`, `nodelet`, `plugin`, `script`, or `library` for code that no executable of the
+    workspace uses. plugin: the class, for what is loaded. started: `path:line` of the launch file, empty without one.
+    """
+
+    id: str
+    name: str
+    package: str
+    kind: str
+    executable: str = ""
+    plugin: str = ""
+    language: str = ""
+    path: str = ""
+    line: int = 0
+    started: str = ""
+
+
+class Callback(msgspec.Struct, frozen=True):
+    """What a message, request or goal is given to. name: as qualified as it is known."""
+
+    name: str
+    path: str
+    line: int
+
+
+class Qos(msgspec.Struct, frozen=True, omit_defaults=True):
+    """Quality of service, as far as it is told; empty for what is not. depth -1: not told. deadline, lease: seconds.
+
+    reliability: reliable, best_effort; durability: volatile, transient_local; history: keep_last, keep_all;
+    liveliness: automatic, manual_by_topic. written: the expression. `system_default` and `best_available` stand for
+    themselves.
+    """
+
+    reliability: str = ""
+    durability: str = ""
+    history: str = ""
+    depth: int = -1
+    deadline: float | None = None
+    liveliness: str = ""
+    lease: float | None = None
+    written: str = ""
+
+
+class Endpoint(msgspec.Struct, frozen=True):
+    """One side of a topic, service or action.
+
+    node: the id of its Node, empty when no node is known to run it. topic: the full name (also of a service or action),
+    empty when it is not known. written: the name as the source has it. type: `package/Name`, empty when not known, `*`
+    for any. function: in which it is made. variable: what it is kept in. implied: made by the framework or a helper of
+    it (a transform listener, a diagnostic updater), not by a call that names the topic.
+    """
+
+    role: Role
+    node: str
+    topic: str
+    type: str
+    path: str
+    line: int
+    written: str = ""
+    how: How = "literal"
+    qos: Qos | None = None
+    callback: Callback | None = None
+    function: str = ""
+    variable: str = ""
+    reason: str = ""
+    implied: bool = False
+    framework: str = ""
+
+
+class GuardAt(msgspec.Struct, frozen=True):
+    """A guard with its place; kind and text as in facts. of: the function it stands in, which is that of the publish
+    statement or one that leads to it."""
+
+    kind: str
+    text: str
+    path: str
+    line: int
+    of: str = ""
+
+
+class Trigger(msgspec.Struct, frozen=True):
+    """What makes a publish statement run. kind: `timer`, `subscriber`, `service`, `action`, `parameter`, `loop` (in
+    main or a thread), `start`, or `unknown`. detail: the period, topic, service or function."""
+
+    kind: str
+    detail: str
+    path: str
+    line: int
+
+
+class Way(msgspec.Struct, frozen=True):
+    """One way to a publish statement: what starts it, and the guards met on it up to the statement, outermost first."""
+
+    trigger: Trigger
+    guards: tuple[GuardAt, ...] = ()
+
+
+class Publish(msgspec.Struct, frozen=True):
+    """A publish statement. expression: what is published, as written. guards: outermost first, those of the functions
+    that lead to it included where there is but one way; `ways`: how many ways lead to it from a trigger, each in `by`.
+    through: the function of the code's own, called `publish` too, that is called here and holds what sends."""
+
+    node: str
+    topic: str
+    type: str
+    path: str
+    line: int
+    function: str = ""
+    expression: str = ""
+    variable: str = ""
+    guards: tuple[GuardAt, ...] = ()
+    triggers: tuple[Trigger, ...] = ()
+    ways: int = 1
+    by: tuple[Way, ...] = ()
+    reason: str = ""
+    through: str = ""
+
+
+class Timer(msgspec.Struct, frozen=True):
+    """A timer. period: as written."""
+
+    node: str
+    period: str
+    callback: Callback | None
+    path: str
+    line: int
+
+
+class ParameterUse(msgspec.Struct, frozen=True):
+    """A parameter that is declared or read. name: full name in ROS 1, the name within the node in ROS 2; default: as
+    written, empty for none."""
+
+    node: str
+    name: str
+    kind: Literal["declared", "read", "written"]
+    path: str
+    line: int
+    default: str = ""
+
+
+class Unresolved(msgspec.Struct, frozen=True):
+    """A call that was not resolved. what: `publisher topic`, `subscriber callback`, `publish`, ...; reason: why."""
+
+    what: str
+    reason: str
+    path: str
+    line: int
+    written: str = ""
+
+
+class Coverage(msgspec.Struct, frozen=True):
+    """calls: of the frameworks; resolved: those of which all is known that they name (topic, type, callback,
+    publisher). by_default: of the resolved, those whose name is a parameter's default. unread: files with spans that
+    did not parse. wrappers: calls inside functions that stand for the framework's own; their callers are counted."""
+
+    calls: int
+    resolved: int
+    by_default: int
+    files: int
+    unread: tuple[str, ...] = ()
+    unresolved: tuple[Unresolved, ...] = ()
+    wrappers: tuple[Unresolved, ...] = ()
+
+
+class Graph(msgspec.Struct, frozen=True):
+    """The whole graph. root: the workspace as it was given; rev: the revision read, empty for files on disk."""
+
+    nodes: tuple[Node, ...]
+    endpoints: tuple[Endpoint, ...]
+    publishes: tuple[Publish, ...]
+    timers: tuple[Timer, ...]
+    parameters: tuple[ParameterUse, ...]
+    coverage: Coverage
+    root: str = ""
+    rev: str = ""
+    ros: int = 2

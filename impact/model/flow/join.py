@@ -1,0 +1,503 @@
+"""Facts of nodes joined into the message-flow graph: sites bound to nodes, with guards and triggers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cached_property
+from typing import NamedTuple
+
+from msgspec import structs
+
+from ...facts.flow import FlowFile, Guard
+from ..launch import Launched, Started
+from ..names_ros import NameRefused, canonical, ros1_name, ros2_name
+from . import nodes as programs_of
+from .calls import Calls, Use
+from .code import Code, Fn, Source, made_in, tail
+from .frameworks import Frameworks, frameworks
+from .graph import (
+    Callback,
+    Coverage,
+    Endpoint,
+    Graph,
+    GuardAt,
+    How,
+    Node,
+    ParameterUse,
+    Publish,
+    Timer,
+    Trigger,
+    Unresolved,
+    Way,
+)
+from .loads import Loaded, loads
+from .nodes import Built, Program, Reach
+from .qos import qos_of
+from .sites import Site, Sites, Statement, shown
+from .started import Instance, instances
+from .types import Type
+from .values import Value, Values
+
+_MOST_WAYS = 16
+_DEEPEST = 10
+_TRIGGERS = {
+    "subscriber": "subscriber", "server": "service", "action server": "action", "client": "service",
+    "action client": "action", "publisher": "unknown",
+}  # fmt: skip
+_ROS1 = frozenset(("roscpp", "rospy", "actionlib", "dynamic_reconfigure"))
+_ROS2 = frozenset(("rclcpp", "rclpy", "nav2"))
+
+
+class Running(NamedTuple):
+    """A program with the node it is, and what of the code it reaches. instance: how a launch starts it; values: what
+    expressions are worth there. loaded: how the node loads this program, which is a nodelet then."""
+
+    program: Program
+    node: Node
+    functions: set[int]
+    classes: set[str]
+    values: Values
+    instance: Instance | None = None
+    loaded: Loaded | None = None
+
+
+Owner = Running | Node | None
+"""What runs a piece of code: a program, a library, or nothing that is known."""
+
+
+class Join:
+    """One body of code joined. files: facts by path; package_of: the package a path belongs to; built: what is built of
+    it; ros: the generation where a framework does not tell."""
+
+    def __init__(
+        self,
+        files: Mapping[str, FlowFile],
+        package_of: Callable[[str], str],
+        built: Iterable[Built] = (),
+        ros: int = 2,
+        table: Frameworks | None = None,
+    ):
+        self.ros, self.built = ros, list(built)
+        self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
+        self.code = Code(Source(path, package_of(path), facts) for path, facts in sorted(files.items()))
+        self.calls = Calls(self.code, table or frameworks())
+        self.values = Values(self.calls)
+        self.sites = Sites(self.code, self.calls, self.values)
+        self.reach = Reach(self.sites)
+        self.triggers = self._triggers()
+
+    # Nodes
+
+    def running(self) -> list[Running]:
+        """All programs that talk, with their nodes, sorted."""
+        return list(self._running)
+
+    @cached_property
+    def _running(self) -> list[Running]:
+        found: list[Running] = []
+        names = {id(use): use for use in self.calls.uses if use.row.does == "node"}
+        for program in programs_of.programs(self.code, self.built, self._kinds):
+            if program.kind in ("executable", "script"):
+                functions, classes = self.reach.of(program.roots)
+                if not program.roots:
+                    functions = {id(fn) for fn in self.code.functions if fn.source.path in program.files}
+            else:
+                cls = next(
+                    (c for c in self.code.classes.get(tail(program.plugin), ()) if c.source.path == program.path), None
+                )
+                functions, classes = self.reach.of(program.roots, [cls] if cls is not None else [])
+            named = [use for use in names.values() if id(use.fn) in functions]
+            found.append(Running(program, self._node(program, named), functions, classes, self.values))
+        return found
+
+    def started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
+        """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
+        programs = self.running()
+        found: list[Running] = []
+        missing: list[Unresolved] = []
+        for start in launch.started:
+            at = (f"{start.at.package}/{start.at.path}", start.at.line)
+            if start.kind == "process":
+                continue
+            what = start.plugin.value or start.executable.value
+            if what is None:
+                shown = start.plugin.shown or start.executable.shown
+                reasons = "; ".join((*start.executable.reasons, *start.plugin.reasons))
+                missing.append(Unresolved("started node", reasons or "its executable is not known", *at, shown))
+                continue
+            fitting = [one for one in programs if self._starts(one.program, start)]
+            if not fitting:
+                reason = f"no code of `{start.package.shown}` here is `{what}`"
+                if start.kind != "container":
+                    missing.append(Unresolved("started node", reason, *at, what))
+                continue
+            one = next((each for each in fitting if each.program.roots), fitting[0])
+            instance = instances(launch, one.node.name.rpartition("/")[2], start)
+            node = structs.replace(
+                one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
+            )  # fmt: skip
+            arguments = [argument.value for argument in start.arguments]
+            known = None if None in arguments else [one for one in arguments if one is not None]
+            values = self.values.under(instance.settings, known)
+            found.append(one._replace(node=node, instance=instance, values=values))
+        return found, missing
+
+    def with_loaded(self, running: Iterable[Running]) -> Iterator[Running]:
+        """Nodes, each followed by the nodelets that its program loads into it."""
+        programs = [one for one in self.running() if one.program.plugin]
+        for one in running:
+            yield one
+            for loaded in loads(self.calls, one.functions, one.values, one.node.name):
+                part = next((p for p in programs if self._is_plugin(p.program, loaded.plugin)), None)
+                if part is not None:
+                    yield part._replace(node=one.node, values=one.values, instance=one.instance, loaded=loaded)
+
+    def _is_plugin(self, program: Program, name: str) -> bool:
+        """Whether a program is what pluginlib knows by a name."""
+        wanted = self.plugins.get(name)
+        if wanted is None:
+            wanted = name.replace("/", "::")
+            return program.plugin == wanted or tail(program.plugin) == tail(wanted)
+        return program.plugin.removeprefix("::") == wanted.removeprefix("::")
+
+    def _starts(self, program: Program, start: Started) -> bool:
+        if start.package.value not in (None, program.package):
+            return False
+        if start.plugin.value:
+            return bool(program.plugin) and self._is_plugin(program, start.plugin.value)
+        executable = start.executable.value or ""
+        if program.executable:
+            return executable in (program.executable, program.executable.removesuffix(".py"))
+        return bool(program.plugin) and executable == _snake(tail(program.plugin))
+
+    def _kinds(self, cls) -> frozenset[str]:
+        return self.calls.kinds_of(
+            Type(cls.name), next(iter(self.code.functions_of_class(cls.name)), _nobody(cls.source))
+        )
+
+    def _node(self, program: Program, named: list[Use]) -> Node:
+        own = [use for use in named if tail(use.fn.facts.owner) == tail(program.plugin)] if program.plugin else []
+        in_main = [use for use in named if use.fn in program.roots]
+        # Of the classes that name nodes, those that are made first where the program begins; helpers' nodes come later.
+        made = [tail(name.partition("<")[0]) for root in program.roots for name, _, _ in made_in(root, self.code)]
+        ranks = {name: place for place, name in reversed(list(enumerate(made)))}
+
+        def rank(use: Use) -> tuple[int, bool]:
+            written = self.calls.argument(use, use.row.topic)
+            return ranks.get(tail(use.fn.facts.owner), len(ranks)), written is None or written.kind != "text"
+
+        others = sorted(named, key=rank) if program.kind in ("executable", "script") else []
+        name = ""
+        for use in [*own, *in_main, *others]:
+            values = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
+            name = next((value.text for value in values if value.text), "")
+            if name and "{" not in name:
+                break
+        default = program.executable or _snake(tail(program.plugin))
+        full = canonical("/" + (name or default).lstrip("/"))
+        language = "python" if program.kind == "script" else "cpp"
+        return Node(
+            f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,
+            program.executable, program.plugin, language, program.path, program.line,
+        )  # fmt: skip
+
+    # Guards
+
+    def guards(self, fn: Fn, index: int) -> tuple[GuardAt, ...]:
+        """The guards at a place of a function, outermost first."""
+        found: list[Guard] = []
+        rows = fn.facts.guards
+        while 0 <= index < len(rows) and len(found) < 64:
+            found.append(rows[index])
+            index = rows[index].outer
+        return tuple(GuardAt(g.kind, g.text, fn.source.path, g.line, fn.name) for g in reversed(found))
+
+    def _triggers(self) -> dict[int, list[Trigger]]:
+        found: dict[int, list[Trigger]] = {}
+        for site in self.sites.endpoints:
+            names = sorted({value.text for value in site.names if value.text}) or [site.written]
+            for fn in site.callbacks:
+                trigger = Trigger(_TRIGGERS[site.role], " or ".join(names), site.use.fn.source.path, site.use.call.line)
+                found.setdefault(id(fn), []).append(trigger)
+        for timer in self.sites.timers:
+            for fn in timer.callbacks:
+                use = timer.use
+                found.setdefault(id(fn), []).append(Trigger("timer", timer.period, use.fn.source.path, use.call.line))
+        return found
+
+    def ways(self, fn: Fn, functions: set[int] | None = None, depth: int = 0, seen: tuple[int, ...] = ()) -> list[Way]:
+        """The ways that lead to a function from whatever triggers it. functions: those that run, all when None."""
+        found = [Way(trigger) for trigger in self.triggers.get(id(fn), ())]
+        if id(fn) in seen or depth > _DEEPEST:
+            return found
+        here = (*seen, id(fn))
+        for caller, call in self.code.callers.get(id(fn), ()):
+            if functions is not None and id(caller) not in functions:
+                continue
+            own = self.guards(caller, call.guard)
+            for way in self.ways(caller, functions, depth + 1, here):
+                found.append(Way(way.trigger, (*way.guards, *own)))
+                if len(found) >= _MOST_WAYS:
+                    return found
+        if not found:
+            around = self.code.enclosing(fn)
+            if around is not None:
+                return self.ways(around, functions, depth + 1, here)
+            owner = tail(fn.facts.owner)
+            starts = fn.name in ("main", "") or (owner and tail(fn.name) in (owner, "__init__"))
+            kind = "start" if starts else "unknown"
+            found.append(Way(Trigger(kind, tail(fn.name), fn.source.path, fn.facts.line)))
+        return list(dict.fromkeys(found))
+
+    # The graph
+
+    def graph(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
+        """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
+        `library` nodes, or to none."""
+        missing: list[Unresolved] = []
+        if launch is None:
+            running = self.running()
+        else:
+            running, missing = self.started(launch)
+        running = list(self.with_loaded(running))
+        endpoints: list[Endpoint] = []
+        publishes: list[Publish] = []
+        timers: list[Timer] = []
+        parameters: list[ParameterUse] = []
+        unresolved: list[Unresolved] = list(missing)
+        calls = resolved = by_default = 0
+        libraries: dict[str, Node] = {}
+        used: set[str] = set()
+
+        def owners(use: Use) -> list[Owner]:
+            found: list[Owner] = [one for one in running if id(use.fn) in one.functions]
+            if launch is not None:
+                return found
+            if not found:
+                found = [one for one in running if use.fn.source.path in one.program.files]
+            if not found:
+                node = self._library(use.fn)
+                found = [libraries.setdefault(node.id, node) if node is not None else None]
+            return found
+
+        for site in self.sites.endpoints:
+            those = owners(site.use)
+            if launch is not None and not those:
+                continue
+            if launch is not None:
+                site = self._site_of(site, those[0])
+            lacking = self._missing(site)
+            if not site.implied:
+                calls += 1
+                if lacking:
+                    unresolved.append(Unresolved(*lacking, *_place(site.use), site.written))
+                else:
+                    resolved += 1
+                    by_default += all(value.how == "default" for value in site.names)
+            for owner in those:
+                node = _node_of(owner)
+                if node is not None:
+                    used.add(node.id)
+                here = self._site_of(site, owner)
+                for value in here.names:
+                    endpoints.append(self._endpoint(here, value, owner))
+        for statement in self.sites.statements:
+            those = owners(statement.use)
+            if launch is not None and not those:
+                continue
+            calls += not statement.through
+            sites = [self._site_of(site, those[0]) if launch is not None else site for site in statement.sites]
+            reason = statement.reason or next((s.names[0].reason for s in sites if s.names[0].text is None), "")
+            if statement.through:
+                pass  # counted where it sends
+            elif reason:
+                unresolved.append(
+                    Unresolved("publish", reason, *_place(statement.use), self.calls.receiver_of(statement.use))
+                )
+            else:
+                resolved += 1
+                by_default += all(value.how == "default" for site in statement.sites for value in site.names)
+            for owner in those:
+                node = _node_of(owner)
+                if node is not None:
+                    used.add(node.id)
+                publishes.extend(self._publishes(statement, owner))
+        for timer in self.sites.timers:
+            for owner in owners(timer.use):
+                node = _node_of(owner)
+                callback = _callback(timer.callbacks)
+                timers.append(Timer(node.id if node else "", timer.period, callback, *_place(timer.use)))
+        for use in self.calls.uses:
+            if use.row.does == "parameter" and not self.sites.wraps(use.fn, "parameter"):
+                parameters.extend(self._parameters(use, owners(use)))
+        nodes = [one.node for one in running if one.node.id in used or launch is not None] + [
+            node for node in libraries.values() if node.id in used
+        ]
+        coverage = Coverage(
+            calls, resolved, by_default, len(self.code.sources), tuple(sorted(unread)),
+            tuple(sorted(unresolved, key=lambda one: (one.path, one.line, one.what))),
+            tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_place(use)) for use in self.sites.wrapped),
+        )  # fmt: skip
+        return Graph(
+            tuple(sorted(dict.fromkeys(nodes), key=lambda node: node.id)),
+            tuple(dict.fromkeys(endpoints)), tuple(dict.fromkeys(publishes)), tuple(dict.fromkeys(timers)),
+            tuple(dict.fromkeys(parameters)), coverage, root, rev, self.ros,
+        )  # fmt: skip
+
+    def _library(self, fn: Fn) -> Node | None:
+        path = fn.source.path
+        for package in self.built:
+            if package.package == fn.source.package:
+                for name, sources in package.libraries.items():
+                    if path in sources:
+                        return Node(
+                            f"{package.package}/{name}",
+                            "",
+                            package.package,
+                            "library",
+                            name,
+                            "",
+                            fn.source.facts.language,
+                            path,
+                            0,
+                        )
+        if not fn.source.package:
+            return None
+        return Node(
+            f"{fn.source.package}/{path.rpartition('/')[2]}",
+            "",
+            fn.source.package,
+            "library",
+            "",
+            "",
+            fn.source.facts.language,
+            path,
+            0,
+        )
+
+    def _missing(self, site: Site) -> tuple[str, str] | None:
+        known = [value for value in site.names if value.text is not None]
+        if not known:
+            return f"{site.role} name", site.names[0].reason if site.names else "no name is given"
+        if not site.type:
+            return f"{site.role} type", "the type is not told where it is made"
+        if site.reason:
+            return f"{site.role} callback", site.reason
+        return None
+
+    def _site_of(self, site: Site, owner: Owner) -> Site:
+        """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
+        if not isinstance(owner, Running) or owner.values is self.values or site.implied:
+            return site
+        use, values = site.use, owner.values
+        names = tuple(values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line))
+        return site._replace(names=names, type=site.type or self.sites.type_of(use, values))
+
+    def _endpoint(self, site: Site, value: Value, owner: Owner) -> Endpoint:
+        use = site.use
+        node = _node_of(owner)
+        topic, how, reason = self.name(site, value, owner)
+        qos = qos_of(self.calls, self.values, use)
+        return Endpoint(
+            site.role, node.id if node else "", topic, site.type, *_place(use), site.written, how, qos,
+            _callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
+            use.row.framework,
+        )  # fmt: skip
+
+    def name(self, site: Site, value: Value, owner: Owner) -> tuple[str, How, str]:
+        """The full name that a site has in a node, how it is known, and why not."""
+        node = _node_of(owner)
+        instance = owner.instance if isinstance(owner, Running) else None
+        if value.text is None:
+            return "", "unresolved", value.reason
+        text = value.text
+        loaded = owner.loaded if isinstance(owner, Running) else None
+        full = node.name if node and node.name else f"/{node.executable or tail(node.plugin)}" if node else "/node"
+        full = loaded.name if loaded is not None else full
+        namespace, _, own = full.rpartition("/")
+        framework = site.use.row.framework
+        if framework == "moos":
+            return text, value.how, ""
+        one = framework in _ROS1 or (framework not in _ROS2 and self.ros == 1)
+        try:
+            if one:
+                text = text.replace("{node}", full).replace("{ns}", namespace or "/")
+                if site.prefix and text[:1] not in ("/", "~"):
+                    text = f"~{text}" if site.prefix == "~" else f"{site.prefix}/{text}"
+                plain = name = ros1_name(text, full)
+                if loaded is not None:
+                    plain = name = loaded.remapped(text)
+                # What the nodelet's own remappings give is not remapped again.
+                if instance is not None and name == ros1_name(text, full):
+                    name = instance.remapped(name, 1)
+            else:
+                if text.startswith("~") and not text.startswith("~/") and len(text) > 1:
+                    text = f"~/{text[1:]}"
+                if site.prefix == "~" and text[:1] not in ("/", "~"):
+                    text = f"~/{text}"
+                plain = ros2_name(text, own, namespace or "/")
+                kind = "topic" if site.role in ("publisher", "subscriber") else "service"
+                name = plain if instance is None else instance.remapped(text, 2, kind)
+        except NameRefused as error:
+            return "", "unresolved", str(error)
+        if name != plain:
+            return name, "launch", ""
+        return name, "given" if site.implied and value.how == "literal" else value.how, ""
+
+    def _publishes(self, statement: Statement, owner: Owner) -> Iterator[Publish]:
+        use = statement.use
+        node = _node_of(owner)
+        functions = owner.functions if isinstance(owner, Running) else None
+        own = self.guards(use.fn, use.call.guard)
+        ways = [Way(way.trigger, (*way.guards, *own)) for way in self.ways(use.fn, functions)]
+        guards = ways[0].guards if len(ways) == 1 else own
+        triggers = tuple(dict.fromkeys(way.trigger for way in ways))
+        common = {
+            "path": use.fn.source.path, "line": use.call.line, "function": use.fn.name,
+            "expression": statement.expression, "variable": self.calls.receiver_of(use), "guards": guards,
+            "triggers": triggers, "ways": len(ways), "by": tuple(ways), "node": node.id if node else "",
+            "through": statement.through,
+        }  # fmt: skip
+        if not statement.sites:
+            yield Publish(topic="", type=statement.type, reason=statement.reason, **common)
+        for site in statement.sites:
+            here = self._site_of(site, owner)
+            for value in here.names:
+                topic, _, reason = self.name(here, value, owner)
+                yield Publish(topic=topic, type=here.type, reason=reason, **common)
+
+    def _parameters(self, use: Use, owners: list[Owner]) -> Iterator[ParameterUse]:
+        if not owners:
+            return
+        values = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
+        default = shown(self.calls.argument(use, use.row.default)) if use.row.default else ""
+        kind = "declared" if use.row.declares else "read"
+        nodes = {node.id if node else "": None for node in (_node_of(owner) for owner in owners)}
+        for value in values:
+            if value.text:
+                for node in nodes:
+                    yield ParameterUse(node, value.text, kind, *_place(use), default)
+
+
+def _node_of(owner: Owner) -> Node | None:
+    return owner.node if isinstance(owner, Running) else owner
+
+
+def _place(use: Use) -> tuple[str, int]:
+    return use.fn.source.path, use.call.line
+
+
+def _callback(found: tuple[Fn, ...]) -> Callback | None:
+    return Callback(found[0].name, found[0].source.path, found[0].facts.line) if found else None
+
+
+def _snake(name: str) -> str:
+    from ...targets.fields import snake
+
+    return snake(name)
+
+
+def _nobody(source: Source) -> Fn:
+    from ...facts.flow import Function
+
+    return Fn(source, Function("", "", (), 0, 0))

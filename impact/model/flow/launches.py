@@ -1,0 +1,254 @@
+"""The launch files of a workspace that no other includes, and what each of them starts."""
+
+from __future__ import annotations
+
+import hashlib
+import posixpath
+from collections.abc import Iterator
+
+import msgspec
+
+from ...cache import code_stamp
+from ..launch import Launched, SettingFile, Started, file_values, follow
+from ..names_ros import NameRefused, canonical, ros1_name, ros2_name, ros2_rule
+from ..package import role_of_folder
+from ..workspace import Workspace
+from .graph import Graph
+from .join import Join, Running
+from .sight import Seeing, Sight
+from .started import Instance, InWorkspace, launch_kind
+from .workspace import joined, read_beside
+
+_MOST = 300
+_READ = frozenset(("launch_xml", "launch_yaml", "params", "xml", "python", "manifest", "cmake"))
+
+
+class Renamed(msgspec.Struct, frozen=True):
+    """A remapping that a node is given. old: the full name it is about; written: as the launch file has it."""
+
+    old: str
+    written: str
+    path: str
+    line: int
+
+
+class Given(msgspec.Struct, frozen=True):
+    """A parameter that a node is given, by its name within the node."""
+
+    name: str
+    path: str
+    line: int
+
+
+class Start(msgspec.Struct, frozen=True):
+    """A node as a launch file starts it. node: its id in the graph of that launch. names: the full names that its code
+    uses, before remapping; parameters: those it declares or reads. hidden, hidden_parameters: why these are not all
+    known, and so left empty. uncertain: why it may have another name, or may not be started at all.
+    """
+
+    node: str
+    program: str
+    package: str
+    names: tuple[str, ...]
+    parameters: tuple[str, ...]
+    renamed: tuple[Renamed, ...]
+    given: tuple[Given, ...]
+    hidden: str
+    hidden_parameters: str
+    uncertain: tuple[str, ...]
+
+
+class Launch(msgspec.Struct, frozen=True):
+    """What a launch file starts. path: in the workspace. graph: of all that it starts. missing: it starts programs too
+    whose code is not in the workspace, or that are not known; elsewhere: the lines, as `path:line`, of the remappings
+    and parameters that those are given."""
+
+    path: str
+    graph: Graph
+    starts: tuple[Start, ...]
+    missing: bool
+    elsewhere: tuple[str, ...] = ()
+
+
+def launches(workspace: Workspace) -> tuple[Launch, ...]:
+    """What the launch files that no other includes start, with the defaults of their arguments. Remembered by the
+    content of all that it rests on."""
+    store = workspace.gathered.store
+    key = _key(workspace)
+    known = store.memo("launches", key) if store is not None else None
+    if known is not None:
+        try:
+            return msgspec.msgpack.decode(known, type=tuple[Launch, ...])
+        except msgspec.MsgspecError:
+            pass  # of another version: made anew
+    found = tuple(_launches(workspace))
+    if store is not None:
+        store.remember("launches", [(key, msgspec.msgpack.encode(found))])
+    return found
+
+
+def _key(workspace: Workspace) -> bytes:
+    stamp = hashlib.sha1(workspace.identity + code_stamp().encode())
+    gathered = workspace.gathered
+    for path in sorted(gathered.kinds):
+        if gathered.kinds[path] in _READ or gathered.kinds[path] in ("cpp", "script"):
+            row = f"{path} {gathered.ids.get(path, '')}\n"
+            stamp.update(row.encode("utf-8", "surrogateescape"))
+    return stamp.digest()
+
+
+def _launches(workspace: Workspace) -> Iterator[Launch]:
+    followed = list(_followed(workspace))
+    if not any(launch.started for _, launch, _ in followed):
+        return
+    join = joined(workspace, read_beside(workspace))
+    seeing = Seeing(workspace, join)
+    sights: dict[str, Sight] = {}
+    for path, launch, sources in followed:
+        if not launch.started:
+            continue
+        running, missing = join.started(launch)
+        graph = join.graph(launch=launch)
+        starts = []
+        for one in running:
+            program = f"{one.program.package}/{one.program.executable or one.program.plugin}"
+            if program not in sights:
+                sights[program] = seeing.of(one)
+            starts.append(_start(join, launch, sources, one, program, sights[program]))
+        here = {id(one.instance.started) for one in running if one.instance is not None}
+        others = [started for started in launch.started if id(started) not in here]
+        elsewhere = {
+            f"{sources.place(given.at.package, given.at.path)}:{given.at.line}"
+            for started in others
+            for given in (*started.remaps, *started.settings)
+        }
+        yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)))
+
+
+def _followed(workspace: Workspace) -> list[tuple[str, Launched, InWorkspace]]:
+    """Each launch file that no other includes, followed."""
+    sources = InWorkspace(workspace)
+    found: list[tuple[str, Launched, InWorkspace]] = []
+    included: set[str] = set()
+    for package, path, inner in _files(workspace):
+        launch = follow(package, inner, sources, {}, generation=workspace.ros)
+        found.append((path, launch, sources))
+        own, *others = launch.files or (("", ""),)
+        included.update(sources.place(*other) for other in others if other != own)
+    return [row for row in found if row[0] not in included]
+
+
+def _files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
+    """(package, path, path within the package) of launch files; those of tests are left out."""
+    number = 0
+    for package in workspace:
+        start = len(package.path) + 1 if package.path else 0
+        for path in sorted(package.digest.files):
+            inner = path[start:]
+            if is_launch(inner) and role_of_folder(inner) != "test":
+                number += 1
+                if number > _MOST:
+                    return
+                yield package.name, path, inner
+
+
+def is_launch(path: str) -> bool:
+    """Whether a path within a package is that of a launch file, by its name and folder."""
+    folder, name = posixpath.split(path.lower())
+    if not launch_kind(path) or name.endswith(".test") or name.startswith("__"):
+        return False
+    stem, _, ending = name.rpartition(".")
+    return ending == "launch" or stem.endswith((".launch", "_launch")) or "launch" in folder.split("/")
+
+
+def _start(
+    join: Join, launch: Launched, sources: InWorkspace, one: Running, program: str, sight: Sight
+) -> Start:  # fmt: skip
+    instance = one.instance
+    assert instance is not None
+    renamed = tuple(_renamed(sources, instance, join.ros))
+    given = tuple(_given(sources, launch, instance.started, instance))
+    names = {name for name in _names(join, one, instance) if name} if renamed and not sight.names else ()
+    asked = _parameters(join, one) if (given or renamed) and not sight.parameters else ()
+    return Start(
+        one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
+        sight.names, sight.parameters, instance.uncertain,
+    )  # fmt: skip
+
+
+def _names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
+    """The full names that a node's code uses, before remapping."""
+    bare = one._replace(instance=instance._replace(remaps=()))
+    for site in join.sites.endpoints:
+        if id(site.use.fn) in one.functions:
+            values = site.names
+            if not site.implied:
+                named = join.calls.argument(site.use, site.use.row.topic)
+                values = one.values.of(named, site.use.fn, site.use.call.line)
+            for value in values:
+                yield join.name(site, value, bare)[0]
+
+
+def _parameters(join: Join, one: Running) -> set[str]:
+    found: set[str] = set()
+    for use in join.calls.uses:
+        if use.row.does == "parameter" and id(use.fn) in one.functions:
+            values = join.values.of(join.calls.argument(use, use.row.topic), use.fn, use.call.line)
+            found.update(value.text for value in values if value.text)
+    return found
+
+
+def _renamed(sources: InWorkspace, instance: Instance, ros: int) -> Iterator[Renamed]:
+    generation = instance.started.generation or ros
+    namespace, _, own = instance.name.rpartition("/")
+    for remap in instance.remaps:
+        written, new = remap.old.value, remap.new.value
+        path = sources.place(remap.at.package, remap.at.path)
+        if not written or new is None or remap.conditions or not path or written.startswith("__"):
+            continue
+        if generation == 1:
+            old = ros1_name(written, instance.name)
+        else:
+            rule = ros2_rule(f"{written}:={new}")
+            if rule is None or rule.match.startswith("__") or rule.node not in ("", own):
+                continue
+            try:
+                old = ros2_name(rule.match, own, namespace or "/")
+            except NameRefused:
+                continue
+        yield Renamed(old, written, path, remap.at.line)
+
+
+def _given(sources: InWorkspace, launch: Launched, start: Started, instance: Instance) -> Iterator[Given]:
+    """The parameters that a node is given for itself: not those of a file's `/**`, which are for any node."""
+    if start.generation == 1:
+        below = f"{instance.name}/"
+        for name, setting in launch.server.items():
+            place = sources.place(setting.at.package, setting.at.path)
+            if name.startswith(below) and place and not setting.conditions:
+                yield Given(name[len(below) :], place, setting.at.line)
+        return
+    for setting in start.settings:
+        if setting.conditions:
+            continue
+        if isinstance(setting, SettingFile):
+            yield from _in_file(sources, setting, instance.name)
+            continue
+        place = sources.place(setting.at.package, setting.at.path)
+        if place:
+            yield Given(setting.name, place, setting.at.line)
+
+
+def _in_file(sources: InWorkspace, setting: SettingFile, full: str) -> Iterator[Given]:
+    head, _, inner = (setting.file.value or "").partition("/")
+    found = head.startswith("$(find ")
+    place = sources.place(head.removeprefix("$(find ").rstrip(")"), inner) if found else ""
+    if not place:
+        return
+    for_all = file_values(setting, "")
+    for name, entry in file_values(setting, full).items():
+        if for_all.get(name) != entry:
+            yield Given(canonical(name), place, entry.line)
+
+
+__all__ = ["Given", "Launch", "Renamed", "Start", "is_launch", "launches"]

@@ -1,0 +1,76 @@
+"""Nodelets that a program loads itself: their names, classes and remappings, as `nodelet::Loader::load` is given them.
+
+One load in a function that is called several times, each time with other arguments, is several loads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from ...facts.flow import Call
+from ..names_ros import ros1_remapped
+from .calls import Calls, Use
+from .code import Fn
+from .values import NODE, Values
+
+_DEEPEST = 4
+_MOST = 64
+
+
+class Loaded(NamedTuple):
+    """A nodelet in a node. name: full. plugin: as pluginlib knows it (`image_proc/rectify`). remaps: pairs of names as
+    written, resolved as the nodelet's own are. use: the call that loads it."""
+
+    name: str
+    plugin: str
+    remaps: tuple[tuple[str, str], ...]
+    use: Use
+
+    def remapped(self, name: str) -> str:
+        """The full name of a name that the nodelet uses."""
+        return ros1_remapped(name, self.name, self.remaps)
+
+
+def loads(calls: Calls, functions: set[int], values: Values, node: str) -> Iterator[Loaded]:
+    """What a program loads. functions: id()s of those it runs; values: what expressions are worth in it; node: the full
+    name of its node."""
+    for use in calls.uses:
+        if use.row.does != "load" or id(use.fn) not in functions:
+            continue
+        for way in _ways(calls, use.fn, functions):
+            inside = values.called(way)
+            for name in inside.of(calls.argument(use, use.row.topic), use.fn, use.call.line):
+                for plugin in inside.of(calls.argument(use, use.row.type), use.fn, use.call.line):
+                    if name.text and plugin.text:
+                        full = name.text.replace(NODE, node)
+                        full = full if full.startswith("/") else f"{node.rpartition('/')[0]}/{full}"
+                        yield Loaded(full, plugin.text, tuple(_remaps(calls, use, inside)), use)
+
+
+def _ways(calls: Calls, fn: Fn, functions: set[int], depth: int = 0) -> Iterator[dict[int, Call]]:
+    """The calls through which a function is reached: for each way, the call by the id() of the function called."""
+    number = 0
+    for caller, call in calls.code.callers.get(id(fn), ()) if depth < _DEEPEST else ():
+        if id(caller) in functions and number < _MOST:
+            for way in _ways(calls, caller, functions, depth + 1):
+                number += 1
+                yield {**way, id(fn): call}
+    if not number:
+        yield {}
+
+
+def _remaps(calls: Calls, use: Use, values: Values) -> Iterator[tuple[str, str]]:
+    """What the map of remappings holds where it is given away: elements written since it was last emptied."""
+    given = calls.argument(use, use.row.remaps)
+    if given is None or given.kind != "name":
+        return
+    emptying = f"{given.text}.clear"
+    before = [call.line for call in use.fn.facts.calls if call.callee == emptying and call.line < use.call.line]
+    emptied = max(before, default=0)
+    for each in use.fn.facts.assignments:
+        if each.target == f"{given.text}.[]" and each.key is not None and emptied < each.line < use.call.line:
+            for old in values.of(each.key, use.fn, each.line)[:1]:
+                for new in values.of(each.value, use.fn, each.line)[:1]:
+                    if old.text and new.text:
+                        yield old.text, new.text

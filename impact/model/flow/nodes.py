@@ -1,0 +1,201 @@
+"""Nodes of a workspace: what runs which code, told by what can be reached from a main function or a loaded class."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from ...facts.flow import Expr
+from .calls import Use
+from .code import Cls, Code, Fn, made_in, tail
+from .sites import Sites
+
+
+class Program(NamedTuple):
+    """Something that can be started. kind, executable and plugin as in Node; roots: where it begins; files: those it is
+    built from, headers left out."""
+
+    package: str
+    kind: str
+    executable: str
+    plugin: str
+    roots: tuple[Fn, ...]
+    files: frozenset[str]
+    path: str
+    line: int
+
+
+class Built(NamedTuple):
+    """What the build of one package tells. executables and libraries: target to its sources; components: class to
+    executable or empty; scripts: name of an installed or executable Python file to its path, entry points with the
+    function behind a colon; links: target to the targets of the workspace that it links. plugins: what
+    pluginlib calls a class to the class."""
+
+    package: str
+    executables: Mapping[str, tuple[str, ...]]
+    libraries: Mapping[str, tuple[str, ...]]
+    components: Mapping[str, str]
+    scripts: Mapping[str, str]
+    links: Mapping[str, tuple[str, ...]]
+    plugins: Mapping[str, str] = {}
+
+
+class Reach:
+    """What code can run once something is started."""
+
+    def __init__(self, sites: Sites):
+        self.sites, self.code = sites, sites.code
+        self._edges: dict[int, tuple[list[Fn], list[Cls]]] = {}
+        # Owners, as functions name them, of classes that are loaded by name, to the name of the class.
+        self._loaded: dict[str, str] = {}
+        for source in self.code.sources:
+            for name in source.facts.exports:
+                cls = self.code.class_of(name.removeprefix("::"), source)
+                if cls is not None:
+                    self._loaded.update((fn.facts.owner, cls.name) for fn in self.code.functions_of(cls))
+        self._lambdas: dict[tuple[str, str], list[Fn]] = {}
+        for fn in self.code.functions:
+            if fn.is_lambda:
+                self._lambdas.setdefault((fn.source.path, fn.scope), []).append(fn)
+
+    def of(self, roots: Iterable[Fn], classes: Iterable[Cls] = ()) -> tuple[set[int], set[str]]:
+        """Functions (by id()) and classes (by name) reached from some functions, and from objects of some classes."""
+        functions: set[int] = set()
+        names: set[str] = set()
+        queue: list[Fn] = list(roots)
+        begun = {id(fn) for fn in queue}
+        made: list[Cls] = list(classes)
+        while queue or made:
+            while made:
+                cls = made.pop()
+                for one in self.code.bases(cls):
+                    if one.name in names:
+                        continue
+                    names.add(one.name)
+                    queue.extend(self.code.functions_of(one))
+                    for member in one.facts.members:
+                        if not member.type or _points(member.type):
+                            continue  # made elsewhere, or by this class with code that is followed
+                        kind = self.code.meant_type(member.type, one.source, one.name)
+                        inner = self.code.class_of(kind.name, one.source, one.name) if kind.name else None
+                        if inner is not None:
+                            made.append(inner)
+            if not queue:
+                break
+            fn = queue.pop()
+            if id(fn) in functions:
+                continue
+            loaded = self._loaded.get(fn.facts.owner)
+            if loaded is not None and loaded not in names and id(fn) not in begun:
+                continue  # one of many that may be loaded at run time: a node of its own
+            functions.add(id(fn))
+            further, objects = self.edges(fn)
+            queue.extend(further)
+            made.extend(cls for cls in objects if cls.name not in names)
+        return functions, names
+
+    def edges(self, fn: Fn) -> tuple[list[Fn], list[Cls]]:
+        """Functions that a function may lead to, and classes of objects that it makes."""
+        known = self._edges.get(id(fn))
+        if known is None:
+            code = self.code
+            further = list(self._lambdas.get((fn.source.path, fn.name), ()))
+            objects: list[Cls] = []
+            for call in fn.facts.calls:
+                further.extend(code.targets(call.callee, fn))
+                for argument in call.arguments:
+                    further.extend(self._handed(argument, fn))
+            for name, _, _ in made_in(fn, code):
+                cls = code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope)
+                if cls is not None:
+                    objects.append(cls)
+            for each in fn.facts.assignments:
+                if each.type and not _points(each.type):
+                    kind = code.meant_type(each.type, fn.source, fn.scope)
+                    cls = code.class_of(kind.name, fn.source, fn.scope) if kind.name else None
+                    if cls is not None:
+                        objects.append(cls)
+            known = self._edges[id(fn)] = (further, objects)
+        return known
+
+    def _handed(self, value: Expr, fn: Fn) -> list[Fn]:
+        """Functions outside of classes that an argument hands on; methods are reached through their class."""
+        if value.kind == "bind" and value.parts:
+            value = value.parts[0]
+        if value.kind in ("function", "name") and "." not in value.text and tail(value.text) in self.code.by_tail:
+            return [one for one in self.code.targets(value.text, fn) if not one.facts.owner]
+        return []
+
+
+def _points(type_: str) -> bool:
+    """Whether a variable of a type holds what is made elsewhere, or by code that is followed."""
+    return "*" in type_ or "&" in type_ or "ptr" in type_.lower()
+
+
+def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
+    """Everything that can be started. kinds_of: a class's kinds by the table of frameworks."""
+    by_path: dict[str, list[Fn]] = {}
+    for fn in code.functions:
+        by_path.setdefault(fn.source.path, []).append(fn)
+    exported: dict[str, list[tuple[str, str]]] = {}
+    for source in code.sources:
+        for name in source.facts.exports:
+            exported.setdefault(source.package, []).append((name, source.path))
+    for package in built:
+        for name, sources in package.executables.items():
+            mains = [fn for path in sources for fn in by_path.get(path, ()) if fn.name == "main"]
+            files = frozenset(_linked(name, package, sources))
+            main = mains[0] if mains else None
+            place = (main.source.path, main.facts.line) if main else (sources[0] if sources else "", 0)
+            yield Program(package.package, "executable", name, "", tuple(mains), files, *place)
+        for name, path in exported.get(package.package, ()):
+            cls = _class(code, name, package.package)
+            kind = _loaded_as(cls, code, kinds_of) if cls is not None else "plugin"
+            roots = tuple(code.functions_of(cls)) if cls is not None else ()
+            place = (cls.source.path, cls.facts.line) if cls is not None else (path, 0)
+            yield Program(
+                package.package, kind, package.components.get(name, ""), name, roots, frozenset((path,)), *place
+            )
+        for name, where in package.scripts.items():
+            path, _, function = where.partition(":")
+            fns = by_path.get(path, ())
+            roots = [fn for fn in fns if fn.name in ("", function or "main")]
+            if roots:
+                yield Program(
+                    package.package, "script", name, "", tuple(roots), frozenset((path,)), path, roots[0].facts.line
+                )
+
+
+def _linked(name: str, package: Built, sources: Iterable[str]) -> Iterator[str]:
+    yield from sources
+    seen, queue = {name}, list(package.links.get(name, ()))
+    while queue:
+        one = queue.pop()
+        if one not in seen:
+            seen.add(one)
+            yield from package.libraries.get(one, ())
+            queue.extend(package.links.get(one, ()))
+
+
+def _class(code: Code, name: str, package: str) -> Cls | None:
+    wanted = name.removeprefix("::").split("::")
+    found = [
+        cls
+        for cls in code.classes.get(wanted[-1], ())
+        if cls.source.package == package and cls.name.split("::")[-len(wanted) :] == wanted
+    ]
+    return found[0] if found else None
+
+
+def _loaded_as(cls: Cls, code: Code, kinds_of) -> str:
+    names = [tail(name) for name in code.base_names(cls)]
+    if "Nodelet" in names or any(name.endswith("Nodelet") for name in names):
+        return "nodelet"
+    if "node" in kinds_of(cls):
+        return "component"
+    return "plugin"
+
+
+def node_uses(functions: set[int], uses: Iterable[Use]) -> list[Use]:
+    """The uses that name a node, among the functions reached."""
+    return [use for use in uses if use.row.does == "node" and id(use.fn) in functions]

@@ -1,0 +1,239 @@
+"""Quality of service as code tells it: depths, profiles and the settings of them."""
+
+from __future__ import annotations
+
+import re
+
+from ...facts.flow import Expr
+from .calls import Calls, Use
+from .code import Fn, tail
+from .graph import Qos
+from .values import Values
+
+# Profiles of rmw (https://docs.ros.org/en/rolling/Concepts/Intermediate/About-Quality-of-Service-Settings.html).
+_PLAIN = Qos("reliable", "volatile", "keep_last", 10)
+_SENSOR = Qos("best_effort", "volatile", "keep_last", 5)
+_SYSTEM = Qos("system_default", "system_default", "system_default", -1)
+_PROFILES = {
+    "SensorDataQoS": _SENSOR, "qos_profile_sensor_data": _SENSOR, "rmw_qos_profile_sensor_data": _SENSOR,
+    "SystemDefaultsQoS": _SYSTEM, "qos_profile_system_default": _SYSTEM, "rmw_qos_profile_system_default": _SYSTEM,
+    "rmw_qos_profile_default": _PLAIN, "QoS": _PLAIN, "QoSProfile": Qos("reliable", "volatile", "keep_last", -1),
+    "ServicesQoS": _PLAIN, "qos_profile_services_default": _PLAIN, "rmw_qos_profile_services_default": _PLAIN,
+    "ParametersQoS": Qos("reliable", "volatile", "keep_last", 1_000),
+    "qos_profile_parameters": Qos("reliable", "volatile", "keep_last", 1_000),
+    "ClockQoS": Qos("best_effort", "volatile", "keep_last", 1),
+    "RosoutQoS": Qos("reliable", "transient_local", "keep_last", 1_000),
+    "SENSOR_DATA": _SENSOR, "SYSTEM_DEFAULT": _SYSTEM, "SERVICES_DEFAULT": _PLAIN,
+    "qos_profile_action_status_default": Qos("reliable", "transient_local", "keep_last", 1),
+}  # fmt: skip
+_SETTINGS = {
+    "reliable": ("reliability", "reliable"), "best_effort": ("reliability", "best_effort"),
+    "transient_local": ("durability", "transient_local"), "durability_volatile": ("durability", "volatile"),
+    "volatile": ("durability", "volatile"), "keep_all": ("history", "keep_all"), "keep_last": ("history", "keep_last"),
+    "reliability_best_available": ("reliability", "best_available"),
+    "durability_best_available": ("durability", "best_available"),
+    "liveliness_automatic": ("liveliness", "automatic"), "manual_by_topic": ("liveliness", "manual_by_topic"),
+}  # fmt: skip
+
+# Settings that are given a value, and what the last letters of the value's name mean.
+_TAKING = {
+    "reliability": "reliability", "durability": "durability", "history": "history", "liveliness": "liveliness",
+    "deadline": "deadline", "liveliness_lease_duration": "lease",
+}  # fmt: skip
+_WORDS = {
+    "reliability": (("BESTEFFORT", "best_effort"), ("RELIABLE", "reliable")),
+    "durability": (("TRANSIENTLOCAL", "transient_local"), ("VOLATILE", "volatile")),
+    "history": (("KEEPALL", "keep_all"), ("KEEPLAST", "keep_last")),
+    "liveliness": (("MANUALBYTOPIC", "manual_by_topic"), ("AUTOMATIC", "automatic")),
+}
+_LITERAL = re.compile(r"([\d.']+)(h|min|s|ms|us|ns)")
+_UNITS = {
+    "h": 3600, "min": 60, "s": 1, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "hours": 3600, "minutes": 60, "seconds": 1,
+    "milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9, "from_seconds": 1, "from_nanoseconds": 1e-9,
+}  # fmt: skip
+
+
+def qos_of(calls: Calls, values: Values, use: Use) -> Qos | None:
+    """The quality of service that a use asks for; None where its framework has none or it gives none.
+
+    A queue of ROS 1 is its depth. What is not told is empty, so that nothing is judged by it.
+    """
+    from .sites import shown
+
+    if use.row.framework in ("roscpp", "rospy", "image_transport") and use.row.queue and not use.row.qos:
+        value = calls.argument(use, use.row.queue)
+        latch = calls.argument(use, use.row.latch) if use.row.latch else None
+        depth = _number(value, use.fn, values)
+        latched = "transient_local" if latch is not None and latch.text in ("true", "True") else ""
+        return Qos(durability=latched, depth=depth, written=shown(value)) if value is not None or latched else None
+    value = calls.argument(use, use.row.qos) if use.row.qos else None
+    if value is None:
+        return None
+    found = _of(value, use.fn, calls, values, 0)
+    return Qos(**{**_fields(found), "written": shown(value)})
+
+
+def _fields(qos: Qos) -> dict:
+    return {name: getattr(qos, name) for name in qos.__struct_fields__}
+
+
+def _number(value: Expr | None, fn: Fn, values: Values) -> int:
+    if value is None:
+        return -1
+    text = values.of(value, fn)[0].text
+    return int(text) if text and text.isdigit() else -1
+
+
+def _of(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos:
+    if depth > 6:
+        return Qos()
+    if value.kind == "number":
+        return Qos("reliable", "volatile", "keep_last", int(value.text)) if value.text.isdigit() else Qos()
+    if value.kind in ("call", "make"):
+        return _built(value, fn, calls, values, depth)
+    if value.kind == "name":
+        known = _PROFILES.get(tail(value.text.removesuffix(".value")))
+        if known is not None:
+            return known
+        variable = calls.code.identity(value.text, fn)
+        found = [
+            (_of(each.value, writer, calls, values, depth + 1), writer)
+            for writer, each in calls.code.writes.get(variable, ())
+            if each.operator == "="
+        ]
+        if found:
+            return _set_later(_common([qos for qos, _ in found]), value.text, found[0][1], values)
+        text = values.of(value, fn)[0].text
+        if text and text.isdigit():
+            return Qos("reliable", "volatile", "keep_last", int(text))
+    if value.kind == "list" and value.parts:
+        return _of(value.parts[0], fn, calls, values, depth + 1)
+    return Qos()
+
+
+def _common(found: list[Qos]) -> Qos:
+    """What several qualities agree on: code may choose any of them."""
+    first = _fields(found[0])
+    nothing = _fields(Qos())
+    for other in found[1:]:
+        fields = _fields(other)
+        first = {name: value if fields[name] == value else nothing[name] for name, value in first.items()}
+    return Qos(**first)
+
+
+def _built(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos:
+    """Profiles with settings behind them: `rclcpp::QoS(1).transient_local().reliable()`, `QoSProfile(depth=1, ...)`."""
+    links = value.text.split("().")
+    names = [tail(part) for part in links]
+    base = next((_PROFILES[name] for name in names if name in _PROFILES), None)
+    fields = _fields(base) if base is not None else _fields(Qos())
+    if names[-1] == "from_rmw" and value.parts:
+        return _of(value.parts[0], fn, calls, values, depth + 1)
+    if base is None and value.kind == "call":
+        variable = value.text.split(".")[0]
+        found = [
+            _of(each.value, writer, calls, values, depth + 1)
+            for writer, each in calls.code.writes.get(calls.code.identity(variable, fn), ())
+        ]
+        fields = _fields(_common(found)) if found else fields
+    made = _arguments_of(value, links, 0, fn)
+    positional = [part for part in made or () if part.kind != "keyword"]
+    if positional and names[0] in ("QoS", "KeepLast", "keep_last", "QoSProfile", "SensorDataQoS"):
+        _made(positional[0], fields, fn, calls, values, depth)
+    for place, name in enumerate(names):
+        if name in _SETTINGS:
+            field, setting = _SETTINGS[name]
+            fields[field] = setting
+        elif place and name in _TAKING:
+            given = _arguments_of(value, links, place, fn)
+            _set(_TAKING[name], given[0] if given else None, fields, fn, values)
+    for part in value.parts:
+        if part.kind == "keyword" and part.parts:
+            if part.text == "depth":
+                fields["depth"] = _number(part.parts[0], fn, values)
+            elif part.text in _TAKING:
+                _set(_TAKING[part.text], part.parts[0], fields, fn, values)
+    fields["written"] = ""
+    return Qos(**fields)
+
+
+def _made(first: Expr, fields: dict, fn: Fn, calls: Calls, values: Values, depth: int) -> None:
+    """What a profile's constructor is given: a depth, a history, or another profile."""
+    if first.kind in ("call", "make") and tail(first.text) in ("KeepLast", "KeepAll"):
+        fields["history"] = "keep_all" if tail(first.text) == "KeepAll" else "keep_last"
+        fields["depth"] = _number(first.parts[0], fn, values) if first.parts else -1
+        return
+    other = _of(first, fn, calls, values, depth + 1) if first.kind != "number" else Qos()
+    if other != Qos():
+        fields.update(_fields(other))
+    elif first.kind in ("call", "make"):
+        fields.update(_fields(Qos()))  # of what is not known
+    else:
+        fields["depth"] = _number(first, fn, values)
+
+
+def _arguments_of(value: Expr, links: list[str], place: int, fn: Fn) -> tuple[Expr, ...] | None:
+    """The arguments of one call of a chain; None where they are not told apart from those of a chain like it."""
+    if place == len(links) - 1:
+        return value.parts
+    callee = "().".join(links[: place + 1])
+    found = {call.arguments for call in fn.facts.calls if call.callee == callee}
+    return found.pop() if len(found) == 1 else None
+
+
+def _set(field: str, value: Expr | None, fields: dict, fn: Fn, values: Values) -> None:
+    """Gives a setting the value of an expression; it is not told where that is not known."""
+    if field in ("deadline", "lease"):
+        fields[field] = seconds(value, fn, values) if value is not None else None
+        return
+    words = tail(value.text).upper().replace("_", "") if value is not None and value.kind == "name" else ""
+    fields[field] = next((setting for word, setting in _WORDS[field] if words.endswith(word)), "")
+
+
+def seconds(value: Expr, fn: Fn, values: Values) -> float | None:
+    """A duration of rclcpp, rclpy or std::chrono in seconds; None for what is not written as numbers."""
+    if value.kind == "other":
+        literal = _LITERAL.fullmatch(value.text)
+        return float(literal[1]) * _UNITS[literal[2]] if literal else None
+    if value.kind not in ("call", "make"):
+        return None
+    name = tail(value.text)
+    found = []
+    for place, part in enumerate(value.parts):
+        inner = part.parts[0] if part.kind == "keyword" and part.parts else part
+        if inner.kind != "number":
+            return seconds(inner, fn, values) if len(value.parts) == 1 and name in ("Duration", "QoS") else None
+        word = part.text if part.kind == "keyword" else name if len(value.parts) == 1 else ("s", "ns")[min(place, 1)]
+        try:
+            found.append(float(inner.text.replace("'", "").rstrip("fFuUlL")) * _UNITS[word])
+        except (ValueError, KeyError):
+            return None
+    return sum(found) if found else None
+
+
+def _set_later(found: Qos, name: str, fn: Fn, values: Values) -> Qos:
+    """Settings that follow the making: `qos.best_effort();`, `qos.reliability = ...`. What is set under a condition
+    only is not told."""
+    fields = _fields(found)
+    nothing = _fields(Qos())
+    for call in fn.facts.calls:
+        if not call.callee.startswith(name + "."):
+            continue
+        *_, last = call.callee[len(name) + 1 :].split("().")
+        if last in _SETTINGS:
+            field, setting = _SETTINGS[last]
+            fields[field] = setting
+        elif last in _TAKING:
+            field = _TAKING[last]
+            _set(field, call.arguments[0] if call.arguments else None, fields, fn, values)
+        else:
+            continue
+        if call.guard >= 0:
+            fields[field] = nothing[field]
+    for each in fn.facts.assignments:
+        field = _TAKING.get(tail(each.target), "") if each.target.startswith(name + ".") else ""
+        if field:
+            _set(field, each.value, fields, fn, values)
+            if each.guard >= 0:
+                fields[field] = nothing[field]
+    return Qos(**fields)

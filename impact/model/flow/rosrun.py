@@ -1,0 +1,37 @@
+"""A node of ROS 1 as it is started by hand: `rosrun package executable arguments...`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ..launch import At, Launched, Remap, Setting, Started, known
+
+_HERE = At("", "the command line", 0)
+
+
+def rosrun(package: str, executable: str, arguments: Iterable[str] = ()) -> Launched:
+    """The launch that one command is. arguments: those of the program, with `from:=to`, `_parameter:=value`,
+    `__name:=name` and `__ns:=namespace` among them, which the program does not see."""
+    name, namespace = "", "/"
+    remaps: list[Remap] = []
+    private: list[Setting] = []
+    words: list[str] = []
+    for argument in arguments:
+        old, assigns, new = argument.partition(":=")
+        if not assigns:
+            words.append(argument)
+        elif old == "__name":
+            name = new
+        elif old == "__ns":
+            namespace = f"/{new.strip('/')}"
+        elif old.startswith("_") and not old.startswith("__"):
+            private.append(Setting(old[1:], new, known(new), _HERE))
+        elif not old.startswith("__"):
+            remaps.append(Remap(known(old), known(new), _HERE))
+    started = Started(
+        "node", 1, known(package), known(executable), known(""), known(""), known(name), known(namespace),
+        tuple(remaps), tuple(private), tuple(map(known, words)), (), (), (), _HERE, (),
+    )  # fmt: skip
+    full = f"{namespace.rstrip('/')}/{name or executable}"
+    server = {f"{full}/{setting.name}": setting._replace(name=f"{full}/{setting.name}") for setting in private}
+    return Launched((started,), server, (), (), (), ())

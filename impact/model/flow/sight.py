@@ -1,0 +1,230 @@
+"""Whether all that a program does with its node is in sight: only then is a name that its code lacks a dead one.
+
+Out of sight is what code of other packages does with a node that it is given, what is loaded at run time, and names
+that are put together from what is not known. Whoever asks errs on the side of "not in sight".
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from functools import cached_property
+from itertools import chain
+from typing import NamedTuple
+
+from ...facts.flow import Expr
+from ..workspace import Workspace
+from .code import Fn, made_in, parts_of, tail
+from .join import Join, Running
+
+_LOADERS = frozenset(
+    ("createInstance", "createSharedInstance", "createUniqueInstance", "createUnmanagedInstance", "loadLibraryForClass",
+     "load_component", "registerFromPlugin", "import_module", "__import__", "eval", "exec")
+)  # fmt: skip
+# Functions that take a node and name nothing with it.
+_RUNS = frozenset(
+    ("spin", "spin_some", "spin_once", "spin_until_future_complete", "add_node", "remove_node", "bind", "move",
+     "shared_from_this", "get_node_base_interface", "__init__", "partial", "callback_group", "ref", "cref",
+     "isinstance", "reset", "make_shared", "make_unique", "push_back", "emplace_back", "append", "static_pointer_cast",
+     "dynamic_pointer_cast", "hasattr", "print", "str", "super", "async", "thread", "get",
+     "create_timer", "create_wall_timer", "Bond")
+)  # fmt: skip
+# Functions that ask for parameters whose names the code does not say one by one.
+_WHOLE = frozenset(
+    ("get_parameters_by_prefix", "list_parameters", "get_parameters", "declare_parameters", "getParamNames",
+     "get_param_names", "searchParam", "search_param", "get_parameter_overrides", "allow_undeclared_parameters",
+     "automatically_declare_parameters_from_overrides", "ParamListener", "set_parameters_from_yaml")
+)  # fmt: skip
+_OPTIONS = ("automatically_declare_parameters_from_overrides", "allow_undeclared_parameters")
+# Frameworks that read parameters of the node they are given.
+_ASKING = frozenset(
+    ("dynamic_reconfigure", "image_transport", "diagnostic_updater", "actionlib", "point_cloud_transport")
+)
+# Packages, and folders of headers of libraries, that name nothing in ROS's graph, or only what the table of frameworks
+# knows.
+_PLAIN = frozenset(
+    ("ros", "rclcpp", "rclcpp_action", "rclcpp_lifecycle", "rclcpp_components", "rclpy", "rospy", "roslib",
+     "rosgraph", "rcutils", "rcpputils", "rcl", "rmw", "rcl_interfaces", "rosidl_runtime_cpp", "builtin_interfaces",
+     "unique_identifier_msgs", "tf2", "tf2_ros", "tf", "tf2_eigen", "tf2_kdl", "tf2_geometry_msgs",
+     "tf2_sensor_msgs", "tf_transformations", "tf_conversions", "eigen_conversions", "message_filters", "actionlib",
+     "nodelet", "image_transport", "cv_bridge", "image_geometry", "pcl_conversions", "laser_geometry", "angles",
+     "std_srvs", "diagnostic_updater", "dynamic_reconfigure", "class_loader", "pluginlib", "bond", "uuid",
+     "lifecycle_msgs", "ament_index_python", "ament_index_cpp", "rospkg", "urdf", "urdf_parser_py", "kdl_parser",
+     "kdl", "sensor_msgs_py", "bondcpp", "ros2_numpy", "launch", "launch_ros", "XmlRpcValue.h", "xmlrpcpp",
+     "console_bridge", "sophus", "Eigen", "eigen3", "boost", "opencv2", "opencv", "pcl", "yaml-cpp", "yaml",
+     "numpy", "cv2", "scipy", "matplotlib", "serial", "sys", "GL", "std", "experimental", "fmt", "nlohmann",
+     "tinyxml2", "geometry", "octomap", "ceres", "g2o", "gtest", "PIL", "requests", "psutil", "usb", "smbus",
+     "transforms3d", "tty", "six", "pandas", "zmq", "linux", "netinet", "arpa", "bits", "mach", "GeographicLib",
+     "behaviortree_cpp", "behaviortree_cpp_v3", "ompl", "rcl_action", "PyKDL", "rosbag", "genpy", "tf2_py",
+     "LinearMath", "ecl", "dynamixel_sdk", "rtree", "geopandas", "colorama", "termcolor", "tqdm", "pkg_resources",
+     "StringIO", "cStringIO", "cPickle", "urlparse", "xmlrpclib", "commands", "rttest")
+)  # fmt: skip
+_INTERFACES = ("_msgs", "_interfaces", "_srvs", "_actions")
+_BASES = frozenset(("object", "Node", "LifecycleNode", "Nodelet", "enable_shared_from_this", "Thread", "Exception",
+                    "Enum", "IntEnum", "ABC", "NamedTuple", "QObject", "QWidget", "TestCase", "exception"))  # fmt: skip
+
+
+# Where the classes of the frameworks themselves stand.
+_OWN = frozenset(("std", "rclcpp", "rclpy", "ros", "rospy", "rclcpp_lifecycle", "message_filters"))
+
+
+class Sight(NamedTuple):
+    """Why not all names, and not all parameters, of a program are in sight; empty where they are."""
+
+    names: str
+    parameters: str
+
+
+class Seeing:
+    """Asks a body of code, joined, what of a program is in sight."""
+
+    def __init__(self, workspace: Workspace, join: Join):
+        self.workspace, self.join = workspace, join
+
+    def of(self, one: Running) -> Sight:
+        """What of a program is in sight."""
+        functions = [fn for fn in self.join.code.functions if id(fn) in one.functions]
+        if not one.program.roots or not functions:
+            return Sight("its code is not in the workspace", "its code is not in the workspace")
+        paths = {fn.source.path for fn in functions}
+        steps = (self._outside(paths), self._bases(one), self._given(functions), self._unreached(one))
+        both = next(chain(*steps), "")
+        names = both or next(self._unnamed(functions), "")
+        return Sight(names, both or next(self._unlisted(functions), ""))
+
+    def _outside(self, paths: set[str]) -> Iterator[str]:
+        for path in sorted(paths):
+            yield from (f"`{name}` is outside of the workspace" for name in self._uses.get(path, ()))
+
+    @cached_property
+    def _uses(self) -> dict[str, list[str]]:
+        """By file the packages and libraries it uses whose names are not known."""
+        found: dict[str, list[str]] = {}
+        for package in self.workspace:
+            for include in package.digest.includes:
+                head, slash, _ = include.path.partition("/")
+                if slash and not self._plain(head) and not self.workspace.provides_header(include.path):
+                    found.setdefault(include.at.path, []).append(head)
+            for imported in package.digest.imports:
+                head = imported.module.split(".")[0]
+                known = head in sys.stdlib_module_names or head in self.workspace.modules or self._plain(head)
+                if head and not known:
+                    found.setdefault(imported.at.path, []).append(head)
+        return found
+
+    def _plain(self, name: str) -> bool:
+        return name in _PLAIN or name.endswith(_INTERFACES) or name in self.workspace.packages
+
+    def _bases(self, one: Running) -> Iterator[str]:
+        code, table = self.join.code, self.join.calls.table
+        for name in sorted(one.classes):
+            for cls in code.classes.get(tail(name), ()):
+                followed = {tail(base.name) for base in code.bases(cls)}
+                for base in code.base_names(cls) if cls.name == name else ():
+                    known = tail(base) in _BASES or tail(base) in followed or table.kind_of(base)
+                    if base and not known and parts_of(base)[0] not in _OWN:
+                        yield f"`{base}` is not followed"
+
+    def _given(self, functions: list[Fn]) -> Iterator[str]:
+        """Functions and objects of others that are given the node, and what is loaded by name."""
+        code, calls = self.join.code, self.join.calls
+        for fn in functions:
+            python = fn.source.facts.language == "python"
+            for call in fn.facts.calls:
+                last = tail(call.callee)
+                if python and self._is_lost(call.callee, fn):
+                    yield f"`{call.callee}` is not followed"
+                if last in _LOADERS:
+                    yield f"`{last}` loads code by name"
+                    continue
+                known = last in _RUNS or (python and last[:1].isupper())
+                if known or not any(self._is_node(argument, fn) for argument in call.arguments):
+                    continue
+                if not code.targets(call.callee, fn) and calls.use_of(fn, call) is None:
+                    yield f"`{last}` is given the node"
+            for name, arguments, _ in made_in(fn, code):
+                if (
+                    not python
+                    and parts_of(name)[0] in self._namespaces
+                    and not code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope)
+                ):
+                    yield f"`{tail(name)}` is not followed"
+                if any(self._is_node(argument, fn) for argument in arguments):
+                    kind = code.meant_type(name, fn.source, fn.scope).name if not python else name
+                    known = code.class_of(kind, fn.source, fn.scope) if kind else None
+                    own = parts_of(kind or name)[0] in _OWN or tail(name) in _RUNS
+                    if known is None and not own and not calls.table.objects_of(kind or name, python):
+                        yield f"`{tail(kind or name)}` is given the node"
+
+    def _is_lost(self, callee: str, fn: Fn) -> bool:
+        """Whether a call in Python goes to a module of the workspace that has no such function or class there."""
+        code = self.join.code
+        meant = code.meant(callee, fn.source)
+        head, *inner = parts_of(meant)
+        if head not in self.workspace.modules or not inner or head in self.workspace.interface_names:
+            return False
+        return not code.targets(callee, fn) and code.class_of(meant, fn.source, fn.scope) is None
+
+    @cached_property
+    def _namespaces(self) -> set[str]:
+        """The outermost namespaces of the workspace's own classes."""
+        every = (cls for classes in self.join.code.classes.values() for cls in classes)
+        return {parts_of(cls.name)[0] for cls in every if "::" in cls.name} - _OWN
+
+    def _unreached(self, one: Running) -> Iterator[str]:
+        """What the program is built from and, as far as can be told, never runs."""
+        for use in self.join.calls.uses:
+            path = use.fn.source.path
+            if path in one.program.files and id(use.fn) not in self._reached:
+                yield f"`{use.fn.name}` is not seen to be reached"
+
+    @cached_property
+    def _reached(self) -> set[int]:
+        return {number for one in self.join.running() for number in one.functions}
+
+    def _is_node(self, value: Expr, fn: Fn) -> bool:
+        calls = self.join.calls
+        if value.kind in ("keyword", "list") and value.parts:
+            return any(self._is_node(part, fn) for part in value.parts)
+        if value.kind == "name" and value.text in ("this", "self", "*this"):
+            return bool(calls.own_kinds(fn) & {"node", "handle"})
+        if value.kind == "other":
+            return value.text == "*this" and bool(calls.own_kinds(fn) & {"node", "handle"})
+        if value.kind == "call" and tail(value.text) in ("shared_from_this", "getNodeHandle", "getPrivateNodeHandle"):
+            return True
+        if value.kind in ("name", "call"):
+            return bool(calls.kinds_of(self.join.code.type_of(value, fn), fn) & {"node", "handle"})
+        return False
+
+    def _unnamed(self, functions: list[Fn]) -> Iterator[str]:
+        inside = {id(fn) for fn in functions}
+        for site in self.join.sites.endpoints:
+            if id(site.use.fn) in inside and any(value.text is None for value in site.names):
+                yield f"the name of a {site.role} is not known"
+        for use in self.join.sites.wrapped:
+            if id(use.fn) in inside:
+                yield "names are made in a wrapper"
+                return
+
+    def _unlisted(self, functions: list[Fn]) -> Iterator[str]:
+        inside = {id(fn) for fn in functions}
+        for fn in functions:
+            for call in fn.facts.calls:
+                if tail(call.callee) in _WHOLE or any(_says(argument, _OPTIONS) for argument in call.arguments):
+                    yield f"`{tail(call.callee)}` asks for more than one parameter"
+            for name, _, _ in made_in(fn, self.join.code):
+                if tail(name) in _WHOLE:
+                    yield f"`{tail(name)}` asks for more than one parameter"
+        for use in self.join.calls.uses:
+            if id(use.fn) not in inside:
+                continue
+            if use.row.framework in _ASKING:
+                yield f"`{use.row.framework}` asks for parameters of its own"
+            if use.row.does == "parameter":
+                values = self.join.values.of(self.join.calls.argument(use, use.row.topic), use.fn, use.call.line)
+                if not values or any(not value.text for value in values):
+                    yield "the name of a parameter is not known"
+
+
+def _says(value: Expr, words: tuple[str, ...]) -> bool:
+    return any(word in value.text for word in words) or any(_says(part, words) for part in value.parts)

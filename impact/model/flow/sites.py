@@ -1,0 +1,781 @@
+"""Publishers, subscribers, services, actions, timers, parameters and publish statements, as the code alone tells them.
+
+What belongs to which node, and what its names become there, is told by nodes.py and join.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+from msgspec import structs
+
+from ...facts.flow import Expr
+from .calls import Calls, Use
+from .code import Code, Fn, Variable, around, tail
+from .graph import Role
+from .types import interface_of, interface_of_header, parsed, split
+from .values import Value, Values, beside
+
+_HANDLES = frozenset(("handle", "image_transport"))
+_ROLES: dict[str, Role] = {
+    "publisher": "publisher",
+    "subscriber": "subscriber",
+    "server": "server",
+    "client": "client",
+    "action server": "action server",
+    "action client": "action client",
+}
+
+
+class Site(NamedTuple):
+    """Where code makes an endpoint. names: what its name may be, before the node's own; prefix: the namespace of the
+    node handle (`~` for private ones). callbacks: the bodies that may be called; reason: why there are none though one
+    is given. implied: the framework fixes the name."""
+
+    role: Role
+    use: Use
+    names: tuple[Value, ...]
+    written: str
+    prefix: str
+    type: str
+    callbacks: tuple[Fn, ...] = ()
+    variable: Variable | None = None
+    reason: str = ""
+    implied: bool = False
+
+
+class Statement(NamedTuple):
+    """A publish statement. sites: the publishers it may use. through: the function of the code's own called `publish`
+    that it calls, which holds the statement that sends."""
+
+    use: Use
+    sites: tuple[Site, ...]
+    type: str
+    expression: str
+    reason: str = ""
+    through: str = ""
+
+
+class TimerSite(NamedTuple):
+    """Where code makes a timer."""
+
+    use: Use
+    period: str
+    callbacks: tuple[Fn, ...]
+
+
+def _words(value: Expr) -> Iterator[str]:
+    yield value.text
+    for part in value.parts:
+        yield from _words(part)
+
+
+def _place_in_row(value: Expr) -> tuple[Expr, int] | None:
+    """What is walked through, and the place in each of its rows, of `rows[each][1]`."""
+    if value.kind == "index" and len(value.parts) == 2 and value.parts[0].kind == "index":
+        walked, place = value.parts[0].parts[:1], value.parts[1]
+        if walked and place.kind == "number" and place.text.isdigit():
+            return walked[0], int(place.text)
+    return None
+
+
+def shown(value: Expr | None) -> str:
+    """An expression for people, near to how it is written."""
+    if value is None:
+        return ""
+    parts = [shown(part) for part in value.parts]
+    if value.kind == "text":
+        return f'"{value.text}"'
+    if value.kind in ("call", "make"):
+        return f"{value.text}({', '.join(parts)})"
+    if value.kind == "join":
+        return " + ".join(parts)
+    if value.kind == "choice":
+        return f"{parts[0]} ? {parts[1]} : {parts[2]}" if len(parts) == 3 else value.text
+    if value.kind == "index":
+        return f"{parts[0]}[{', '.join(parts[1:])}]" if parts else value.text
+    if value.kind == "list":
+        return f"{{{', '.join(parts)}}}"
+    if value.kind == "keyword":
+        return f"{value.text}={parts[0] if parts else ''}"
+    if value.kind == "bind":
+        return f"bind({', '.join(parts)})"
+    return value.text
+
+
+class Sites:
+    """All sites of a body of code."""
+
+    def __init__(self, code: Code, calls: Calls, values: Values):
+        self.code, self.calls, self.values = code, calls, values
+
+    @cached_property
+    def endpoints(self) -> list[Site]:
+        """In the order of files and lines; rows with further endpoints give several."""
+        found: list[Site] = []
+        for use in self.calls.uses:
+            if use.row.does in _ROLES and not self.wraps(use.fn):
+                for one in self._rows(use):
+                    found.extend(self._endpoints(one))
+            elif use.row.does == "node":
+                found.extend(self._further(Site("publisher", use, (), "", "", "")))
+        return found
+
+    @property
+    def wrapped(self) -> list[Use]:
+        """Uses inside wrappers of the framework's own functions."""
+        return [use for use in self.calls.uses if use.row.does in _ROLES and self.wraps(use.fn)]
+
+    def wraps(self, fn: Fn, does: str = "") -> bool:
+        """Whether a function stands for the framework's own of the same name: its callers are the sites. does: what the
+        framework's function does, any endpoint when left out."""
+        rows = self.calls.table.calls.get(tail(fn.name), ())
+        meant = any(row.does == does if does else row.does in _ROLES for row in rows)
+        return bool(fn.facts.parameters) and meant and not fn.is_lambda
+
+    def _rows(self, use: Use) -> Iterator[Use]:
+        """The use for each row of the list that its arguments walk through together, with what the row has for them:
+        `[Subscriber(topic, type) for topic, type in rows]`."""
+        bound: dict[str, tuple[Expr, int]] = {}
+        for argument in use.call.arguments:
+            if argument.kind == "name" and argument.text in use.fn.assigned:
+                each = max(
+                    (a for a in use.fn.assigned[argument.text] if a.line <= use.call.line),
+                    key=lambda a: a.line, default=None,
+                )  # fmt: skip
+                place = _place_in_row(each.value) if each is not None else None
+                if place is not None:
+                    bound[argument.text] = place
+        rows = self.values.rows(next(iter(bound.values()))[0], use.fn) if len(bound) > 1 else []
+        if not rows or len({walked for walked, _ in bound.values()}) > 1:
+            yield use
+            return
+        for row in rows:
+            if all(place < len(row.parts) for _, place in bound.values()):
+                arguments = tuple(
+                    row.parts[bound[a.text][1]] if a.kind == "name" and a.text in bound else a
+                    for a in use.call.arguments
+                )
+                yield use._replace(call=structs.replace(use.call, arguments=arguments))
+
+    def _endpoints(self, use: Use) -> Iterator[Site]:
+        calls, row = self.calls, use.row
+        named = calls.argument(use, row.topic)
+        fixed = bool(row.topic) and isinstance(row.topic[0], str) and row.topic[0].startswith("=")
+        names = tuple(self.values.of(named, use.fn, use.call.line))
+        callbacks, reason = self._callbacks(use)
+        prefix = "" if fixed else self.prefix(use)
+        site = Site(
+            _ROLES[row.does], use, names, shown(named), prefix, self.type_of(use), callbacks,
+            self._variable(use), reason, fixed,
+        )  # fmt: skip
+        yield site
+        if row.camera_info:
+            # https://docs.ros.org/en/api/image_transport: camera_info stands beside the image's topic.
+            infos = tuple(v if v.text is None else v._replace(text=beside(v.text, "camera_info")) for v in names)
+            yield site._replace(names=infos, type="sensor_msgs/CameraInfo", implied=True)
+        yield from self._further(site)
+
+    @staticmethod
+    def _further(site: Site) -> Iterator[Site]:
+        """What the framework makes beside an endpoint or a node."""
+        words = {tail(word) for argument in site.use.call.arguments for word in _words(argument)}
+        for also in site.use.row.also:
+            if words.intersection(also.unless):
+                continue
+            role, names = _ROLES[also.role], (Value(also.topic),)
+            yield site._replace(role=role, names=names, type=also.type, callbacks=(), reason="", implied=True)
+
+    def _variable(self, use: Use) -> Variable | None:
+        kept = self.calls.kept_in(use)
+        if kept is not None:
+            return kept
+        if use.row.on and "filter" in use.row.on:
+            receiver = self.calls.receiver_of(use)
+            return self.code.identity(receiver, use.fn) if receiver else None
+        # `pubs.push_back(nh.advertise(...))`, `pubs.emplace(name, create_publisher(...))`
+        for call in use.fn.facts.calls:
+            if tail(call.callee) in ("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"):
+                for argument in call.arguments:
+                    if (
+                        argument.kind in ("call", "make")
+                        and argument.parts == use.call.arguments
+                        and "." in call.callee
+                    ):
+                        return self.code.identity(call.callee.rpartition(".")[0], use.fn)
+        return None
+
+    def type_of(self, use: Use, values: Values | None = None) -> str:
+        """The interface an endpoint is of, as `package/Name`; `*` for any, empty when it is not known. values: what
+        expressions are worth where it runs."""
+        code, row, fn, values = self.code, use.row, use.fn, values or self.values
+        for spot in row.type:
+            text = ""
+            if isinstance(spot, str) and spot.startswith("="):
+                return spot[1:]
+            if isinstance(spot, str) and spot.startswith("<"):
+                text = self.calls.template_argument(use, int(spot.strip("<>")))
+                if not text and row.does == "subscriber":
+                    text = self._parameter_type(use)
+                if not text and row.does == "server":
+                    text = self._parameter_type(use)
+            elif spot == "of receiver":
+                kind = code.type_of(Expr("name", self.calls.receiver_of(use)), fn)
+                if tail(kind.name) == "SubscriberFilter":
+                    return "sensor_msgs/PointCloud2" if "point_cloud" in kind.name else "sensor_msgs/Image"
+                text = kind.arguments[0] if kind.arguments else ""
+            elif isinstance(spot, str) and spot.startswith("argument "):
+                place = int(spot[9:])
+                if place < len(use.call.arguments):
+                    text = code.type_of(use.call.arguments[place], fn).name
+            else:
+                value = self.calls.argument(use, (spot,))
+                if value is not None and value.kind == "text":
+                    parts = value.text.split("/")
+                    return f"{parts[0]}/{parts[-1]}" if len(parts) > 1 else value.text
+                if value is not None and value.kind in ("name", "call"):
+                    text = value.text
+                    if fn.source.facts.language == "python":
+                        text = self._python_type(value, fn, values)
+                        if text == "*" or "/" in text:
+                            return text
+            if text:
+                kind = code.meant_type(text, fn.source, fn.scope)
+                if tail(kind.name) in ("ShapeShifter", "AnyMsg", "SerializedMessage"):
+                    return "*"
+                known = interface_of(f"{kind.name}<{', '.join(kind.arguments)}>" if kind.arguments else kind.name)
+                if not known:
+                    known = self._in_namespaces(kind.name, fn) or self._in_scope(kind.name, fn)
+                if known:
+                    return known
+        if not use.row.type and use.row.does in _ROLES:
+            return ""
+        options = self.calls.argument(use, (0,))
+        if options is not None and options.kind == "name":
+            for _, call in code.results.get(code.identity(options.text, fn), ()):
+                if "Options::" in call.callee and call.types:
+                    return interface_of(code.meant_type(split(call.types)[0], fn.source, fn.scope).name)
+        kept = self.calls.kept_in(use)
+        if kept is not None:
+            kind = code.type_of_variable(kept, fn)
+            if kind.arguments:
+                return interface_of(code.meant_type(kind.arguments[0], fn.source, fn.scope).name)
+        return ""
+
+    def _in_namespaces(self, name: str, fn: Fn) -> str:
+        """A type's interface by `using namespace sensor_msgs` and `using namespace std_msgs::msg`."""
+        if fn.source.facts.language != "cpp" or ("::" in name and not name.startswith("msg::")):
+            return ""
+        found: list[str] = []
+        for alias in self.code.aliases[fn.source.path].get("*", ()):
+            known = interface_of(f"{alias.target}::{name}")
+            if known and alias.target.endswith(("::msg", "::srv", "::action", "_msgs", "_srvs")):
+                found.append(known)
+        if len(found) > 1:
+            included = {interface_of_header(header) for header in fn.source.facts.includes}
+            found = [known for known in found if known in included] or found
+        return found[0] if found else ""
+
+    def _in_scope(self, name: str, fn: Fn) -> str:
+        """A type's interface by the namespaces around the function: `Pose` inside `namespace turtlesim`."""
+        if fn.source.facts.language != "cpp":
+            return ""
+        scope = fn.name.rpartition("::")[0]
+        while scope:
+            known = interface_of(f"{scope}::{name}")
+            if known.partition("/")[0] == fn.source.package or known.partition("/")[0].endswith(
+                ("_msgs", "_srvs", "_interfaces")
+            ):
+                return known
+            scope = scope.rpartition("::")[0]
+        return ""
+
+    def _python_type(self, value: Expr, fn: Fn, values: Values) -> str:
+        meant = self.code.meant(value.text, fn.source)
+        if interface_of(meant):
+            return meant
+        if "." not in value.text:
+            for alias in self.code.aliases[fn.source.path].get("*", ()):
+                if alias.target.endswith((".msg", ".srv", ".action")):
+                    return f"{alias.target}.{value.text}"
+        for one in values.of(value, fn):
+            if one.text and interface_of(one.text):
+                return one.text
+        by_name = self._class_by_name(value, fn, values)
+        if by_name:
+            return by_name
+        # `import std_msgs.msg` leaves the name as it is; a variable may hold the class.
+        variable = self.code.identity(value.text, fn)
+        for writer, each in self.code.writes.get(variable, ()):
+            if each.value.kind == "name":
+                found = self.code.meant(each.value.text, writer.source)
+                if interface_of(found):
+                    return found
+        return meant
+
+    def _class_by_name(self, value: Expr, fn: Fn, values: Values, depth: int = 0) -> str:
+        """The type of a class that is looked up by its name, `*` for that of whatever a topic has."""
+        if value.kind == "index" and value.parts:
+            value = value.parts[0]
+        if value.kind == "call" and tail(value.text) in ("get_message_class", "get_service_class") and value.parts:
+            return next((one.text for one in values.of(value.parts[0], fn) if one.text and "/" in one.text), "")
+        if value.kind == "call" and tail(value.text) == "get_topic_class":
+            return "*"
+        if value.kind == "name" and depth < 4:
+            for writer, each in self.code.writes.get(self.code.identity(value.text, fn), ()):
+                found = self._class_by_name(each.value, writer, values, depth + 1)
+                if found:
+                    return found
+        return ""
+
+    def _parameter_type(self, use: Use) -> str:
+        """The message type that a callback's parameter tells."""
+        callbacks, _ = self._callbacks(use)
+        for fn in callbacks:
+            for parameter in fn.facts.parameters[:1]:
+                kind = self.code.meant_type(parameter.type, fn.source, fn.scope)
+                name = kind.name if not kind.arguments else f"{kind.name}<{', '.join(kind.arguments)}>"
+                if tail(kind.name) == "MessageEvent" and kind.arguments:
+                    name = parsed(kind.arguments[0]).name
+                if name:
+                    return name
+        return ""
+
+    # Callbacks
+
+    def _callbacks(self, use: Use) -> tuple[tuple[Fn, ...], str]:
+        row = use.row
+        if not row.callback:
+            return self._joined_callbacks(use)
+        if isinstance(row.callback[0], str) and row.callback[0].startswith("="):
+            name = row.callback[0][1:]
+            owner = self.code.owner_of(use.fn)
+            return tuple(self.code.method(owner, name)) if owner else (), ""
+        value = None
+        for spot in row.callback:
+            one = self.calls.argument(use, (spot,))
+            found = self.bodies(one, use.fn, use) if one is not None else []
+            if found:
+                return tuple(found), ""
+            value = value or one
+        if value is None:
+            return self._joined_callbacks(use)
+        return (), f"the callback `{shown(value)[:80]}` is not in the workspace or not followed"
+
+    def _joined_callbacks(self, use: Use) -> tuple[tuple[Fn, ...], str]:
+        """For filters: the callbacks registered with whatever joins them."""
+        variable = self._variable(use) if use.row.does == "subscriber" else None
+        if variable is None:
+            return (), ""
+        found = list(dict.fromkeys(fn for fn in self.joins.get(variable, ())))
+        return tuple(found), ""
+
+    @cached_property
+    def joins(self) -> dict[Variable, list[Fn]]:
+        """Filters to the callbacks that get what comes through them, synchronizers and caches in between."""
+        code = self.code
+        feeds: dict[Variable, set[Variable]] = {}
+        registered: dict[Variable, list[Fn]] = {}
+        for fn in code.functions:
+            for call in fn.facts.calls:
+                last = tail(call.callee)
+                receiver = call.callee.rpartition(".")[0] if "." in call.callee else ""
+                if last == "registerCallback" and receiver and call.arguments:
+                    for argument in call.arguments[:1]:
+                        registered.setdefault(code.identity(receiver, fn), []).extend(self.bodies(argument, fn))
+                elif (
+                    last
+                    in (
+                        "connectInput",
+                        "reset",
+                        "make_shared",
+                        "make_unique",
+                        "Synchronizer",
+                        "TimeSynchronizer",
+                        "ApproximateTimeSynchronizer",
+                        "Cache",
+                        "MessageFilter",
+                    )
+                    or call.target
+                ):
+                    target = receiver if last in ("connectInput", "reset") else call.target
+                    if target:
+                        fed = feeds.setdefault(code.identity(target, fn), set())
+                        fed.update(self._named(call.arguments, fn))
+            for each in fn.facts.assignments:
+                if each.target and each.value.kind in ("make", "list", "call"):
+                    feeds.setdefault(code.identity(each.target, fn), set()).update(self._named(each.value.parts, fn))
+        found: dict[Variable, list[Fn]] = {}
+        for joint, bodies in registered.items():
+            queue, seen = [joint], {joint}
+            while queue:
+                one = queue.pop()
+                found.setdefault(one, []).extend(bodies)
+                for fed in feeds.get(one, ()):
+                    if fed not in seen and len(seen) < 40:
+                        seen.add(fed)
+                        queue.append(fed)
+        return found
+
+    def _named(self, arguments: tuple[Expr, ...], fn: Fn, depth: int = 0) -> Iterator[Variable]:
+        for argument in arguments:
+            if argument.kind == "name":
+                yield self.code.identity(argument.text, fn)
+            elif depth < 3 and argument.kind in ("list", "make", "call", "keyword"):
+                yield from self._named(argument.parts, fn, depth + 1)
+
+    def bodies(self, value: Expr, fn: Fn, use: Use | None = None, depth: int = 0) -> list[Fn]:
+        """The functions of the code that a callback expression may call."""
+        code = self.code
+        if depth > 5:
+            return []
+        if value.kind == "lambda":
+            found = code.by_name.get((fn.source.path, value.text))
+            return [found] if found else []
+        if value.kind == "bind" and value.parts:
+            return self.bodies(value.parts[0], fn, use, depth + 1)
+        if value.kind in ("keyword", "make", "list") and value.parts:
+            for part in value.parts:
+                found = self.bodies(part, fn, use, depth + 1)
+                if found:
+                    return found
+            return []
+        if value.kind == "choice":
+            return [one for part in value.parts[1:] for one in self.bodies(part, fn, use, depth + 1)]
+        if value.kind == "function" or (value.kind == "name" and "::" in value.text):
+            found = self._function(value.text, fn)
+            if found:
+                return self._fitting(found, use)
+        if value.kind in ("name", "function"):
+            variable = code.identity(value.text, fn)
+            for writer, each in code.writes.get(variable, ()):
+                if each.value != value:
+                    found = self.bodies(each.value, writer, use, depth + 1)
+                    if found:
+                        return found
+            found = self._function(value.text, fn)
+            if found:
+                return self._fitting(found, use)
+            return self._passed_bodies(value.text, fn, use, depth)
+        if value.kind == "call":
+            if tail(value.text) in ("forward", "move", "bind", "ref", "function") and value.parts:
+                return self.bodies(value.parts[0], fn, use, depth + 1)
+            for part in value.parts:
+                if part.kind in ("function", "lambda", "bind"):
+                    return self.bodies(part, fn, use, depth + 1)
+            for target in code.targets(value.text, fn):
+                for each in target.facts.assignments:
+                    if each.operator == "return":
+                        found = self.bodies(each.value, target, use, depth + 1)
+                        if found:
+                            return found
+        return []
+
+    def _passed_bodies(self, name: str, fn: Fn, use: Use | None, depth: int) -> list[Fn]:
+        from .code import parameter_of
+
+        for one in self.code.chain(fn):
+            place = parameter_of(one, name)
+            if place is None:
+                continue
+            found: list[Fn] = []
+            callers = list(self.code.callers.get(id(one), ()))
+            for caller, call in callers:
+                positional = [argument for argument in call.arguments if argument.kind != "keyword"]
+                if place[0] < len(positional):
+                    found += self.bodies(positional[place[0]], caller, use, depth + 1)
+            owner = self.code.owner_of(one)
+            if owner is not None:
+                for caller, arguments, _ in self.code.constructions.get(owner.name, ()):
+                    if place[0] < len(arguments):
+                        found += self.bodies(arguments[place[0]], caller, use, depth + 1)
+            return list(dict.fromkeys(found))
+        return []
+
+    def _function(self, name: str, fn: Fn) -> list[Fn]:
+        code = self.code
+        if name.startswith("this."):
+            owner = code.owner_of(fn)
+            if owner is None:
+                return []
+            return code.method(owner, tail(name)) or code.overrides(owner, tail(name))
+        if "::" in name:
+            cls = code.class_of(around(name), fn.source, fn.scope)
+            if cls is not None:
+                return code.method(cls, tail(name)) or code.overrides(cls, tail(name))
+            own = code.owner_of(fn)
+            # `&NodeT::callback` inside a template, `&Outer::callback` where only the definition tells the class.
+            found = [f for f in code.by_tail.get(tail(name), ()) if tail(f.facts.owner) == tail(around(name))]
+            if not found and own is not None:
+                found = code.method(own, tail(name)) if tail(around(name)) == tail(own.name) else []
+            return found or [f for f in code.targets(name, fn) if not f.facts.owner]
+        if "." in name:
+            return code.targets(name, fn)
+        found = code.targets(name, fn)
+        if found:
+            return found
+        owner = code.owner_of(fn)
+        return code.method(owner, name) if owner is not None else []
+
+    def _fitting(self, found: list[Fn], use: Use | None) -> list[Fn]:
+        """Of overloads those whose first parameter is of the message's type."""
+        if use is None or len(found) < 2 or not use.call.types:
+            return found
+        wanted = interface_of(
+            self.code.meant_type(self.calls.template_argument(use, 0), use.fn.source, use.fn.scope).name
+        )
+        fitting = [
+            fn
+            for fn in found
+            if fn.facts.parameters
+            and interface_of(self.code.meant_type(fn.facts.parameters[0].type, fn.source, fn.scope).name) == wanted
+        ]
+        return fitting or found
+
+    # Namespaces of node handles
+
+    def prefix(self, use: Use) -> str:
+        """The namespace of the handle that a name is given to: `~` for a private one, `` for the node's own."""
+        row = use.row
+        if row.first == "node" and use.call.arguments:
+            handle = next((a for a in use.call.arguments if self.calls.is_node(a, use.fn)), None)
+            return self.handle(handle, use.fn) if handle is not None else ""
+        if row.does in ("action server", "action client") and use.call.arguments:
+            handle = use.call.arguments[0]
+            return self.handle(handle, use.fn) if self.calls.is_node(handle, use.fn) else ""
+        receiver = self.calls.receiver_of(use)
+        if row.framework in ("roscpp", "image_transport") and receiver:
+            if not receiver.endswith("()"):
+                return self.handle(Expr("name", receiver), use.fn)
+            made = receiver.removesuffix("()")
+            near = [call for call in use.fn.facts.calls if call.callee == made]
+            near.sort(key=lambda call: abs(call.line - use.call.line))
+            return self.handle(Expr("call", made, near[0].arguments if near else ()), use.fn)
+        return ""
+
+    def handle(self, value: Expr, fn: Fn, depth: int = 0) -> str:
+        """The namespace of a node handle, or of a transport that was made with one."""
+        if depth > 6:
+            return ""
+        last = tail(value.text)
+        if value.kind == "call":
+            if "PrivateNodeHandle" in last or last in ("getPrivateNodeHandle", "private_node_handle"):
+                return "~"
+            if self.calls.kinds_of(self.code.meant_type(value.text, fn.source, fn.scope), fn) & _HANDLES:
+                return self._made_handle(value.parts, fn, depth)
+            for target in self.code.targets(value.text, fn):
+                for each in target.facts.assignments:
+                    if each.operator == "return":
+                        return self.handle(each.value, target, depth + 1)
+            return ""
+        if value.kind == "make":
+            return self._made_handle(value.parts, fn, depth)
+        if value.kind == "list":
+            return self._made_handle(value.parts, fn, depth)
+        if value.kind != "name":
+            return ""
+        variable = self.code.identity(value.text, fn)
+        for writer, each in self.code.writes.get(variable, ()):
+            if each.value.kind in ("make", "list", "call", "name", "text") and each.value != value:
+                if each.value.kind == "text":
+                    return self._made_handle((each.value,), writer, depth)
+                return self.handle(each.value, writer, depth + 1)
+        for caller, call in self.code.results.get(variable, ()):
+            if tail(call.callee) in ("make_shared", "make_unique"):
+                return self._made_handle(call.arguments, caller, depth)
+        for other in self._resets.get(variable, ()):
+            return self.handle(other[1], other[0], depth + 1)
+        if variable.kind == "local":
+            from .code import parameter_of
+
+            place = parameter_of(fn, variable.name)
+            if place is not None:
+                owner = self.code.owner_of(fn)
+                makers = self.code.constructions.get(owner.name, ()) if owner is not None else ()
+                for caller, arguments, _ in [
+                    *((c, call.arguments, 0) for c, call in self.code.callers.get(id(fn), ())), *makers,
+                ]:  # fmt: skip
+                    if place[0] < len(arguments):
+                        return self.handle(arguments[place[0]], caller, depth + 1)
+        if "priv" in value.text.lower() or tail(value.text).strip("_") in ("pnh", "nh_p"):
+            return "~"
+        return ""
+
+    @cached_property
+    def _resets(self) -> dict[Variable, list[tuple[Fn, Expr]]]:
+        found: dict[Variable, list[tuple[Fn, Expr]]] = {}
+        for fn in self.code.functions:
+            for call in fn.facts.calls:
+                if tail(call.callee) == "reset" and "." in call.callee and call.arguments:
+                    variable = self.code.identity(call.callee.rpartition(".")[0], fn)
+                    found.setdefault(variable, []).append((fn, call.arguments[0]))
+        return found
+
+    def _made_handle(self, arguments: tuple[Expr, ...], fn: Fn, depth: int) -> str:
+        if not arguments:
+            return ""
+        first = arguments[0]
+        if first.kind in ("text", "join"):
+            return self.values.of(first, fn)[0].text or ""
+        base = self.handle(first, fn, depth + 1)
+        if len(arguments) > 1 and (self.calls.textual(arguments[1], fn)):
+            below = self.values.of(arguments[1], fn)[0].text
+            if below:
+                return f"{base}/{below}" if base and base != "~" else f"~{below}" if base == "~" else below
+        if first.kind == "name" and not self.calls.is_node(first, fn):
+            named = self.values.of(first, fn)[0].text
+            if named is not None and self.calls.textual(first, fn):
+                return named
+        return base
+
+    # Publish statements
+
+    @cached_property
+    def kept(self) -> dict[Variable, list[Site]]:
+        """Publishers by the variable that keeps them."""
+        found: dict[Variable, list[Site]] = {}
+        for site in self.endpoints:
+            if site.variable is not None and site.role == "publisher":
+                found.setdefault(site.variable, []).append(site)
+        return found
+
+    @cached_property
+    def made_in(self) -> dict[int, list[Site]]:
+        """Sites by the id() of the function that makes and returns them."""
+        found: dict[int, list[Site]] = {}
+        for site in self.endpoints:
+            if site.use.call.returned:
+                found.setdefault(id(site.use.fn), []).append(site)
+        return found
+
+    @cached_property
+    def statements(self) -> list[Statement]:
+        """All publish statements, in the order of files and lines."""
+        found: list[Statement] = []
+        for use in self.calls.uses:
+            if use.row.does == "publish":
+                statement = self._statement(use)
+                if statement is not None:
+                    found.append(statement)
+            elif use.row.does == "publish by name":
+                named = self.calls.argument(use, use.row.topic)
+                names = tuple(self.values.of(named, use.fn, use.call.line))
+                site = Site("publisher", use, names, shown(named), "", "*")
+                found.append(Statement(use, (site,), "*", shown(self.calls.argument(use, use.row.message))))
+        found.extend(self._through(found))
+        found.sort(key=lambda one: (one.use.fn.source.path, one.use.call.line, one.use.call.column))
+        return found
+
+    def _through(self, direct: list[Statement]) -> Iterator[Statement]:
+        """Calls of the code's own methods that are called as the framework's, and publish."""
+        inside: dict[int, list[Statement]] = {}
+        for statement in direct:
+            inside.setdefault(id(statement.use.fn), []).append(statement)
+        names = {name for name, rows in self.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
+        for fn in self.code.functions:
+            for call in fn.facts.calls:
+                if tail(call.callee) not in names:
+                    continue
+                for target in self.code.targets(call.callee, fn):
+                    inner = inside.get(id(target)) or [
+                        statement
+                        for further in target.facts.calls
+                        for last in self.code.targets(further.callee, target)
+                        for statement in inside.get(id(last), ())
+                    ]
+                    if inner:
+                        sites = tuple(dict.fromkeys(site for statement in inner for site in statement.sites))
+                        types = {statement.type for statement in inner}
+                        use = Use(fn, inner[0].use.row, call)
+                        kind = types.pop() if len(types) == 1 else ""
+                        message = shown(call.arguments[0]) if call.arguments else ""
+                        yield Statement(use, sites, kind, message, "", target.name)
+                        break
+
+    def _statement(self, use: Use) -> Statement | None:
+        receiver = self.calls.receiver_of(use)
+        message = self.calls.argument(use, use.row.message)
+        expression = shown(message)
+        if not receiver:
+            return None
+        sites = tuple(dict.fromkeys(self.publishers(receiver, use.fn)))
+        if sites:
+            types = {site.type for site in sites if site.type}
+            return Statement(use, sites, types.pop() if len(types) == 1 else "", expression)
+        kind = self.code.type_of(Expr("name", receiver), use.fn)
+        if not use.sure and kind.name:
+            return None  # of a class that is not a framework's
+        if not use.sure and not self._plausible(receiver, use):
+            return None
+        known = (
+            interface_of(self.code.meant_type(kind.arguments[0], use.fn.source, use.fn.scope).name)
+            if kind.arguments
+            else ""
+        )
+        return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be told")
+
+    def _plausible(self, receiver: str, use: Use) -> bool:
+        return len(use.call.arguments) <= 2
+
+    def publishers(self, receiver: str, fn: Fn, depth: int = 0) -> Iterator[Site]:
+        """The publishers that an expression may stand for: kept there, passed in, or copied from elsewhere."""
+        if depth > 5:
+            return
+        code = self.code
+        if receiver.endswith("()"):
+            for target in code.targets(receiver.removesuffix("()"), fn):
+                for each in target.facts.assignments:
+                    if each.operator == "return" and each.value.kind == "name":
+                        yield from self.publishers(each.value.text, target, depth + 1)
+                yield from (site for site in self.made_in.get(id(target), ()) if site.role == "publisher")
+            if tail(receiver.removesuffix("()")) in ("get", "lock", "at", "value", "second", "front", "back"):
+                yield from self.publishers(around(receiver.removesuffix("()")), fn, depth + 1)
+            return
+        variable = code.identity(receiver, fn)
+        found = self.kept.get(variable)
+        if found:
+            yield from found
+        for writer, each in code.writes.get(variable, ()):
+            if each.value.kind in ("name", "index", "call") and each.operator in ("=", "for"):
+                text = (
+                    each.value.text
+                    if each.value.kind == "name"
+                    else shown(each.value.parts[0])
+                    if each.value.parts
+                    else ""
+                )
+                if each.value.kind == "call":
+                    text = (
+                        around(each.value.text)
+                        if tail(each.value.text) in ("at", "value", "get")
+                        else f"{each.value.text}()"
+                    )
+                if text and text != receiver:
+                    yield from self.publishers(text, writer, depth + 1)
+        if variable.kind == "local":
+            from .code import parameter_of
+
+            for one in code.chain(fn):
+                place = parameter_of(one, variable.name)
+                if place is None:
+                    continue
+                for caller, arguments in [
+                    *((caller, call.arguments) for caller, call in code.callers.get(id(one), ())),
+                    *code.bound.get(id(one), ()),
+                ]:  # fmt: skip
+                    positional = [argument for argument in arguments if argument.kind != "keyword"]
+                    if place[0] < len(positional) and positional[place[0]].kind == "name":
+                        yield from self.publishers(positional[place[0]].text, caller, depth + 1)
+
+    # Timers
+
+    @cached_property
+    def timers(self) -> list[TimerSite]:
+        """All timers."""
+        return [
+            TimerSite(use, shown(self.calls.argument(use, use.row.period)), self._callbacks(use)[0])
+            for use in self.calls.uses
+            if use.row.does == "timer"
+        ]

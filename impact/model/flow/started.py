@@ -1,0 +1,121 @@
+"""Launch files in the message-flow graph: where a workspace has them, and nodes as a launch starts them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from ...facts import flow_launch
+from ...facts.flow_launch import LaunchFile, ParameterFile
+from ..launch import Launched, Remap, Started, follow
+from ..names_ros import NameRefused, Rule, ros1_remapped, ros2_remapped
+from ..workspace import Workspace
+
+
+class InWorkspace:
+    """Launch and parameter files of a workspace, by package and path as they are installed.
+
+    A path in a package's share folder is looked for in the package's own folder, which is where nearly all install
+    from; CMake's install rules are asked for the others.
+    """
+
+    def __init__(self, workspace: Workspace):
+        self.workspace = workspace
+        self._launch: dict[str, LaunchFile] = {}
+        self._parameters: dict[str, ParameterFile] = {}
+
+    def place(self, package: str, path: str) -> str:
+        """The workspace path of an installed file, empty for what is not there."""
+        owner = self.workspace.packages.get(package)
+        if owner is None:
+            return ""
+        base = f"{owner.path}/" if owner.path else ""
+        if f"{base}{path}" in owner.files:
+            return f"{base}{path}"
+        name = path.rpartition("/")[2]
+        for install in owner.build.installs:
+            where = install.destination.rstrip("/").rpartition("/")[2]
+            for item in install.items:
+                source = f"{item.rstrip('/')}/{path.removeprefix(where + '/')}" if install.kind == "directory" else item
+                if source in owner.files and source.rpartition("/")[2] == name:
+                    return source
+        found = [file for file in owner.files if file.endswith(f"/{path}")]
+        return found[0] if len(found) == 1 else ""
+
+    def launch(self, package: str, path: str) -> LaunchFile | None:
+        """The facts of a launch file; None for what is not there or is no launch file by its name."""
+        place = self.place(package, path)
+        kind = launch_kind(place)
+        if not place or not kind:
+            return None
+        known = self._launch.get(place)
+        if known is None:
+            known = self._launch[place] = flow_launch.extract(self.workspace.read(place), kind)
+        return known
+
+    def parameters(self, package: str, path: str) -> ParameterFile | None:
+        """The facts of a parameter file; None for what is not there."""
+        place = self.place(package, path)
+        if not place:
+            return None
+        known = self._parameters.get(place)
+        if known is None:
+            known = self._parameters[place] = flow_launch.parameters(self.workspace.read(place))
+        return known
+
+
+def launch_kind(path: str) -> str:
+    """The kind of launch file by a path's name, empty for none."""
+    name = path.rpartition("/")[2].lower()
+    if name.endswith(".py"):
+        return "launch_python"
+    if name.endswith((".yaml", ".yml")):
+        return "launch_yaml"
+    return "launch_xml" if name.endswith((".launch", ".xml", ".test")) else ""
+
+
+def launched(workspace: Workspace, path: str, arguments: Mapping[str, str]) -> Launched:
+    """All that a launch file of the workspace starts. path: relative to the workspace's root."""
+    owner = workspace.discovered.owner(path)
+    package, inner = "", path
+    for name, each in workspace.packages.items():
+        if owner is not None and each.path == owner.path:
+            package, inner = name, path[len(each.path) :].lstrip("/")
+    return follow(package, inner, InWorkspace(workspace), arguments, generation=workspace.ros)
+
+
+class Instance(NamedTuple):
+    """A node as a launch starts it. name: full. settings: values of its parameters. uncertain: why its name, or whether
+    it is started at all, is not sure."""
+
+    started: Started
+    name: str
+    settings: Mapping[str, str]
+    remaps: tuple[Remap, ...]
+    uncertain: tuple[str, ...]
+
+    def remapped(self, name: str, ros: int, kind: str = "topic") -> str:
+        """A name as the code has it, after the remappings of this start; full."""
+        pairs = [(r.old.value, r.new.value) for r in self.remaps if r.old.value is not None and r.new.value is not None]
+        if ros == 1:
+            return ros1_remapped(name, self.name, pairs)
+        namespace, _, own = self.name.rpartition("/")
+        rules = []
+        for old, new in pairs:
+            node, colon, match = old.partition(":")
+            rules.append(Rule(match if colon else old, new, node if colon else ""))
+        return ros2_remapped(name, own, namespace or "/", rules, kind)
+
+
+def instances(all_started: Launched, own_name: str, started: Started) -> Instance:
+    """A start of a node whose code calls itself own_name (without a namespace)."""
+    name = started.name.value or own_name
+    namespace = started.namespace.value or "/"
+    full = f"{namespace.rstrip('/')}/{name}"
+    values = {key: setting.text.value for key, setting in all_started.values(started, full).items()}
+    settings = {key: value for key, value in values.items() if value is not None}
+    uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
+    return Instance(started, full, settings, started.remaps, uncertain)
+
+
+__all__ = ["InWorkspace", "Instance", "NameRefused", "instances", "launch_kind", "launched"]

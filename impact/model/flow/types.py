@@ -1,0 +1,143 @@
+"""Types as sources write them: what stands behind pointers, qualifiers and template arguments, and message types."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import NamedTuple
+
+_QUALIFIERS = re.compile(
+    r"\b(?:const|constexpr|static|mutable|volatile|inline|extern|typename|struct|class|explicit|virtual|thread_local)\b"
+)
+_POINTERS = frozenset(
+    ("shared_ptr", "unique_ptr", "weak_ptr", "scoped_ptr", "optional", "intrusive_ptr", "reference_wrapper", "Optional",
+     "atomic", "RealtimeBox", "lock_guard")
+)  # fmt: skip
+_CONTAINERS = frozenset(
+    ("vector", "list", "deque", "array", "set", "unordered_set", "map", "unordered_map", "pair", "List", "Dict")
+)
+_INNER = frozenset(
+    ("SharedPtr", "ConstSharedPtr", "UniquePtr", "ConstUniquePtr", "WeakPtr", "ConstWeakPtr", "Ptr", "ConstPtr",
+     "SharedConstPtr", "ConstRef")
+)  # fmt: skip
+_MESSAGE_ENDINGS = ("ConstSharedPtr", "ConstPtr", "SharedPtr", "Ptr")
+_SPACE = re.compile(r"\s+")
+_PIECES = re.compile(r"[<>,()]")
+
+
+class Type(NamedTuple):
+    """name: qualified as written, without template arguments. arguments: template arguments as written."""
+
+    name: str
+    arguments: tuple[str, ...] = ()
+
+
+UNKNOWN = Type("")
+
+
+@lru_cache(maxsize=20_000)
+def parsed(text: str) -> Type:
+    """What a type is of once qualifiers, references, smart pointers, `::SharedPtr` and containers are taken off.
+
+    text: in C++ or Python. Gives UNKNOWN for `auto` and what is no type.
+    """
+    text = _QUALIFIERS.sub(" ", text).replace("&", " ").replace("*", " ").strip()
+    text = _SPACE.sub(" ", text).removeprefix("::")
+    if not text or text in ("auto", "void", "decltype(auto)"):
+        return UNKNOWN
+    head, arguments, rest = _template(text)
+    parts = rest.split("::") if rest else []
+    if parts and parts[-1].strip() in _INNER:
+        rest = "::".join(parts[:-1])
+    name = head + rest if not rest or rest.startswith("::") else head
+    if not arguments and name.rpartition("::")[2] in _INNER:
+        name = name.rpartition("::")[0]
+    bare = name.rpartition("::")[2].rpartition(".")[2]
+    if arguments and not rest.strip(":"):
+        if bare in _POINTERS:
+            return parsed(arguments[0])
+        if bare in _CONTAINERS:
+            return parsed(arguments[-1] if bare in ("map", "unordered_map", "pair", "Dict") else arguments[0])
+    return Type(name.replace(" ", ""), arguments)
+
+
+def _template(text: str) -> tuple[str, tuple[str, ...], str]:
+    """`a::b<c, d>::e` as `a::b`, (`c`, `d`), `::e`."""
+    start = text.find("<")
+    if start < 0:
+        bracket = text.find("[")
+        if bracket > 0 and text.endswith("]"):
+            return text[:bracket].strip(), tuple(split(text[bracket + 1 : -1])), ""
+        return text, (), ""
+    depth = 0
+    for at in range(start, len(text)):
+        if text[at] == "<":
+            depth += 1
+        elif text[at] == ">" and text[at - 1] != "-":
+            depth -= 1
+            if depth == 0:
+                return text[:start].strip(), tuple(split(text[start + 1 : at])), text[at + 1 :].strip()
+    return text[:start].strip(), tuple(split(text[start + 1 :])), ""
+
+
+def split(text: str) -> list[str]:
+    """The pieces between the commas that stand in no bracket."""
+    found, depth, start = [], 0, 0
+    for at, character in enumerate(text):
+        if character in "<([{":
+            depth += 1
+        elif character in ")]}" or (character == ">" and text[at - 1 : at] != "-"):
+            depth -= 1
+        elif character == "," and depth == 0:
+            found.append(text[start:at].strip())
+            start = at + 1
+    last = text[start:].strip()
+    return [*found, last] if last or found else found
+
+
+_HEADER = re.compile(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)\.h(?:pp)?\Z")
+
+
+def interface_of_header(header: str) -> str:
+    """`package/Name` of the interface that a generated header is of: `sensor_msgs/Image.h`,
+    `sensor_msgs/msg/camera_info.hpp`; empty for a path of another shape."""
+    found = _HEADER.match(header)
+    if found is None:
+        return ""
+    name = found[2]
+    if name.islower():
+        name = "".join(part.capitalize() for part in name.split("_"))
+    return f"{found[1]}/{name}"
+
+
+_SUFFIXES = re.compile(r"(?:_<.*>|<.*>)\Z")
+_KINDS = {"msg": "", "srv": "", "action": ""}
+
+
+def interface_of(name: str, packages=None) -> str:
+    """`package/Name` of a message, service or action type, by its qualified name in C++ or Python; empty when the name
+    does not tell a package.
+
+    `std_msgs::msg::String`, `std_msgs::String_<A>`, `std_msgs.msg.String` all give `std_msgs/String`; pointers,
+    `::Request`, `::Goal` and `sensor_msgs::ImageConstPtr` are taken off. packages: whether something is a package; all
+    that looks like one when left out.
+    """
+    kind = parsed(name)
+    parts = [part for part in _SUFFIXES.sub("", kind.name).replace("::", ".").split(".") if part]
+    if parts and parts[-1] in ("Request", "Response", "Goal", "Result", "Feedback", "Impl", *_INNER) and len(parts) > 2:
+        parts = parts[:-1]
+    if parts and parts[-1] not in _MESSAGE_ENDINGS:
+        for ending in _MESSAGE_ENDINGS:
+            if parts[-1].endswith(ending):
+                parts[-1] = parts[-1].removesuffix(ending)
+                break
+    if len(parts) >= 3 and parts[-2] in _KINDS:
+        return f"{parts[-3]}/{parts[-1]}"
+    if (
+        len(parts) == 2
+        and parts[1][:1].isupper()
+        and parts[0][:1].islower()
+        and (packages is None or packages(parts[0]))
+    ):
+        return f"{parts[0]}/{parts[1]}"
+    return ""

@@ -1,0 +1,428 @@
+"""What an expression may be worth: strings from literals, constants, members, arguments and defaults of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import product
+from typing import NamedTuple
+
+from ...facts.flow import Call, Expr
+from .arguments import CommandLine
+from .calls import Calls, Use
+from .code import Fn, Variable, parameter_of, parts_of, tail
+from .graph import How
+
+NODE, NAMESPACE = "{node}", "{ns}"
+"""Stand in a value for the name and the namespace of the node that evaluates it (ROS 2 writes them so in names)."""
+_MOST = 12
+_DEEPEST = 12
+# Calls that give what they are called on, or their first argument, as a string.
+_SAME = frozenset(
+    ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
+     "get_value", "to_string", "as_int", "as_bool", "as_double")
+)  # fmt: skip
+_OF_FIRST = frozenset(("resolveName", "resolve_name", "resolve", "string", "str", "String", "move", "forward",
+                       "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name", "resolve_service_name",
+                       "resolve_topic_or_service_name"))  # fmt: skip
+# What is least certain of a text that is put together, first.
+_LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
+_PUT = frozenset(("push_back", "emplace_back", "append"))
+# Functions that give a topic's type, and its name beside it.
+_TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
+_NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
+_NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
+
+
+class Value(NamedTuple):
+    """text: what it is worth, None when it is not known; reason says why then. parameter: whose default it is."""
+
+    text: str | None
+    how: How = "literal"
+    reason: str = ""
+    parameter: str = ""
+
+
+class Values:
+    """Evaluates expressions in the functions of a body of code."""
+
+    def __init__(
+        self,
+        calls: Calls,
+        settings: Mapping[str, str] | None = None,
+        arguments: Sequence[str] | None = None,
+        way: Mapping[int, Call] | None = None,
+    ):
+        """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`).
+        arguments: of the command line, without the program's name; None where they are not known. way: the only call
+        through which a function is reached, by the function's id()."""
+        self.calls, self.code = calls, calls.code
+        self.settings, self.arguments, self.way = settings or {}, arguments, way or {}
+
+    def under(self, settings: Mapping[str, str], arguments: Sequence[str] | None = None) -> Values:
+        """The same code where a launch sets parameters and gives arguments."""
+        return self._other(settings, arguments, self.way)
+
+    def called(self, way: Mapping[int, Call]) -> Values:
+        """The same code as far as it is reached through some calls, by the id() of the function called."""
+        return self._other(self.settings, self.arguments, way) if way else self
+
+    def _other(self, *given) -> Values:
+        other = Values(self.calls, *given)
+        for name in ("filled", "declared", "bases_made", "command_line"):
+            other.__dict__[name] = getattr(self, name)
+        return other
+
+    def of(self, value: Expr | None, fn: Fn, line: int = 0) -> list[Value]:
+        """What an expression may be worth, each once; unknown ones last. line: of the statement it stands in."""
+        found = list(dict.fromkeys(self._of(value, fn, line, ())))
+        known = [one for one in found if one.text is not None]
+        return known or found[:1] or [Value(None, "unresolved", "no value is given")]
+
+    def _of(self, value: Expr | None, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        if value is None:
+            yield Value(None, "unresolved", "no value is given")
+            return
+        if len(seen) > _DEEPEST:
+            yield Value(None, "unresolved", "too many steps")
+            return
+        kind = value.kind
+        if kind in ("text", "number"):
+            yield Value(value.text)
+        elif kind == "name":
+            yield from self._name(value.text, fn, line, seen)
+        elif kind == "join":
+            yield from self._joined(value, fn, line, seen)
+        elif kind == "choice" and len(value.parts) == 3:
+            yield from self._of(value.parts[1], fn, line, seen)
+            yield from self._of(value.parts[2], fn, line, seen)
+        elif kind == "call":
+            yield from self._call(value, fn, line, seen)
+        elif kind in ("make", "keyword", "list") and len(value.parts) == 1:
+            yield from self._of(value.parts[0], fn, line, seen)
+        elif kind == "make" and not value.parts:
+            return  # made empty, and written later
+        elif kind == "index" and value.parts:
+            yield from self._element(value, fn, line, seen)
+        else:
+            what = value.text or kind
+            yield Value(None, "unresolved", f"`{what[:60]}` is not followed")
+
+    def _joined(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        pieces = [list(dict.fromkeys(self._of(part, fn, line, seen)))[:_MOST] for part in value.parts]
+        for number, row in enumerate(product(*pieces)):
+            if number >= _MOST:
+                return
+            unknown = next((one for one in row if one.text is None), None)
+            if unknown is not None:
+                yield unknown
+                continue
+            hows = {one.how for one in row}
+            how: How = min(hows, key=_LEAST.index, default="literal")
+            named = next((one.parameter for one in row if one.parameter), "")
+            yield Value("".join(one.text or "" for one in row), how, "", named)
+
+    @cached_property
+    def command_line(self) -> CommandLine:
+        """What of the code is the command line."""
+        return CommandLine(self.code)
+
+    def _element(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        container, index = value.parts[0], value.parts[-1]
+        places = self.command_line.places(container, index, fn) if len(value.parts) == 2 else None
+        if places is not None:
+            if self.arguments is None:
+                yield Value(None, "unresolved", "an argument of the command line")
+            else:
+                for place in range(max(places.start, 1), min(places.stop, len(self.arguments) + 1)):
+                    yield Value(self.arguments[place - 1], "given")
+        elif container.kind == "call" and tail(container.text) in _TELLS_TOPIC and container.parts:
+            yield from self._of(container.parts[0], fn, line, seen)
+        else:
+            yield from self._elements(container, fn, line, seen)
+
+    def rows(self, value: Expr, fn: Fn, depth: int = 0) -> list[Expr]:
+        """The lists that a list of lists holds where it is written; empty where it is none, or not written once."""
+        if value.kind == "list":
+            return list(value.parts) if value.parts and all(part.kind == "list" for part in value.parts) else []
+        if value.kind == "name" and depth < 4:
+            written = self.code.writes.get(self.code.identity(value.text, fn), ())
+            if len(written) == 1:
+                return self.rows(written[0][1].value, written[0][0], depth + 1)
+        return []
+
+    def _elements(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        if value.kind == "list":
+            for part in value.parts:
+                yield from self._of(part, fn, line, seen)
+            return
+        if value.kind == "name":
+            variable = self.code.identity(value.text, fn)
+            for writer, each in self.code.writes.get(variable, ()):
+                if each.value.kind == "list":
+                    yield from self._elements(each.value, writer, each.line, (*seen, variable))
+                    return
+            pushed = [call for call in fn.facts.calls if call.callee in (f"{value.text}.{put}" for put in _PUT)]
+            if pushed and variable not in seen:
+                for call in pushed:
+                    for argument in call.arguments[:1]:
+                        yield from self._of(argument, fn, call.line, (*seen, variable))
+                return
+        yield Value(None, "unresolved", f"an element of `{value.text or value.kind}`")
+
+    def _name(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        parts = parts_of(path)
+        if "." in path and parts[-1] in _SAME:
+            yield from self._name(path.rpartition(".")[0], fn, line, seen)
+            return
+        if path.endswith("()"):
+            yield from self._inner(path.removesuffix("()"), fn, line, seen)
+            return
+        variable = self.code.identity(path, fn)
+        if variable in seen:
+            return
+        for text, how in self.command_line.parsed(path, fn, self.arguments) if "." in path else ():
+            yield Value(text, "given" if how == "given" else "default")
+            return
+        found = list(self.of_variable(variable, fn, (*seen, variable)))
+        if found:
+            yield from found
+        else:
+            yield Value(None, "unresolved", f"nothing tells what `{path}` is")
+
+    def of_variable(self, variable: Variable, fn: Fn, seen: tuple = ()) -> Iterator[Value]:
+        """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed."""
+        if variable.kind == "member":
+            for cls in self.code.classes.get(tail(variable.owner), ()):
+                for member in cls.facts.members:
+                    if cls.name == variable.owner and member.name == variable.name and member.value is not None:
+                        holder = next(iter(self.code.functions_of_class(cls.name)), fn)
+                        if holder.source is cls.source or member.value.kind == "text":
+                            yield from self._of(member.value, holder, member.line, seen)
+        elif variable.kind == "global":
+            yield from self._constant(variable, fn, seen)
+        for writer, each in self.code.writes.get(variable, ()):
+            if self.arguments is not None and self.command_line.excluded(writer, each.guard, len(self.arguments) + 1):
+                continue
+            if each.operator == "=":
+                if variable.kind == "member" and each.value.kind == "list" and len(each.value.parts) > 1:
+                    continue
+                yield from self._of(each.value, writer, each.line, seen)
+            elif each.operator == "for":
+                yield from self._elements(each.value, writer, each.line, seen)
+            elif each.operator == "+=":
+                yield Value(None, "unresolved", f"`{variable.name}` is put together in steps")
+        for use in self.filled.get(variable, ()):
+            yield from self._parameter(use, seen)
+        if not self.code.writes.get(variable) or variable.kind == "local":
+            yield from self._by_reference(variable, seen)
+        if variable.kind == "local":
+            for one in self.code.chain(fn):
+                place = parameter_of(one, variable.name)
+                if place is not None:
+                    yield from self._passed(one, place[0], place[1].name, seen)
+                    if place[1].default is not None:
+                        yield from self._of(place[1].default, one, one.facts.line, seen)
+                    break
+
+    def _by_reference(self, variable: Variable, seen: tuple) -> Iterator[Value]:
+        """What functions write into a variable that is passed to them by reference."""
+        for caller, call, place in self.code.passed.get(variable, ()):
+            for target in self.code.targets(call.callee, caller):
+                parameters = target.facts.parameters
+                if place < len(parameters) and "&" in parameters[place].type and "const" not in parameters[place].type:
+                    inner = self.code.identity(parameters[place].name, target)
+                    if inner not in seen:
+                        yield from self.written(inner, (*seen, inner))
+
+    def written(self, variable: Variable, seen: tuple) -> Iterator[Value]:
+        """What is written into a variable, where it stands, or fills it from a parameter."""
+        for writer, each in self.code.writes.get(variable, ()):
+            if each.operator == "=":
+                yield from self._of(each.value, writer, each.line, seen)
+        for use in self.filled.get(variable, ()):
+            yield from self._parameter(use, seen)
+        yield from self._by_reference(variable, seen)
+
+    def _constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[Value]:
+        name = variable.name
+        sources = [fn.source, *(s for s in self.code.sources if s.package == fn.source.package and s is not fn.source)]
+        for source in sources:
+            found = [constant for constant in source.facts.constants if tail(constant.name) == tail(name)]
+            for constant in found:
+                if constant.value is not None:
+                    holder = next((f for f in self.code.functions if f.source is source), fn)
+                    yield from self._of(constant.value, holder, constant.line, seen)
+            if found:
+                return
+        if "::" in name or "." in name:
+            cls, _, member = name.replace(".", "::").rpartition("::")
+            found_class = self.code.class_of(cls, fn.source, fn.scope)
+            if found_class is not None:
+                yield from self.of_variable(Variable("member", found_class.name, member), fn, seen)
+
+    def _passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[Value]:
+        """What callers pass for a parameter."""
+        number = 0
+        only = self.way.get(id(fn))
+        for caller, call in self.code.callers.get(id(fn), ()):
+            if only is not None and call is not only:
+                continue
+            argument = _argument(call.arguments, place, name)
+            if argument is not None:
+                number += 1
+                yield from self._of(argument, caller, call.line, seen)
+        owner = self.code.owner_of(fn)
+        is_constructor = owner is not None and tail(fn.name) in (tail(owner.name), "__init__")
+        if is_constructor and owner is not None:
+            for maker in (owner, *self.code.derived.get(owner.name, ())):
+                for caller, arguments, line in self.code.constructions.get(maker.name, ()):
+                    argument = _argument(arguments, place, name)
+                    if argument is not None and (maker is owner or tail(fn.name) == "__init__"):
+                        number += 1
+                        yield from self._of(argument, caller, line, seen)
+            for caller, arguments, line in self.bases_made.get(owner.name, ()):
+                argument = _argument(arguments, place, name)
+                if argument is not None:
+                    number += 1
+                    yield from self._of(argument, caller, line, seen)
+        if not number:
+            yield Value(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
+
+    @cached_property
+    def bases_made(self) -> dict[str, list[tuple[Fn, tuple[Expr, ...], int]]]:
+        """Constructors that initialise a base class of the code: name of the base to function, arguments and line."""
+        found: dict[str, list[tuple[Fn, tuple[Expr, ...], int]]] = {}
+        for fn in self.code.functions:
+            owner = self.code.owner_of(fn) if fn.facts.owner else None
+            if owner is None:
+                continue
+            for call in fn.facts.calls:
+                if call.callee == "super().__init__":
+                    for base in self.code.bases(owner)[1:2]:
+                        found.setdefault(base.name, []).append((fn, call.arguments, call.line))
+            for each in fn.facts.assignments:
+                made = self.code.base_made(fn, each)
+                cls = self.code.class_of(made[0], fn.source, fn.scope) if made is not None else None
+                if made is not None and cls is not None:
+                    found.setdefault(cls.name, []).append((fn, made[1], each.line))
+        return found
+
+    def _call(self, value: Expr, fn: Fn, line: int, seen: tuple) -> Iterator[Value]:
+        last = tail(value.text)
+        head = value.text.rpartition(".")[0] if "." in value.text else ""
+        if last in _NODE_NAME and not value.parts:
+            yield Value(NODE)
+            return
+        if last in _NODE_NAMESPACE and not value.parts:
+            yield Value(NAMESPACE)
+            return
+        if last in _SAME and head:
+            if head.endswith("()"):
+                yield from self._inner(head.removesuffix("()"), fn, line, seen)
+            else:
+                yield from self._name(head, fn, line, seen)
+            return
+        # Options of ROS 1 are named by the name they are for.
+        if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
+            yield from self._of(value.parts[0], fn, line, seen)
+            return
+        if last == "getCameraInfoTopic" and len(value.parts) == 1:
+            for one in self._of(value.parts[0], fn, line, seen):
+                yield one if one.text is None else one._replace(text=beside(one.text, "camera_info"))
+            return
+        if last == "append" and len(value.parts) == 2 and "names" in value.text:
+            first, second = value.parts
+            yield from self._joined(Expr("join", "", (first, Expr("text", "/"), second)), fn, line, seen)
+            return
+        yield from self._inner(value.text, fn, line, seen, value.parts)
+
+    def _inner(
+        self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[Expr, ...] | None = None
+    ) -> Iterator[Value]:
+        """What a call inside an expression gives: a parameter's default, or what a function of the code returns."""
+        near = [call for call in fn.facts.calls if call.callee == callee]
+        near.sort(key=lambda call: (abs(call.line - line), call.arguments != arguments))
+        if arguments is not None:
+            near = [call for call in near if call.arguments == arguments] or near
+        for call in near[:1]:
+            use = self.calls.use_of(fn, call)
+            if use is not None and use.row.does == "parameter":
+                yield from self._parameter(use, seen)
+                return
+        returned = False
+        for target in self.code.targets(callee, fn):
+            if ("returns", id(target)) in seen:
+                continue
+            for each in target.facts.assignments:
+                if each.operator == "return":
+                    returned = True
+                    yield from self._of(each.value, target, each.line, (*seen, ("returns", id(target))))
+        if not returned:
+            yield Value(None, "unresolved", f"what `{callee}` gives is not known")
+
+    def _parameter(self, use: Use, seen: tuple) -> Iterator[Value]:
+        """The default of the parameter that a use declares or reads."""
+        names = [one.text for one in self._of(self.calls.argument(use, use.row.topic), use.fn, use.call.line, seen)]
+        name = names[0] if names and names[0] is not None else ""
+        given = self.settings.get(name.lstrip("~").lstrip("/")) if name else None
+        if given is not None:
+            yield Value(given, "launch", "", name)
+            return
+        default = self.calls.argument(use, use.row.default) if use.row.default else None
+        target = self.calls.argument(use, use.row.variable) if use.row.variable else None
+        if default is not None and not (default.kind == "name" and default == target):
+            for one in self._of(default, use.fn, use.call.line, seen):
+                if one.text is None:
+                    yield one
+                else:
+                    yield Value(one.text, "default", "", name or one.parameter)
+            return
+        yielded = False
+        mark = ("parameter", name)
+        for other in self.declared.get(name, ()) if name and mark not in seen else ():
+            if other.call is use.call or other.fn.source.package != use.fn.source.package:
+                continue
+            for one in self._parameter(other, (*seen, mark)):
+                if one.text is not None:
+                    yielded = True
+                    yield one
+        if not yielded:
+            yield Value(None, "unresolved", f"the parameter `{name or '?'}` has no default here", name)
+
+    @cached_property
+    def declared(self) -> dict[str, list[Use]]:
+        """Declarations of parameters and reads with a default, by their literal names."""
+        found: dict[str, list[Use]] = {}
+        for use in self.calls.uses:
+            if use.row.does != "parameter" or self.calls.argument(use, use.row.default) is None:
+                continue
+            name = self.calls.argument(use, use.row.topic)
+            if name is not None and name.kind == "text":
+                found.setdefault(name.text, []).append(use)
+        return found
+
+    @cached_property
+    def filled(self) -> dict[Variable, list[Use]]:
+        """Variables that a call fills with the value of a parameter."""
+        found: dict[Variable, list[Use]] = {}
+        for use in self.calls.uses:
+            if use.row.does == "parameter" and use.row.variable:
+                target = self.calls.argument(use, use.row.variable)
+                if target is not None and target.kind == "name" and not use.call.target:
+                    found.setdefault(self.code.identity(target.text, use.fn), []).append(use)
+        return found
+
+
+def beside(topic: str, name: str) -> str:
+    """A name in the namespace of a topic (image_transport puts camera_info beside the image)."""
+    head, slash, _ = topic.rpartition("/")
+    return f"{head}{slash}{name}"
+
+
+def _argument(arguments: tuple[Expr, ...], place: int, name: str) -> Expr | None:
+    for argument in arguments:
+        if argument.kind == "keyword" and argument.text == name and argument.parts:
+            return argument.parts[0]
+    positional = [argument for argument in arguments if argument.kind != "keyword"]
+    return positional[place] if 0 <= place < len(positional) else None

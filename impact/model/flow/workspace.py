@@ -1,0 +1,179 @@
+"""The message-flow graph of a workspace: which files are read for it, what is built of them, and the join."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator, Mapping
+
+import msgspec
+
+from ...cache import code_stamp
+from ...facts.flow import FlowFile
+from ...facts.kinds import FLOW
+from ...facts.kinds import kind_of as kind_by_name
+from ...gather import Gathered, gather
+from ..package import Watched, role_of_folder
+from ..workspace import Package, Workspace, link
+from .graph import Graph
+from .join import Join
+from .nodes import Built
+from .started import launched
+
+_LIBRARIES = frozenset(("library", "module", "interface"))
+_BUILD = frozenset(
+    ("manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action")
+)
+_CODE = frozenset(FLOW.values())
+
+Progress = Callable[[int, int], None]
+
+
+def kind_of(path: str) -> str | None:
+    """The kind of facts that message flow wants of a path: code, and what tells how it is built."""
+    kind = kind_by_name(path)
+    return FLOW.get(kind or "") or (kind if kind in _BUILD else None)
+
+
+def linked(tree, store, jobs: int | None = None, progress: Progress | None = None) -> Workspace:
+    """A workspace as far as message flow needs it: its packages, their builds, and the flow facts of its code.
+
+    Rules on dependencies cannot be asked of it: the facts that they need are not read. progress: as gather() has it.
+    """
+    gathered = gather(tree, store, jobs=jobs, progress=progress, kind_of=kind_of)
+    return link(tree, gathered, store, None, Watched(), jobs)
+
+
+def read_beside(workspace: Workspace, jobs: int | None = None, progress: Progress | None = None) -> Gathered:
+    """The flow facts of a workspace that was linked for other ends."""
+    main = workspace.gathered
+
+    def wanted(path: str) -> str | None:
+        kind = kind_of(path)
+        return kind if kind in _CODE else None
+
+    return gather(main.tree, main.store, jobs=jobs, progress=progress, kind_of=wanted)
+
+
+def code_of(workspace: Workspace, gathered: Gathered) -> dict[str, str]:
+    """The code of the packages, by path the package it belongs to; tests are left out. gathered: holds flow facts."""
+    found: dict[str, str] = {}
+    for package in workspace:
+        start = len(package.path) + 1 if package.path else 0
+        for path in package.digest.files:
+            if gathered.kinds.get(path) in _CODE and role_of_folder(path[start:]) != "test":
+                found[path] = package.name
+    return found
+
+
+def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[Built]:
+    """What the build of each package makes. files: flow facts by path."""
+    libraries = {
+        target.name: target.sources
+        for package in workspace
+        for target in package.build.targets
+        if target.kind in _LIBRARIES
+    }
+    links = {
+        name: tuple(link.item for link in target.links if link.how == "link" and link.item in libraries)
+        for package in workspace
+        for target in package.build.targets
+        for name in {target.name, target.output_name or target.name}
+    }
+    for package in workspace:
+        targets = package.build.targets
+        executables = {
+            target.output_name or target.name: target.sources for target in targets if target.kind == "executable"
+        }
+        components = {exported.item: "" for exported in package.build.exports if exported.how == "component"}
+        yield Built(
+            package.name, executables, libraries, components, _scripts(package, files), links, _plugins(package)
+        )
+
+
+def _plugins(package: Package) -> dict[str, str]:
+    """Classes of a package by the names that its plugin descriptions give them."""
+    return {plugin.name: plugin.type for _, plugin in package.digest.plugins if plugin.name and plugin.type}
+
+
+def _scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, str]:
+    """Python programs of a package: entry points, installed programs, and files that run when they are started."""
+    present = set(package.digest.files)
+    found: dict[str, str] = {}
+    for path, setup in package.digest.setup:
+        folder = path.rpartition("/")[0]
+        for name, target, _ in setup.entry_points:
+            module, _, function = target.partition(":")
+            stem = module.strip().replace(".", "/")
+            for inside in (f"{folder}/{stem}.py", f"{folder}/src/{stem}.py", f"{folder}/{stem}/__init__.py"):
+                if inside.lstrip("/") in present:
+                    found[name] = f"{inside.lstrip('/')}:{function.strip() or 'main'}"
+                    break
+    reached = {where.partition(":")[0] for where in found.values()}
+    programs = {item for install in package.build.installs if install.kind == "programs" for item in install.items}
+    runs = [path for path in package.digest.files if path in files and _runs(files[path])]
+    for path in (*sorted(programs & files.keys()), *runs):
+        name = path.rpartition("/")[2]
+        if path not in reached and name not in ("setup.py", "conf.py"):
+            found.setdefault(name, path)
+            reached.add(path)
+    return found
+
+
+def _runs(file: FlowFile) -> bool:
+    """Whether a Python file does something when it is started: it asks for its name, or makes itself a node."""
+    if file.language != "python":
+        return False
+    top = [function for function in file.functions if not function.name]
+    asks = any("__main__" in guard.text for function in top for guard in function.guards)
+    return asks or any(call.callee == "rospy.init_node" for function in top for call in function.calls)
+
+
+def joined(workspace: Workspace, gathered: Gathered | None = None) -> Join:
+    """The code of a workspace, joined. gathered: its flow facts, those that it was linked from when left out."""
+    gathered = gathered or workspace.gathered
+    packages = code_of(workspace, gathered)
+    gathered.preload(packages)
+    facts = {path: gathered.facts(path).facts for path in packages}
+    files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
+    return Join(files, packages.__getitem__, built_of(workspace, files), workspace.ros)
+
+
+def graph_of(
+    workspace: Workspace, store, root: str = "", rev: str = "", launch: str = "",
+    arguments: Mapping[str, str] | None = None, gathered: Gathered | None = None,
+) -> Graph:  # fmt: skip
+    """The message-flow graph of a workspace. store: remembers it by the content it was joined from. gathered: as for
+    joined().
+
+    launch: the path of a launch file, relative to the workspace's root: then the graph of what it starts; arguments:
+    the launch file's arguments.
+    """
+    if launch:
+        start = launched(workspace, launch, arguments or {})
+        join = joined(workspace, gathered)
+        return join.graph(root, rev, _unread(join), start)
+    key = _key(workspace, gathered or workspace.gathered)
+    known = store.memo("graph", key) if store is not None else None
+    if known is not None:
+        try:
+            return msgspec.structs.replace(msgspec.msgpack.decode(known, type=Graph), root=root, rev=rev)
+        except msgspec.MsgspecError:
+            pass  # of another version: made anew
+    join = joined(workspace, gathered)
+    graph = join.graph(unread=_unread(join))
+    if store is not None:
+        store.remember("graph", [(key, msgspec.msgpack.encode(graph))])
+    return msgspec.structs.replace(graph, root=root, rev=rev)
+
+
+def _unread(join: Join) -> list[str]:
+    return [source.path for source in join.code.sources if source.facts.unread]
+
+
+def _key(workspace: Workspace, gathered: Gathered) -> bytes:
+    stamp = hashlib.sha1(workspace.identity + code_stamp().encode())
+    for path in sorted(gathered.kinds):
+        if gathered.kinds[path] in _CODE:
+            row = f"{path} {gathered.ids.get(path, '')} {gathered.kinds[path]}\n"
+            stamp.update(row.encode("utf-8", "surrogateescape"))
+    return stamp.digest()

@@ -1,0 +1,41 @@
+"""unfed-subscriber: a node listens to what nothing publishes.
+
+What it does
+    Reports subscribers of messages that the workspace itself defines, on a topic that nothing in the workspace
+    publishes. One note a topic.
+
+Why it matters
+    Its callback never runs: the publisher was renamed, is missing, or was never written.
+
+Severity
+    note.
+
+Example
+    self.create_subscription(BatteryReport, "battery", self.on_battery, 10)      # nobody publishes battery
+
+Use instead
+    Remove the subscriber, or publish the topic.
+
+Not reported
+    Topics of types from other packages, which drivers, simulators and other workspaces publish as well; private topics
+    and those for debugging; topics that a publisher of an unknown name may feed.
+"""
+
+from ...model.build import At
+from ...model.flow.edges import said
+from ...model.workspace import Workspace
+from ..rule import Hit, rule
+from .own_topics import one_sided
+
+
+@rule(severity="note", preview=True, per_target=False)
+def unfed_subscriber(workspace: Workspace):
+    for one, where in one_sided(workspace, "subscriber"):
+        endpoint = one.endpoint
+        yield Hit(
+            At(endpoint.path, endpoint.line),
+            endpoint.topic,
+            f"nothing in {where} publishes `{endpoint.topic}` (`{endpoint.type}`), which `{said(one.node)}` reads",
+            f"publish `{endpoint.topic}`, or stop subscribing to it",
+            one.node.package,
+        )

@@ -1,0 +1,73 @@
+"""unknown-parameter: a launch or parameter file sets a parameter that the node never asks for.
+
+What it does
+    Reports parameters that a launch file, or a parameter file it loads, sets for one node, and that the node's code
+    neither declares nor reads. All parameters of the node have to be known.
+
+Why it breaks
+    The value goes nowhere, and the node runs with its default: mostly a misspelt or outdated name.
+
+Severity
+    warning when a parameter of the node differs by a slip; note otherwise.
+
+Example
+    base_node:
+      ros__parameters:
+        max_sped: 0.5            # the node declares max_speed
+
+Use instead
+    max_speed: 0.5
+
+Not reported
+    Nodes that ask for parameters by prefix or by names that are not known, load plugins, or hand themselves to code
+    outside of the workspace; values in a file's `/**`, which is for every node.
+"""
+
+from ...model.build import At
+from ...model.flow.launches import Given, Start
+from ...model.flow.slips import is_slip
+from ...model.workspace import Workspace
+from ..rule import Hit, rule
+
+# What every node, or the framework around it, understands.
+_COMMON = frozenset(
+    ("use_sim_time", "tf_prefix", "robot_description", "start_type_description_service", "bond_heartbeat_period",
+     "service_introspection_mode", "enable_statistics", "num_worker_threads")
+)  # fmt: skip
+_COMMON_HEADS = ("qos_overrides", "bond", "diagnostic_updater", "actionlib", "lifecycle")
+
+
+@rule(severity="note", preview=True, per_target=False)
+def unknown_parameter(workspace: Workspace):
+    given: dict[tuple[str, int, str], list[tuple[Start, Given]]] = {}
+    elsewhere = {place for launch in workspace.launches for place in launch.elsewhere}
+    for launch in workspace.launches:
+        for start in launch.starts:
+            for setting in start.given:
+                given.setdefault((setting.path, setting.line, setting.name), []).append((start, setting))
+    for (path, line, name), rows in given.items():
+        if f"{path}:{line}" in elsewhere or any(_asks(start, name) for start, _ in rows):
+            continue
+        start, _ = rows[0]
+        near = [known for known in start.parameters if is_slip(_last(known), _last(name))]
+        yield Hit(
+            At(path, line),
+            name,
+            f"`{start.program.partition('/')[2]}` neither declares nor reads the parameter `{name}`",
+            f"write `{near[0]}`" if near else "remove it, or read it in the node",
+            start.package,
+            severity="warning" if near else "note",
+        )
+
+
+def _asks(start: Start, name: str) -> bool:
+    """Whether a node may ask for a parameter."""
+    parts = name.replace("/", ".").split(".")
+    if start.hidden_parameters or parts[-1] in _COMMON or parts[0] in _COMMON_HEADS:
+        return True
+    known = {_last(one) for one in start.parameters}
+    return any(part in known for part in parts)
+
+
+def _last(name: str) -> str:
+    return name.replace("/", ".").rpartition(".")[2].lstrip("~")

@@ -1,0 +1,81 @@
+"""unmatched-client: a client calls a service or action under a name that nobody serves, while another name is served.
+
+What it does
+    Reports clients of services and actions with a certain name that no node of the workspace serves, where a node
+    serves the same type under a name that ends alike or differs by a slip.
+
+Why it breaks
+    The client waits for a server that never comes, or its calls fail.
+
+Severity
+    warning.
+
+Example
+    self.create_service(SetCargo, "gripper/set_cargo", self.on_cargo)
+    self.create_client(SetCargo, "set_cargo")
+
+Use instead
+    self.create_client(SetCargo, "gripper/set_cargo")
+
+Not reported
+    Clients of what nobody in the workspace serves under any name; services that every node of ROS has; servers whose
+    name is not known, or is that of a node which a launch file may rename.
+"""
+
+from ...model.build import At
+from ...model.flow.edges import Flow, Sure, flows, said, unstarted
+from ...model.flow.slips import is_in_namespace, is_slip
+from ...model.workspace import Workspace
+from ..rule import Hit, rule
+
+_SERVER = {"client": "server", "action client": "action server"}
+# Packages of the services that nodes have by themselves, and types that tell nothing.
+_EVERYWHERE = ("rcl_interfaces/", "lifecycle_msgs/", "composition_interfaces/", "type_description_interfaces/",
+               "dynamic_reconfigure/", "roscpp/", "nodelet/", "std_srvs/", "sensor_msgs/SetCameraInfo")  # fmt: skip
+
+
+@rule(severity="warning", preview=True, per_target=False)
+def unmatched_client(workspace: Workspace):
+    served = {
+        one.topic
+        for launch in workspace.launches
+        for one in launch.graph.endpoints
+        if one.role in ("server", "action server")
+    }
+    told = set()
+    for path, flow in flows(workspace):
+        for taker, giver in _unmatched(flow if path else unstarted(workspace)):
+            one, other = taker.endpoint, giver.endpoint
+            if (one.path, one.line) in told or one.topic in served:
+                continue
+            told.add((one.path, one.line))
+            what = "service" if one.role == "client" else "action"
+            where = path or "the workspace"
+            yield Hit(
+                At(one.path, one.line),
+                one.topic,
+                f"nothing in {f'`{path}`' if path else where} serves the {what} `{one.topic}`, but "
+                f"`{said(giver.node)}` serves `{other.topic}` of the same type ({other.path}:{other.line})",
+                f"call `{other.topic}`, or serve `{one.topic}`",
+                taker.node.package,
+            )
+
+
+def _unmatched(flow: Flow):
+    """Clients without a server, each with the only sure server of its type and nearly its name."""
+    for taker in flow.sure(*_SERVER):
+        one = taker.endpoint
+        role = _SERVER[one.role]
+        if not flow.type_of(one) or one.type.startswith(_EVERYWHERE) or one.implied:
+            continue
+        if flow.others(one) or flow.may_have(role, one.type):
+            continue
+        found: dict[str, Sure] = {}
+        for giver in flow.sure(role):
+            other = giver.endpoint
+            if other.type != one.type or (other.written.startswith("~") and not giver.node.started):
+                continue
+            if is_slip(one.topic, other.topic) or is_in_namespace(one.topic, other.topic):
+                found.setdefault(other.topic, giver)
+        if len(found) == 1:
+            yield taker, next(iter(found.values()))

@@ -1,0 +1,41 @@
+"""unread-topic: nothing reads what a node publishes.
+
+What it does
+    Reports publishers of messages that the workspace itself defines, on a topic that nothing in the workspace
+    subscribes to. One note a topic.
+
+Why it matters
+    It is work for nobody, or a sign that the reader was renamed or never written.
+
+Severity
+    note.
+
+Example
+    self.create_publisher(BatteryReport, "battery", 10)          # nobody subscribes to battery
+
+Use instead
+    Remove the publisher, or subscribe to it.
+
+Not reported
+    Topics of types from other packages, which tools, other workspaces and recordings read as well; private topics and
+    those for debugging; topics that a subscriber of an unknown name may read.
+"""
+
+from ...model.build import At
+from ...model.flow.edges import said
+from ...model.workspace import Workspace
+from ..rule import Hit, rule
+from .own_topics import one_sided
+
+
+@rule(severity="note", preview=True, per_target=False)
+def unread_topic(workspace: Workspace):
+    for one, where in one_sided(workspace, "publisher"):
+        endpoint = one.endpoint
+        yield Hit(
+            At(endpoint.path, endpoint.line),
+            endpoint.topic,
+            f"nothing in {where} reads `{endpoint.topic}` (`{endpoint.type}`), which `{said(one.node)}` publishes",
+            f"subscribe to `{endpoint.topic}`, or stop publishing it",
+            one.node.package,
+        )

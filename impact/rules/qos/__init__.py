@@ -1,0 +1,1 @@
+"""Rules on quality of service: publishers and subscribers that refuse each other."""

@@ -1,0 +1,196 @@
+"""The message-flow graph as text, JSON, GraphML, DOT and Mermaid."""
+
+import json
+import re
+from pathlib import Path
+
+import jsonschema
+import networkx
+import pytest
+from msgspec import structs
+from robot import DRIVER, robot
+from rosimpact.impact.flow.drawing import draw
+from rosimpact.impact.flow.drawing.dot import quoted
+from rosimpact.impact.flow.drawing.edges import guard_text
+from rosimpact.impact.flow.drawing.json import schema
+from rosimpact.impact.flow.drawing.mermaid import MOST, ROOM, escaped
+from rosimpact.impact.flow.select import NothingSelected
+from rosimpact.impact.model.flow.graph import GuardAt
+
+ROOT = Path(__file__).parents[2]
+NOW = robot()
+OTHER = DRIVER.replace("if (ready_) ", "").replace("rclcpp::SensorDataQoS()", "10").replace('"calibrate"', '"tune"')
+BEFORE = robot(driver=OTHER)
+
+
+def test_text():
+    text = draw(NOW, "text")
+    assert text.startswith("3 nodes, 2 topics, 1 service\n")
+    lines = text.splitlines()
+    scan = lines[lines.index("/scan  sensor_msgs/LaserScan") :][:4]
+    assert scan == [
+        "/scan  sensor_msgs/LaserScan",
+        "  publishes  /driver  driver/driver.cpp:5  [best_effort]",
+        "              publish at driver/driver.cpp:6  when ready_; on timer 100ms",
+        "  subscribes /planner  planner/planner.cpp:5  [→ Planner::onScan]",
+    ]
+    assert "/calibrate (service)  std_srvs/Trigger" in lines
+    assert "8 of 9 API calls resolved; 3 files read" in text
+    assert lines[-1].startswith("  planner/planner.cpp:7: publisher name `unknown()`: ")
+
+
+def test_text_beside_a_base():
+    lines = draw(NOW, "text", BEFORE).splitlines()
+    assert any(line.startswith("~ publishes  /driver") and "changed: QoS, guards" in line for line in lines)
+    assert any(line.startswith("+ serves     /driver") for line in lines)
+    assert any(line.startswith("- serves     /driver") for line in lines)
+    assert any(line.startswith("  subscribes /mover") for line in lines)
+
+
+@pytest.mark.parametrize("base", [None, BEFORE])
+def test_json_is_what_its_schema_says(base):
+    found = json.loads(draw(NOW, "json", base))
+    jsonschema.validate(found, json.loads(schema()))
+    (publish,) = [each for each in found["publishes"] if each["topic"] == "/scan"]
+    assert [(guard["kind"], guard["text"]) for guard in publish["guards"]] == [("if", "ready_")]
+    (subscriber,) = [each for each in found["subscribers"] if each["topic"] == "/scan"]
+    assert subscriber["callback"] == {"name": "Planner::onScan", "path": "planner/planner.cpp", "line": 10}
+    assert {"name": "/scan", "types": ["sensor_msgs/LaserScan"], "publishers": ["driver/driver"],
+            "subscribers": ["planner/planner"]} in found["topics"]  # fmt: skip
+    assert found["coverage"]["calls"] == 9
+    if base is not None:
+        said = {(change["change"], change["name"], change["why"]) for change in found["changes"]}
+        assert said == {("changed", "/scan", "QoS, guards"), ("added", "/calibrate", ""), ("removed", "/tune", "")}
+
+
+def test_the_schema_that_is_published_is_the_one_in_use():
+    assert (ROOT / "docs/graph.schema.json").read_text() == schema()
+    jsonschema.Draft202012Validator.check_schema(json.loads(schema()))
+
+
+def test_graphml_can_be_read_again():
+    found = networkx.parse_graphml(draw(NOW, "graphml", BEFORE))
+    assert found.nodes["node driver/driver"]["package"] == "driver"
+    ((_, _, data),) = found.in_edges("topic /scan", data=True)
+    assert (data["role"], data["guards"], data["change"]) == ("publisher", "ready_", "changed")
+    assert networkx.has_path(networkx.DiGraph(found), "node driver/driver", "node mover/mover")
+
+
+def test_dot_and_mermaid_have_every_edge():
+    dot = draw(NOW, "dot", BEFORE)
+    assert '"n driver/driver" -> "topic /scan" [color="#bf8700"' in dot
+    assert '"topic /scan" -> "n planner/planner";' in dot
+    assert '"n planner/planner" -> "service /calibrate" [style=dashed];' in dot
+    mermaid = draw(NOW, "mermaid", BEFORE).splitlines()
+    assert mermaid[0] == "flowchart LR"
+    assert sum("-->" in line for line in mermaid) == 4
+    assert sum("-.->" in line for line in mermaid) == 3
+    assert sum("linkStyle" in line for line in mermaid) == 3
+
+
+def test_hostile_names_stay_names():
+    assert quoted('a"b\nc') == '"a\\"b\\nc"'
+    assert escaped('a"b[c]') == "a#34;b#91;c#93;"
+
+
+def test_a_part_is_compared_with_the_same_part_of_the_base():
+    lines = draw(NOW, "text", BEFORE, topics=["scan"]).splitlines()
+    assert [line[0] for line in lines if "publishes" in line or "serves" in line] == ["~"]
+
+
+WITHOUT_PLANNER = robot(planner="")
+
+
+@pytest.mark.parametrize(
+    ("asked", "gone"),
+    [
+        ({"topics": ["scan"]}, {("/planner", "/scan")}),
+        ({"nodes": ["mover"]}, {("/planner", "/plan")}),
+        ({"nodes": ["planner"]}, {("/planner", "/scan"), ("/planner", "/plan"), ("/planner", "/calibrate")}),
+        ({"around": "scan", "hops": 0}, {("/planner", "/scan")}),
+        ({}, {("/planner", "/scan"), ("/planner", "/plan"), ("/planner", "/calibrate")}),
+    ],
+)
+def test_who_is_gone_from_a_part_is_said(asked, gone):
+    lines = draw(WITHOUT_PLANNER, "text", NOW, **asked).splitlines()
+    found, name = set(), ""
+    for line in lines:
+        name = line.split(" ")[0] if line.startswith("/") else name
+        if line.startswith("- "):
+            found.add((line.split()[2], name))
+        assert not line.startswith("+ "), "what the base has too is not new because the question did not find it there"
+    assert found == gone
+
+
+def test_what_neither_side_has_is_said():
+    with pytest.raises(NothingSelected, match="nobody"):
+        draw(WITHOUT_PLANNER, "text", NOW, nodes=["nobody"])
+
+
+def _also(graph, topic):
+    return structs.replace(graph, endpoints=(*graph.endpoints, structs.replace(graph.endpoints[0], topic=topic)))
+
+
+def test_what_is_hidden_is_not_said_to_be_gone():
+    both = _also(NOW, "/tf")
+    assert not [line for line in draw(both, "text", both).splitlines() if line.startswith(("+ ", "- ", "~ "))]
+    assert "/tf " in draw(both, "text", around="/tf", hops=0), "a name asked for is not hidden"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("rclcpp::SensorDataQoS()", "rclcpp::SensorDataQoS()", ""),
+        ("10", "rclcpp::QoS(10)", ""),
+        ("10", "11", "QoS"),
+        ("qos_of_old()", "qos_of_new()", "QoS"),
+    ],
+)
+def test_qos_differs_by_what_it_says(old, new, why):
+    before, now = (robot(driver=DRIVER.replace("rclcpp::SensorDataQoS()", qos)) for qos in (old, new))
+    assert [change["why"] for change in json.loads(draw(now, "json", before))["changes"]] == ([why] if why else [])
+
+
+@pytest.mark.parametrize("odd", ["\\", "\x1b[2J\x07", "\udcff", "\uffff", "\u202e", '</script>"\n', "\x00"])
+def test_odd_names_leave_every_format_whole(odd):
+    graph = structs.replace(
+        NOW,
+        nodes=tuple(structs.replace(n, id=n.id + odd, name=n.name + odd) for n in NOW.nodes),
+        endpoints=tuple(structs.replace(e, node=e.node + odd, topic=e.topic and e.topic + odd) for e in NOW.endpoints),
+        publishes=tuple(structs.replace(p, node=p.node + odd, topic=p.topic and p.topic + odd) for p in NOW.publishes),
+    )
+    drawn = {name: draw(graph, name) for name in ("text", "json", "graphml", "dot", "mermaid")}
+    for text in drawn.values():
+        text.encode()
+    assert "\x1b" not in drawn["text"] + drawn["dot"]
+    assert len(drawn["text"].splitlines()) == len(draw(NOW, "text").splitlines())
+    assert len(json.loads(drawn["json"])["nodes"]) == 3
+    assert len(networkx.parse_graphml(drawn["graphml"])) == 6
+    for line in drawn["dot"].splitlines():
+        strings = re.sub(r'"(?:[^"\\]|\\.)*"', "", line)
+        assert '"' not in strings, f"a string of DOT is left open: {line}"
+
+
+def test_mermaid_keeps_within_its_room_and_keeps_what_differs():
+    first = NOW.endpoints[0]
+    many = tuple(structs.replace(first, topic=f"/{number:04}/{'x' * 200}") for number in range(MOST + 50))
+    now = structs.replace(NOW, endpoints=(*many, structs.replace(first, topic="/zzz")))
+    text = draw(now, "mermaid", structs.replace(NOW, endpoints=many))
+    assert len(text) <= ROOM
+    assert "edges are left out" in text
+    assert '["/zzz"]' in text
+
+
+@pytest.mark.parametrize(
+    ("guards", "said"),
+    [
+        ([("if", "a || b")], "a || b"),
+        ([("if", "a || b"), ("if", "c")], "(a || b) and c"),
+        ([("if", "a or b"), ("unless", "c or d")], "(a or b) and not (c or d)"),
+        ([("if", "a && b"), ("if", "c")], "a && b and c"),
+        ([("if", "ordered"), ("while", "ok()")], "ordered and while ok()"),
+    ],
+)
+def test_guards_in_a_line_mean_what_they_mean_nested(guards, said):
+    publish = structs.replace(NOW.publishes[0], guards=tuple(GuardAt(*guard, path="a.cpp", line=1) for guard in guards))
+    assert guard_text(publish) == said

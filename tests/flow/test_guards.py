@@ -1,0 +1,269 @@
+"""What happened to the guards of a statement, as tables of old guards, new guards and the answer."""
+
+import subprocess
+import sys
+
+import pytest
+from rosimpact.impact.flow.guards import compare, compare_ways, explain, explain_ways, impossible
+from rosimpact.impact.model.flow.graph import GuardAt
+
+
+def guards(path: str, *written: str) -> tuple[GuardAt, ...]:
+    """Guards from `kind: text`."""
+    return tuple(
+        GuardAt(kind, text, path, line, "f")
+        for line, (kind, text) in enumerate((guard.split(": ", 1) for guard in written), 1)
+    )
+
+
+def cpp(*written: str) -> tuple[GuardAt, ...]:
+    return guards("node.cpp", *written)
+
+
+def python(*written: str) -> tuple[GuardAt, ...]:
+    return guards("node.py", *written)
+
+
+OPPOSITE = {"tightened": "widened", "widened": "tightened"}
+
+CPP = [
+    # Nested, negated, reordered.
+    (["if: a && b"], ["if: a", "if: b"], "equivalent"),
+    (["if: a && b"], ["unless: !a", "unless: not b"], "equivalent"),
+    (["unless: !a || b"], ["if: !b && a"], "equivalent"),
+    (["if: a"], ["if: a", "if: b"], "tightened"),
+    (["if: a"], ["if: a || b"], "widened"),
+    (["if: a"], ["if: b"], "changed"),
+    (["if: a"], ["unless: a"], "changed"),
+    (["if: a"], [], "widened"),
+    (["if: a ? b : c"], ["if: (a && b) || (!a && c)"], "equivalent"),
+    # Spelling.
+    (["if: this->ready_"], ["if: ready_"], "equivalent"),
+    (["if: this->ready && ready"], ["if: ready"], "widened"),
+    (["if: (*p).x > 3.0f"], ["if: 3 < p->x"], "equivalent"),
+    (["if: f( a,b )"], ["if: (f(a, b))"], "equivalent"),
+    (["if: x == 1'000u"], ["if: x == 0x3e8"], "equivalent"),
+    (["if: static_cast<int>(n) == (int)m"], ["if: n == m"], "equivalent"),
+    (["if: (int)(x * 0.5) > 1"], ["if: x * 0.5 > 1"], "changed"),
+    (["if: t > 500ms"], ["if: t > 0.5s"], "equivalent"),
+    # Numbers.
+    (["if: x > 0"], ["if: x > 3"], "tightened"),
+    (["if: 1.0 / 30 < x"], ["if: x * 30 > 1"], "equivalent"),
+    (["if: now - last > timeout"], ["if: now > last + timeout"], "equivalent"),
+    (["if: std::abs(x) > 0.1"], ["if: x > 0.1 || x < -0.1"], "equivalent"),
+    (["if: x > 0.5"], ["if: x >= 0.5"], "widened"),
+    (["if: x / 2 > 1"], ["if: x > 2"], "changed"),
+    (["if: x * y > 1"], ["if: y * x > 1"], "equivalent"),
+    # Whole or not, unsigned or not: not known, so not decided.
+    (["if: x > 0"], ["if: x >= 1"], "changed"),
+    (["if: x > 0"], ["if: x != 0"], "changed"),
+    (["if: x >= 0"], ["if: x >= 0 && x < 5"], "tightened"),
+    # Sizes, pointers, truth.
+    (["if: !v.empty()"], ["if: v.size() > 0"], "equivalent"),
+    (["if: p->v.size()"], ["if: p->v.size() >= 1"], "equivalent"),
+    (["if: v.size() > 1"], ["unless: v.empty()"], "widened"),
+    (["if: v.size() - 1 > 0"], ["if: v.size() > 1"], "changed"),  # 0 - 1 is a large number
+    (["if: p"], ["if: p != nullptr"], "equivalent"),
+    (["if: !p"], ["if: p == NULL"], "equivalent"),
+    (["if: n"], ["if: n != 0"], "equivalent"),
+    (["if: o.has_value()"], ["if: o != std::nullopt"], "equivalent"),
+    (["if: flag == true"], ["if: flag"], "equivalent"),
+    (["if: s == \"\""], ["if: s.empty()"], "equivalent"),
+    (["if: s == \"a\" && s != \"b\""], ["if: s == \"a\""], "equivalent"),
+    (["if: pub_.getNumSubscribers() > 0"], ["unless: pub_.getNumSubscribers() < 1"], "equivalent"),
+    # Enumerators.
+    (["if: s == S::A || s == S::B"], ["if: s == S::A"], "tightened"),
+    (["if: s == S::A && s != S::B"], ["if: s == S::A"], "equivalent"),
+    (["if: s == S::A && s != T::B"], ["if: s == S::A"], "widened"),
+    (["if: s == IDLE && s != BUSY"], ["if: s == IDLE"], "changed"),  # two macros may be the same
+    # Kinds of guard.
+    (["case: s == A or B"], ["if: s == A || B == s"], "equivalent"),
+    (["case: s == A or B"], ["case: s == A"], "tightened"),
+    (["case: s other than A, f(B, C)"], ["if: s != A && s != f(B, C)"], "equivalent"),
+    (["case: c == 1 ... 5"], ["if: c >= 1 && c <= 5"], "equivalent"),
+    (["while: a"], ["if: a"], "equivalent"),
+    (["do: a"], [], "equivalent"),
+    (["for: auto & x : xs", "if: x.ok"], ["for: const T & y : xs", "if: y.ok"], "equivalent"),
+    (["for: auto & x : xs"], ["for: auto & x : ys"], "changed"),
+    (["for: const auto & [k, v] : m", "if: v.on"], ["for: auto [name, way] : m", "if: way.on"], "equivalent"),
+    (["catch: const std::exception & e"], ["catch: std::exception & error"], "equivalent"),
+    (["unless: catch (tf::TransformException & e)"], ["unless: catch (const tf2::TransformException &)"], "equivalent"),
+    (["unless: a && catch (E & e)"], ["unless: a && (catch (E & x))"], "equivalent"),
+    (["unless: a && catch (E & e)"], [], "widened"),
+    (["cpp: defined(X) && Y > 3"], ["cpp: defined X", "cpp: Y > 3"], "equivalent"),
+    (["cpp: !(__has_include(<a/b.h>))"], ["cpp: __has_include(<a/b.h>)"], "changed"),
+    (["macro: EACH(a, b)"], ["macro: EACH(a,  b)"], "equivalent"),
+    # Variables made by a condition.
+    (["if: auto p = w.lock()", "if: p->x > 3"], ["if: auto q = w.lock(); q", "if: q->x > 3"], "equivalent"),
+    (["if: auto p = w.lock()"], ["if: auto p = v.lock()"], "changed"),
+    # What cannot be true at one moment is not concluded from.
+    (["while: !done", "if: done"], ["while: !done", "if: done", "if: c"], "tightened"),
+    (["while: !done", "if: done"], ["while: !done", "if: done && c"], "tightened"),
+    (["if: x > 3 && x < 2"], ["if: y > 3 && y < 2"], "equivalent"),
+    # Not understood.
+    (["if: a &&"], ["if: a && b"], "changed"),
+    (["if: [&] { return a; }()"], ["if: [&] { return b; }()"], "changed"),
+]  # fmt: skip
+
+PYTHON = [
+    (["if: a and b"], ["unless: not a or not b"], "equivalent"),
+    (["if: 1 < x < 3"], ["if: x > 1 and x < 3"], "equivalent"),
+    (["if: x > 1"], ["if: 1 < x < 3"], "tightened"),
+    (["if: self.a"], ["if: a"], "changed"),
+    (["if: (self.a)"], ["if: self . a"], "equivalent"),
+    (["if: x is not None"], ["unless: x is None"], "equivalent"),
+    (["if: x != None"], ["if: x is not None"], "equivalent"),
+    (["if: x"], ["if: x is not None"], "widened"),
+    (["if: not x"], ["if: len(x) == 0"], "equivalent"),
+    (["if: x"], ["if: len(x) > 1"], "tightened"),
+    (["if: not x"], ["if: x == 0"], "tightened"),  # an empty list is not 0
+    (["if: x is not None and x > 3"], ["if: x > 3"], "widened"),
+    (["if: x is not None and x == 3"], ["if: x == 3"], "equivalent"),
+    (["if: x"], ["if: x == 'a'"], "tightened"),
+    (["if: x == True"], ["if: x"], "equivalent"),
+    (["if: x is True"], ["if: x"], "changed"),
+    (["if: s in (S.A, S.B)"], ["if: s == S.B or s == S.A"], "equivalent"),
+    (["if: s == S.IDLE and s != S.BUSY"], ["if: s == S.IDLE"], "equivalent"),
+    (["if: s in names"], ["unless: s not in names"], "equivalent"),
+    (["if: s <> 3"], ["if: s != 3"], "equivalent"),
+    (["if: (n := f()) > 3", "if: n < 5"], ["if: (m := f()) > 3 and f() < 5"], "equivalent"),
+    (["for: i, x in enumerate(xs)", "if: x[i]"], ["for: j, y in enumerate(xs)", "if: y[j]"], "equivalent"),
+    (["case: s == State.A | State.B"], ["case: s == State.A or State.B"], "equivalent"),
+    (["case: s == None"], ["if: s is None"], "equivalent"),
+    (["case: s other than 'a', 'b'"], ["if: s not in ['a', 'b']"], "equivalent"),
+    (["catch: ValueError"], ["catch: KeyError"], "changed"),
+    (["with: self.lock"], [], "equivalent"),
+    (["unless: break"], [], "widened"),
+    (["if: a if c else b"], ["if: c and a or not c and b"], "equivalent"),
+    (["if: f(x, key=1, other=2)"], ["if: f(x, other=2, key=1)"], "equivalent"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "kind"), CPP, ids=str)
+def test_cpp(old, new, kind):
+    assert compare(cpp(*old), cpp(*new)) == kind
+    assert compare(cpp(*new), cpp(*old)) == OPPOSITE.get(kind, kind)
+
+
+@pytest.mark.parametrize(("old", "new", "kind"), PYTHON, ids=str)
+def test_python(old, new, kind):
+    assert compare(python(*old), python(*new)) == kind
+    assert compare(python(*new), python(*old)) == OPPOSITE.get(kind, kind)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "type_", "kind"),
+    [
+        ("x > 0", "x >= 1", "int", "equivalent"),
+        ("x > 0", "x >= 1", "const double &", "tightened"),
+        ("x > 0", "x != 0", "uint8_t", "equivalent"),
+        ("x > 0", "x != 0", "std::size_t", "equivalent"),
+        ("x > 0", "x != 0", "int64_t", "widened"),
+        ("x", "x > 0", "float", "tightened"),
+        ("x == 1", "x", "bool", "equivalent"),
+        ("x - y > 0", "x > y", "unsigned int", "changed"),
+        ("x", "x == 0", "std::optional<int>", "changed"),
+        ("x", "x != nullptr", "Foo::SharedPtr", "equivalent"),
+    ],
+)
+def test_types_decide(old, new, type_, kind):
+    assert compare(cpp(f"if: {old}"), cpp(f"if: {new}"), types={"x": type_}) == kind
+
+
+def test_renamed_variables():
+    old, new = cpp("if: state_.ok_ && ns::Kind::A == kind"), cpp("if: state_.fine_ && kind == ns::Sort::A")
+    assert compare(old, new) == "changed"
+    assert compare(old, new, {"ok_": "fine_", "Kind": "Sort"}) == "equivalent"
+    assert compare(cpp("if: a && !b"), cpp("if: b && !a"), {"a": "b", "b": "a"}) == "equivalent"
+
+
+def test_local_variables_and_namespaces_mean_something():
+    old, new = cpp("if: n > 0"), cpp("if: !cloud.points.empty()")
+    assert compare(old, new, meanings=({"n": "cloud.points.size()"}, {})) == "equivalent"
+    old, new = cpp("if: e == enc::MONO8"), cpp("if: e == sensor_msgs::image_encodings::MONO8")
+    assert compare(old, new, meanings=({"enc": "sensor_msgs::image_encodings"}, {})) == "equivalent"
+    assert compare(old, old, meanings=({"e": "a.encoding"}, {"e": "b.encoding"})) == "changed"
+
+
+def test_ways():
+    a, b, c = cpp("if: a"), cpp("if: b"), cpp("if: c")
+    assert compare_ways((a, b), (b, a)) == "equivalent"
+    assert compare_ways((a, b), (cpp("if: a || b"),)) == "equivalent"
+    assert compare_ways((a,), (a, b)) == "widened"
+    assert compare_ways((a, b), (a,)) == "tightened"
+    assert compare_ways((a, b), (a, c)) == "changed"
+    assert compare_ways((a,), ()) == "tightened"
+    assert compare_ways((), ()) == "equivalent"
+
+
+def test_scripts_without_an_ending_are_python():
+    assert compare(guards("scripts/node", "if: a and b"), guards("scripts/node", "if: a", "if: b")) == "equivalent"
+
+
+def test_contradicting_guards_are_impossible():
+    assert impossible(cpp("if: x > 3", "unless: x > 0"))
+    assert impossible(python("if: a is None and a == 3"))
+    assert not impossible(cpp("if: x > 3", "unless: x > 5"))
+
+
+def test_too_much_work_is_changed():
+    """Pigeons that do not fit into their holes: small to say, much to prove."""
+    birds, holes = range(11), range(10)
+    sit = [" || ".join(f"p{bird}_{hole}" for hole in holes) for bird in birds]
+    alone = [f"!p{i}_{hole} || !p{j}_{hole}" for hole in holes for j in birds for i in range(j)]
+    pigeons = cpp(*(f"if: {text}" for text in sit + alone))
+    assert (
+        compare(cpp("if: a", *(f"{guard.kind}: {guard.text}" for guard in pigeons)), pigeons, milliseconds=5)
+        == "changed"
+    )
+
+
+def test_what_says_the_same_needs_no_solver():
+    program = """
+import sys
+from rosimpact.impact.flow.guards import compare
+from rosimpact.impact.model.flow.graph import GuardAt
+old = [GuardAt("if", "a && !b.empty()", "a.cpp", 1)]
+new = [GuardAt("unless", "b.size() == 0", "a.cpp", 1), GuardAt("if", "(this->a)", "a.cpp", 2)]
+assert compare(old, old) == compare(old, new) == "equivalent"
+assert "z3" not in sys.modules
+"""
+    subprocess.run([sys.executable, "-c", program], check=True)
+
+
+WORDS = [
+    (cpp("if: a"), cpp("if: a", "if: scan_received_"), "only when `scan_received_` too"),
+    (cpp(), cpp("if: a"), "only when `a`"),
+    (cpp("if: a"), cpp("if: a && b && c"), "only when `b` and `c` too"),
+    (cpp("if: a && x > 3"), cpp("if: a"), "no longer asks for `x > 3`"),
+    (cpp("if: x > 0"), cpp("if: x > 3"), "`x > 3` was `x > 0`"),
+    (cpp("unless: x < 0"), cpp("unless: x < 3"), "`x >= 3` was `x >= 0`"),
+    (cpp("if: a || b"), cpp("if: a || b || c"), "`a || b || c` was `a || b`"),
+    (cpp("case: s == A or B"), cpp("case: s == A"), "`s == A` was `s == A or B`"),
+    (cpp("if: a"), cpp("if: b"), "`b` was `a`"),
+    (cpp("if: a"), cpp("if: a", "for: auto & x : xs"), "only inside `for (auto & x : xs)` too"),
+    (cpp("if: a", "if: x > 3"), cpp("if: a", "if: x > 3", "if: x > 1", "if: b"), "only when `b` too"),
+    (cpp("if: a && b"), cpp("unless: !b || !a"), ""),
+    (cpp("if: a"), cpp("if: a && b && c && d && e && f"),
+     "only when `b`, `c`, `d` and 2 more too"),
+    (python("unless: not self.a"), python("unless: not self.a or x is None"), "only when `x is not None` too"),
+    (python("if: a"), python("if: a and not (b or c)"), "only when `not b` and `not c` too"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "clause"), WORDS, ids=str)
+def test_words(old, new, clause):
+    assert explain(old, new) == clause
+
+
+def test_words_of_ways():
+    a, b = cpp("if: a"), cpp("if: b", "if: c")
+    assert explain_ways((a,), (a, b)) == "also when `b` and `c`"
+    assert explain_ways((a, b), (a,)) == "no longer when `b` and `c`"
+    assert explain_ways((a,), (a, ())) == "also without any condition"
+
+
+def test_words_of_long_conditions_show_what_differs():
+    most = " || ".join(f"encoding == enc::KIND{number}" for number in range(9))
+    clause = explain(cpp(f"if: {most}"), cpp(f"if: {most} || encoding == enc::LAST"))
+    assert clause == "`… encoding == enc::KIND8 || encoding == enc::LAST` was `… encoding == enc::KIND8`"

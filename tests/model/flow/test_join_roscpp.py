@@ -1,0 +1,280 @@
+"""ROS 1 nodes in C++: names, handles, types, callbacks, and what publishes where."""
+
+from joining import ends, graph
+
+TALKER = """
+    #include <ros/ros.h>
+    #include <std_msgs/String.h>
+    int main(int argc, char** argv) {
+      ros::init(argc, argv, "talker");
+      ros::NodeHandle nh, pnh("~");
+      std::string topic;
+      pnh.param<std::string>("topic", topic, "chatter");
+      ros::Publisher pub = nh.advertise<std_msgs::String>(topic, 10, true);
+      ros::Publisher own = pnh.advertise<std_msgs::String>("state", 1);
+      ros::Rate rate(10);
+      while (ros::ok()) {
+        std_msgs::String message;
+        if (message.data.empty()) pub.publish(message);
+        rate.sleep();
+      }
+    }
+"""
+
+
+def test_a_talker_with_a_private_handle_and_a_parameter():
+    found = graph({"demo/src/talker.cpp": TALKER}, 1)
+    (node,) = found.nodes
+    assert (node.id, node.name, node.kind, node.executable) == ("demo/talker", "/talker", "executable", "talker")
+    assert ends(found, "publisher") == {
+        ("demo/talker", "/chatter", "std_msgs/String"),
+        ("demo/talker", "/talker/state", "std_msgs/String"),
+    }
+    by_topic = {endpoint.topic: endpoint for endpoint in found.endpoints}
+    assert by_topic["/chatter"].how == "default"
+    assert by_topic["/chatter"].qos.durability == "transient_local"
+    assert by_topic["/chatter"].qos.depth == 10
+    assert by_topic["/talker/state"].how == "literal"
+    (publish,) = found.publishes
+    assert (publish.topic, publish.expression) == ("/chatter", "message")
+    assert [(guard.kind, guard.text) for guard in publish.guards] == [
+        ("while", "ros::ok()"),
+        ("if", "message.data.empty()"),
+    ]
+    assert [trigger.kind for trigger in publish.triggers] == ["start"]
+    assert found.coverage.calls == found.coverage.resolved == 3
+    assert found.coverage.by_default == 2
+
+
+CLASS = {
+    "nav/include/nav/server.h": """
+        #pragma once
+        namespace nav {
+        class Server {
+         public:
+          Server();
+          void onScan(const sensor_msgs::LaserScan::ConstPtr& scan);
+          bool onClear(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
+         private:
+          void send(const ros::TimerEvent&);
+          ros::NodeHandle nh_;
+          ros::NodeHandle private_nh_{"~"};
+          ros::Publisher pub_;
+          ros::Subscriber sub_;
+          ros::Timer timer_;
+          ros::ServiceServer service_;
+          bool ready_ = false;
+        };
+        }
+    """,
+    "nav/src/server.cpp": """
+        #include "nav/server.h"
+        namespace nav {
+        Server::Server() {
+          pub_ = nh_.advertise<nav_msgs::Path>("plan", 1);
+          sub_ = nh_.subscribe("scan", 5, &Server::onScan, this);
+          timer_ = nh_.createTimer(ros::Duration(0.1), &Server::send, this);
+          service_ = private_nh_.advertiseService("clear", &Server::onClear, this);
+        }
+        void Server::onScan(const sensor_msgs::LaserScan::ConstPtr& scan) { ready_ = true; }
+        bool Server::onClear(std_srvs::Empty::Request&, std_srvs::Empty::Response&) { return true; }
+        void Server::send(const ros::TimerEvent&) {
+          if (!ready_) return;
+          pub_.publish(nav_msgs::Path());
+        }
+        }
+    """,
+    "nav/src/main.cpp": """
+        #include "nav/server.h"
+        int main(int argc, char** argv) {
+          ros::init(argc, argv, "planner");
+          nav::Server server;
+          ros::spin();
+        }
+    """,
+}
+
+
+def test_a_class_over_three_files_belongs_to_the_program_that_makes_it():
+    found = graph(CLASS, 1)
+    assert ends(found, "publisher") == {("nav/main", "/plan", "nav_msgs/Path")}
+    assert ends(found, "subscriber") == {("nav/main", "/scan", "sensor_msgs/LaserScan")}
+    assert ends(found, "server") == {("nav/main", "/planner/clear", "std_srvs/Empty")}
+    subscriber = next(e for e in found.endpoints if e.role == "subscriber")
+    assert (subscriber.callback.name, subscriber.callback.path) == ("nav::Server::onScan", "nav/src/server.cpp")
+    (publish,) = found.publishes
+    assert [(guard.kind, guard.text) for guard in publish.guards] == [("unless", "!ready_")]
+    assert [(trigger.kind, trigger.detail) for trigger in publish.triggers] == [("timer", "ros::Duration(0.1)")]
+    (timer,) = found.timers
+    assert timer.callback.name == "nav::Server::send"
+
+
+def test_guards_of_the_only_caller_come_first():
+    found = graph({"p/a.cpp": """
+        class A {
+          void cb(const std_msgs::Bool::ConstPtr& m) { if (m->data) { send(3); } }
+          void send(int n) { for (int i = 0; i < n; i++) pub_.publish(m_); }
+          A() { sub_ = nh_.subscribe("go", 1, &A::cb, this); pub_ = nh_.advertise<std_msgs::Int32>("n", 1); }
+          ros::NodeHandle nh_; ros::Publisher pub_; ros::Subscriber sub_; std_msgs::Int32 m_;
+        };
+        int main(int c, char** v) { ros::init(c, v, "a"); A a; ros::spin(); }
+    """}, 1)  # fmt: skip
+    (publish,) = found.publishes
+    assert [(guard.kind, guard.of) for guard in publish.guards] == [("if", "A::cb"), ("while", "A::send")]
+    assert [(trigger.kind, trigger.detail) for trigger in publish.triggers] == [("subscriber", "go")]
+
+
+def test_several_ways_keep_their_own_guards():
+    found = graph({"p/a.cpp": """
+        class A {
+          void one(const std_msgs::Bool::ConstPtr& m) { if (m->data) send(); }
+          void two(const std_msgs::Bool::ConstPtr& m) { if (!stopped_) send(); }
+          void send() { pub_.publish(m_); }
+          A() {
+            one_ = nh_.subscribe("one", 1, &A::one, this);
+            two_ = nh_.subscribe("two", 1, &A::two, this);
+            pub_ = nh_.advertise<std_msgs::Int32>("n", 1);
+          }
+          ros::NodeHandle nh_; ros::Publisher pub_; ros::Subscriber one_, two_; std_msgs::Int32 m_; bool stopped_;
+        };
+        int main(int c, char** v) { ros::init(c, v, "a"); A a; ros::spin(); }
+    """}, 1)  # fmt: skip
+    (publish,) = found.publishes
+    assert publish.guards == ()
+    ways = {way.trigger.detail: [guard.text for guard in way.guards] for way in publish.by}
+    assert ways == {"one": ["m->data"], "two": ["!stopped_"]}
+
+
+def test_images_have_their_camera_info_beside_them():
+    found = graph({"p/a.cpp": """
+        class A : public nodelet::Nodelet {
+          void onInit() override {
+            it_.reset(new image_transport::ImageTransport(getPrivateNodeHandle()));
+            sub_ = it_->subscribeCamera("in/image_raw", 1, &A::cb, this);
+            pub_ = it_->advertise("out", 1);
+          }
+          void cb(const sensor_msgs::ImageConstPtr& i, const sensor_msgs::CameraInfoConstPtr& c) { pub_.publish(i); }
+          boost::shared_ptr<image_transport::ImageTransport> it_;
+          image_transport::CameraSubscriber sub_; image_transport::Publisher pub_;
+        };
+        PLUGINLIB_EXPORT_CLASS(A, nodelet::Nodelet)
+    """}, 1)  # fmt: skip
+    (node,) = found.nodes
+    assert (node.kind, node.plugin) == ("nodelet", "A")
+    topics = {(e.role, e.topic, e.type) for e in found.endpoints}
+    assert topics == {
+        ("subscriber", "/a/in/image_raw", "sensor_msgs/Image"),
+        ("subscriber", "/a/in/camera_info", "sensor_msgs/CameraInfo"),
+        ("publisher", "/a/out", "sensor_msgs/Image"),
+    }
+    assert [publish.topic for publish in found.publishes] == ["/a/out"]
+
+
+def test_filters_get_the_callback_of_their_synchronizer():
+    found = graph({"p/a.cpp": """
+        class A {
+         public:
+          A() : image_(nh_, "image", 1), sync_(Policy(10), image_, info_) {
+            info_.subscribe(nh_, "info", 1);
+            sync_.registerCallback(boost::bind(&A::both, this, _1, _2));
+          }
+          void both(const sensor_msgs::ImageConstPtr& a, const sensor_msgs::CameraInfoConstPtr& b) {}
+          ros::NodeHandle nh_;
+          typedef message_filters::sync_policies::ApproximateTime<sensor_msgs::Image, sensor_msgs::CameraInfo> Policy;
+          message_filters::Subscriber<sensor_msgs::Image> image_;
+          message_filters::Subscriber<sensor_msgs::CameraInfo> info_;
+          message_filters::Synchronizer<Policy> sync_;
+        };
+        int main(int c, char** v) { ros::init(c, v, "a"); A a; ros::spin(); }
+    """}, 1)  # fmt: skip
+    assert ends(found, "subscriber") == {
+        ("p/a", "/image", "sensor_msgs/Image"),
+        ("p/a", "/info", "sensor_msgs/CameraInfo"),
+    }
+    assert {e.callback.name for e in found.endpoints if not e.implied} == {"A::both"}
+
+
+def test_a_publisher_passed_to_functions_and_bound():
+    found = graph({"p/a.cpp": """
+        void tick(const ros::TimerEvent&, ros::Publisher pub) { pub.publish(std_msgs::Empty()); }
+        void say(ros::Publisher& p) { p.publish(std_msgs::Empty()); }
+        int main(int c, char** v) {
+          ros::init(c, v, "a");
+          ros::NodeHandle nh;
+          ros::Publisher out = nh.advertise<std_msgs::Empty>("/tick", 1);
+          ros::Timer t = nh.createTimer(ros::Duration(1), boost::bind(tick, _1, out));
+          say(out);
+        }
+    """}, 1)  # fmt: skip
+    assert {publish.topic for publish in found.publishes} == {"/tick"}
+    assert {trigger.kind for publish in found.publishes for trigger in publish.triggers} == {"timer", "start"}
+
+
+def test_what_cannot_be_told_is_listed_with_its_reason():
+    found = graph({"p/a.cpp": """
+        int main(int c, char** v) {
+          ros::init(c, v, "a");
+          ros::NodeHandle nh;
+          ros::Publisher pub = nh.advertise<std_msgs::Empty>(v[1], 1);
+          pub.publish(std_msgs::Empty());
+        }
+    """}, 1)  # fmt: skip
+    assert found.coverage.calls == 2
+    assert found.coverage.resolved == 0
+    assert [(u.what, u.line) for u in found.coverage.unresolved] == [("publisher name", 5), ("publish", 6)]
+    (endpoint,) = [e for e in found.endpoints if not e.implied]
+    assert (endpoint.topic, endpoint.how) == ("", "unresolved")
+    assert endpoint.reason
+
+
+def test_transforms_and_reconfigure_are_implied():
+    found = graph({"p/a.cpp": """
+        int main(int c, char** v) {
+          ros::init(c, v, "a");
+          tf::TransformListener listener;
+          tf::TransformBroadcaster caster;
+          dynamic_reconfigure::Server<p::AConfig> server;
+          caster.sendTransform(tf::StampedTransform());
+        }
+    """}, 1)  # fmt: skip
+    assert {(e.role, e.topic) for e in found.endpoints if e.implied} == {
+        ("subscriber", "/tf"), ("subscriber", "/tf_static"), ("publisher", "/tf"), ("server", "/a/set_parameters"),
+        ("publisher", "/a/parameter_descriptions"), ("publisher", "/a/parameter_updates"), ("publisher", "/rosout"),
+        ("server", "/a/get_loggers"), ("server", "/a/set_logger_level"),
+    }  # fmt: skip
+    assert [publish.topic for publish in found.publishes] == ["/tf"]
+
+
+def test_a_method_called_publish_is_followed():
+    found = graph({"p/a.cpp": """
+        class Cloud {
+         public:
+          explicit Cloud(ros::NodeHandle& nh) { pub_ = nh.advertise<sensor_msgs::PointCloud2>("cloud", 1); }
+          void publish() { pub_.publish(cloud_); }
+          ros::Publisher pub_; sensor_msgs::PointCloud2 cloud_;
+        };
+        int main(int c, char** v) {
+          ros::init(c, v, "a");
+          ros::NodeHandle nh;
+          Cloud cloud(nh);
+          while (ros::ok()) cloud.publish();
+        }
+    """}, 1)  # fmt: skip
+    assert {(p.line, p.topic, p.through) for p in found.publishes} == {
+        (5, "/cloud", ""),
+        (12, "/cloud", "Cloud::publish"),
+    }
+
+
+def test_calls_of_other_classes_that_are_named_alike_are_none():
+    found = graph({"p/a.cpp": """
+        struct Magazine { void subscribe(const char* who, int n); void advertise(int pages); };
+        int main(int c, char** v) {
+          Magazine m;
+          m.subscribe("me", 1);
+          m.advertise(3);
+          other.subscribe();
+        }
+    """}, 1)  # fmt: skip
+    assert found.endpoints == ()
+    assert found.coverage.calls == 0

@@ -1,0 +1,108 @@
+"""Nodes of ROS 1 as a command starts them: arguments, and nodelets that a program loads into itself."""
+
+import pytest
+from joining import joined
+from rosimpact.impact.model.flow.nodes import Built
+from rosimpact.impact.model.flow.rosrun import rosrun
+
+RELAY = """
+    std::string out_topic;
+    ros::NodeHandle* handle;
+    void heard(const std_msgs::String& message) { handle->advertise<std_msgs::String>(out_topic, 1); }
+    int main(int argc, char** argv) {
+      ros::init(argc, argv, "relay");
+      ros::NodeHandle n;
+      handle = &n;
+      if (argc == 2)
+        out_topic = std::string(argv[1]) + "_relay";
+      else
+        out_topic = argv[2];
+      ros::Subscriber sub = n.subscribe(std::string(argv[1]), 10, heard);
+    }
+"""
+ARGPARSE = """
+    #!/usr/bin/env python3
+    import argparse, rospy, roslib.message
+    from std_msgs.msg import String
+    if __name__ == "__main__":
+        parser = argparse.ArgumentParser()
+        parser.add_argument("input")
+        parser.add_argument("--output", default="/plain")
+        args = parser.parse_args(rospy.myargv()[1:])
+        rospy.init_node("relay")
+        pub = rospy.Publisher(args.output, String, queue_size=1)
+        rospy.Subscriber(args.input, String, pub.publish)
+"""
+LOADER = """
+    namespace proc {
+    class Rectify : public nodelet::Nodelet {
+      void onInit() {
+        pub_ = getNodeHandle().advertise<sensor_msgs::Image>("image_rect", 1);
+        own_ = getPrivateNodeHandle().advertise<std_msgs::String>("state", 1);
+      }
+      ros::Publisher pub_, own_;
+    };
+    }
+    PLUGINLIB_EXPORT_CLASS(proc::Rectify, nodelet::Nodelet)
+    void side(nodelet::Loader& loader, const std::string& name) {
+      nodelet::M_string remappings;
+      remappings["unused"] = "gone";
+      remappings.clear();
+      remappings["image_rect"] = name + "/image_rect";
+      loader.load(ros::this_node::getName() + "_" + name, "proc/rectify", remappings, {});
+    }
+    int main(int argc, char** argv) {
+      ros::init(argc, argv, "stereo");
+      nodelet::Loader loader(false);
+      side(loader, "left");
+      side(loader, "right");
+    }
+"""
+
+
+def ends(files, command, **more) -> set[tuple[str, str, str, str]]:
+    """(role, topic, type, how) of the endpoints that a command has, what every node has left out."""
+    found = joined(files, 1, **more).graph(launch=rosrun(*command))
+    return {(e.role, e.topic, e.type, e.how) for e in found.endpoints if not e.implied}
+
+
+@pytest.mark.parametrize(
+    "arguments, output",
+    [(("/in", "/out"), "/out"), (("/in",), "/in_relay"), (("/in", "/out", "/out:=/there"), "/there")],
+)
+def test_arguments_of_cpp(arguments, output):
+    found = ends({"p/relay.cpp": RELAY}, ("p", "relay", arguments))
+    assert {(role, topic) for role, topic, _, _ in found} == {("subscriber", "/in"), ("publisher", output)}
+
+
+def test_arguments_of_argparse():
+    found = ends({"p/relay.py": ARGPARSE}, ("p", "relay.py", ("/in",)))
+    assert found == {
+        ("subscriber", "/in", "std_msgs/String", "given"),
+        ("publisher", "/plain", "std_msgs/String", "default"),
+    }
+    found = ends({"p/relay.py": ARGPARSE}, ("p", "relay.py", ("/in", "--output", "/out")))
+    assert ("publisher", "/out", "std_msgs/String", "given") in found
+
+
+def test_arguments_that_nobody_gives_are_not_known():
+    found = joined({"p/relay.cpp": RELAY}, 1).graph()
+    assert {e.topic for e in found.endpoints if not e.implied} == {""}
+
+
+def test_a_program_loads_one_nodelet_twice():
+    built = (Built("p", {"stereo": ("p/stereo.cpp",)}, {}, {}, {}, {}, {"proc/rectify": "proc::Rectify"}),)
+    found = ends({"p/stereo.cpp": LOADER}, ("p", "stereo"), built=built)
+    assert {(topic, kind) for _, topic, kind, _ in found} == {
+        ("/left/image_rect", "sensor_msgs/Image"), ("/right/image_rect", "sensor_msgs/Image"),
+        ("/stereo_left/state", "std_msgs/String"), ("/stereo_right/state", "std_msgs/String"),
+    }  # fmt: skip
+
+
+def test_what_every_node_has():
+    found = joined({"p/relay.cpp": RELAY}, 1).graph(launch=rosrun("p", "relay", ("/in", "__name:=other")))
+    assert {(e.role, e.topic, e.type) for e in found.endpoints if e.implied} == {
+        ("publisher", "/rosout", "rosgraph_msgs/Log"),
+        ("server", "/other/get_loggers", "roscpp/GetLoggers"),
+        ("server", "/other/set_logger_level", "roscpp/SetLoggerLevel"),
+    }

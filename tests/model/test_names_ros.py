@@ -1,0 +1,149 @@
+"""Names of topics and nodes, by the rules of both generations of ROS."""
+
+import pytest
+from rosimpact.impact.model.names_ros import (
+    NameRefused,
+    Rule,
+    canonical,
+    joined,
+    namespace_of,
+    ros1_name,
+    ros1_remapped,
+    ros2_name,
+    ros2_node,
+    ros2_remapped,
+    ros2_rule,
+)
+
+
+# The table of http://wiki.ros.org/Names
+@pytest.mark.parametrize(
+    ("node", "name", "expected"),
+    [
+        ("/node1", "bar", "/bar"),
+        ("/wg/node2", "bar", "/wg/bar"),
+        ("/wg/node3", "foo/bar", "/wg/foo/bar"),
+        ("/node1", "/bar", "/bar"),
+        ("/wg/node2", "/bar", "/bar"),
+        ("/wg/node3", "/foo/bar", "/foo/bar"),
+        ("/node1", "~bar", "/node1/bar"),
+        ("/wg/node2", "~bar", "/wg/node2/bar"),
+        ("/wg/node3", "~foo/bar", "/wg/node3/foo/bar"),
+        ("/wg/node3", "~/bar", "/wg/node3/bar"),
+        ("/wg/node3", "", "/wg"),
+        ("/node1", "//a//b/", "/a/b"),
+    ],
+)
+def test_names_of_ros1(node, name, expected):
+    assert ros1_name(name, node) == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "remaps", "expected"),
+    [
+        ("scan", [("scan", "base_scan")], "/r/base_scan"),
+        ("scan", [("scan", "/base_scan")], "/base_scan"),
+        ("scan", [("/scan", "/base_scan")], "/r/scan"),
+        ("scan", [("/r/scan", "x")], "/r/x"),
+        ("/r/scan", [("scan", "x")], "/r/x"),
+        ("~out", [("~out", "cloud")], "/r/cloud"),
+        ("out", [("out", "~cloud")], "/r/n/cloud"),
+        ("a", [("a", "b"), ("b", "c")], "/r/b"),
+        ("a", [("a", "b"), ("a", "c")], "/r/c"),
+        ("n/out", [("~out", "x")], "/r/x"),
+    ],
+)
+def test_remapping_of_ros1(name, remaps, expected):
+    assert ros1_remapped(name, "/r/n", remaps) == expected
+
+
+# The table of https://design.ros2.org/articles/topic_and_service_names.html
+@pytest.mark.parametrize(
+    ("name", "namespace", "node", "expected"),
+    [
+        ("foo", "/", "my_node", "/foo"),
+        ("foo", "/my_ns", "my_node", "/my_ns/foo"),
+        ("foo/bar", "/my_ns", "my_node", "/my_ns/foo/bar"),
+        ("/foo", "/my_ns", "my_node", "/foo"),
+        ("~", "/", "my_node", "/my_node"),
+        ("~", "/my_ns", "my_node", "/my_ns/my_node"),
+        ("~/foo", "/my_ns", "my_node", "/my_ns/my_node/foo"),
+        ("{node}/foo", "/my_ns", "my_node", "/my_ns/my_node/foo"),
+        ("/x/{node}", "/my_ns", "my_node", "/x/my_node"),
+        ("{ns}/foo", "/my_ns", "my_node", "/my_ns/foo"),
+        ("{namespace}/foo", "/", "my_node", "/foo"),
+    ],
+)
+def test_names_of_ros2(name, namespace, node, expected):
+    assert ros2_name(name, node, namespace) == expected
+
+
+@pytest.mark.parametrize("name", ["", "~foo", "foo/", "a//b", "1a", "a b", "{who}/a", "a-b", "a/~"])
+def test_names_that_ros2_refuses(name):
+    with pytest.raises(NameRefused):
+        ros2_name(name, "n", "/")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("scan:=/lidar/scan", Rule("scan", "/lidar/scan")),
+        ("talker:chatter:=news", Rule("chatter", "news", "talker")),
+        ("talker:__ns:=/a", Rule("__ns", "/a", "talker")),
+        ("rostopic://a:=b", Rule("a", "b", "", "topic")),
+        ("n:rosservice:///a:=b", Rule("/a", "b", "n", "service")),
+        ("~/a:=b", Rule("~/a", "b")),
+        ("a", None),
+        (":=b", None),
+        ("a:=", None),
+    ],
+)
+def test_rules_of_ros2(text, expected):
+    assert ros2_rule(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "rules", "kind", "expected"),
+    [
+        ("scan", ["scan:=front"], "topic", "/r/front"),
+        ("scan", ["scan:=/front"], "topic", "/front"),
+        ("scan", ["/scan:=/front"], "topic", "/r/scan"),
+        ("scan", ["/r/scan:=/front"], "topic", "/front"),
+        ("~/out", ["~/out:=~/in"], "topic", "/r/n/in"),
+        ("a", ["a:=b", "b:=c"], "topic", "/r/b"),
+        ("a", ["a:=b", "a:=c"], "topic", "/r/b"),
+        ("a", ["other:a:=b", "n:a:=c"], "topic", "/r/c"),
+        ("a", ["rosservice://a:=b"], "topic", "/r/a"),
+        ("a", ["rosservice://a:=b"], "service", "/r/b"),
+        ("a", ["__ns:=/x", "__node:=m"], "topic", "/r/a"),
+        ("a", ["a b:=c", "~a:=c"], "topic", "/r/a"),
+        ("/tf", ["/tf:=tf"], "topic", "/r/tf"),
+    ],
+)
+def test_remapping_of_ros2(name, rules, kind, expected):
+    parsed = [rule for rule in map(ros2_rule, rules) if rule is not None]
+    assert ros2_remapped(name, "n", "/r", parsed, kind) == expected
+
+
+@pytest.mark.parametrize(
+    ("rules", "expected"),
+    [
+        ([], ("n", "/r")),
+        (["__ns:=/x"], ("n", "/x")),
+        (["__node:=m"], ("m", "/r")),
+        (["__name:=m", "__node:=k"], ("m", "/r")),
+        (["other:__node:=m"], ("n", "/r")),
+        (["__node:=m", "m:__ns:=/x"], ("m", "/x")),
+    ],
+)
+def test_node_of_ros2(rules, expected):
+    assert ros2_node("n", "/r", [rule for rule in map(ros2_rule, rules) if rule is not None]) == expected
+
+
+def test_small_ones():
+    assert [canonical(n) for n in ("", "/", "//", "a//b/", "/a/")] == ["", "/", "/", "a/b", "/a"]
+    assert [namespace_of(n) for n in ("/a/b", "/a", "/")] == ["/a", "/", "/"]
+    assert joined("/a", "b") == "/a/b"
+    assert joined("/a", "/b") == "/b"
+    assert joined("/", "b") == "/b"
+    assert joined("/a", "") == "/a"

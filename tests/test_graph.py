@@ -1,0 +1,180 @@
+"""`rosimpact graph` on workspaces as they are on disk and in git."""
+
+import json
+import subprocess
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+from rosimpact.impact.cli import app
+from typer.testing import CliRunner
+
+TALKER = """
+    #include <rclcpp/rclcpp.hpp>
+    #include <std_msgs/msg/string.hpp>
+    class Talker : public rclcpp::Node {
+     public:
+      Talker() : Node("talker") {
+        pub_ = create_publisher<std_msgs::msg::String>(declare_parameter("topic", "chatter"), 10);
+        timer_ = create_wall_timer(1s, [this]() { pub_->publish(message_); });
+      }
+      rclcpp::Publisher<std_msgs::msg::String>::SharedPtr pub_;
+      std_msgs::msg::String message_;
+    };
+    int main(int argc, char** argv) { rclcpp::spin(std::make_shared<Talker>()); }
+"""
+LISTENER = """
+    import rclpy
+    from rclpy.node import Node
+    from std_msgs.msg import String
+
+    class Listener(Node):
+        def __init__(self):
+            super().__init__("listener")
+            self.create_subscription(String, "chatter", self.hear, 10)
+
+        def hear(self, message):
+            pass
+
+    def main():
+        rclpy.spin(Listener())
+"""
+CMAKE = """
+    cmake_minimum_required(VERSION 3.16)
+    project(talk)
+    find_package(ament_cmake REQUIRED)
+    find_package(rclcpp REQUIRED)
+    add_executable(talker_node src/talker.cpp)
+    install(TARGETS talker_node DESTINATION lib/${PROJECT_NAME})
+    ament_package()
+"""
+SETUP = """
+    from setuptools import setup
+    setup(name="hear", packages=["hear"], entry_points={"console_scripts": ["hear_node = hear.node:main"]})
+"""
+LAUNCH = """
+    <launch>
+      <arg name="where" default="front"/>
+      <node pkg="talk" exec="talker_node" name="speaker" namespace="$(var where)">
+        <param name="topic" value="speech"/>
+      </node>
+      <node pkg="hear" exec="hear_node"><remap from="chatter" to="front/speech"/></node>
+    </launch>
+"""
+
+
+def manifest(name: str, kind: str) -> str:
+    return (
+        f'<?xml version="1.0"?><package format="3"><name>{name}</name><version>1.0.0</version>'
+        '<description>x</description><maintainer email="a@b.org">a</maintainer><license>MIT</license>'
+        f"<buildtool_depend>{kind}</buildtool_depend><export><build_type>{kind}</build_type></export></package>"
+    )
+
+
+@pytest.fixture
+def ws(tmp_path: Path) -> Path:
+    files = {
+        "src/talk/package.xml": manifest("talk", "ament_cmake"),
+        "src/talk/CMakeLists.txt": CMAKE,
+        "src/talk/src/talker.cpp": TALKER,
+        "src/talk/launch/talk.launch.xml": LAUNCH,
+        "src/hear/package.xml": manifest("hear", "ament_python"),
+        "src/hear/setup.py": SETUP,
+        "src/hear/hear/__init__.py": "",
+        "src/hear/hear/node.py": LISTENER,
+    }
+    for name, text in files.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(dedent(text).lstrip())
+    return tmp_path
+
+
+def run(*arguments: object) -> tuple[int, str, str]:
+    result = CliRunner().invoke(app, ["graph", *map(str, arguments)])
+    return result.exit_code, result.stdout, result.stderr
+
+
+def edges(text: str) -> set[tuple[str, str, str]]:
+    found = json.loads(text)
+    return {
+        (each["node"], role.removesuffix("s"), each["topic"])
+        for role in ("publishers", "subscribers")
+        for each in found[role]
+        if not each["implied"]
+    }
+
+
+def test_nodes_are_told_by_what_is_built_and_installed(ws):
+    code, out, _ = run(ws, "-f", "json")
+    assert code == 0
+    assert edges(out) == {("talk/talker_node", "publisher", "/chatter"), ("hear/hear_node", "subscriber", "/chatter")}
+    names = {node["id"]: (node["name"], node["kind"], node["language"]) for node in json.loads(out)["nodes"]}
+    assert names == {
+        "talk/talker_node": ("/talker", "executable", "cpp"),
+        "hear/hear_node": ("/listener", "script", "python"),
+    }
+
+
+def test_a_launch_file_gives_names_parameters_and_remappings(ws):
+    code, out, _ = run(ws, "--launch", "talk.launch.xml", "-f", "json")
+    assert code == 0
+    assert edges(out) == {
+        ("/front/speaker", "publisher", "/front/speech"),
+        ("/listener", "subscriber", "/front/speech"),
+    }
+    code, out, _ = run(ws, "--launch", "talk.launch.xml", "--set", "where:=rear", "-f", "json")
+    assert ("/rear/speaker", "publisher", "/rear/speech") in edges(out)
+
+
+def test_beside_a_base(ws):
+    def git(*arguments: str) -> None:
+        settings = ["-c", "user.name=a", "-c", "user.email=a@b.org", "-c", "init.defaultBranch=main"]
+        subprocess.run(["git", *settings, *arguments], cwd=ws, check=True, capture_output=True)
+
+    git("init")
+    git("add", "-A")
+    git("commit", "-m", "first")
+    source = ws / "src/talk/src/talker.cpp"
+    source.write_text(source.read_text().replace("pub_->publish", "if (ready_) pub_->publish"))
+    code, out, _ = run(ws, "--base", "HEAD")
+    assert code == 0
+    assert "~ publishes  /talker" in out
+    assert "changed: guards" in out
+    code, out, _ = run(ws, "--rev", "HEAD")
+    assert "when ready_" not in out
+
+
+def test_an_unchanged_workspace_is_not_joined_again(ws, monkeypatch):
+    first = run(ws)
+    monkeypatch.setattr("rosimpact.impact.model.flow.workspace.joined", lambda *_: pytest.fail("joined again"))
+    assert run(ws) == first
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--format", "png"], "--format png: unknown"),
+        (["--launch", "none.launch"], "--launch none.launch: no such file"),
+        (["--set", "a:=1"], "name it with --launch"),
+        (["--launch", "talk.launch.xml", "--set", "a"], "write NAME:=VALUE"),
+        (["--node", "talkr"], "`talkr`: no node of this name"),
+        (["--base", "nowhere"], "no base to compare with"),
+    ],
+)
+def test_what_cannot_be_drawn(ws, arguments, said):
+    code, out, err = run(ws, *arguments)
+    assert code == 2
+    assert said in err
+    assert "Traceback" not in err + out
+
+
+def test_a_folder_without_packages(tmp_path):
+    code, _, err = run(tmp_path)
+    assert code == 2
+    assert "no package was found" in err
+
+
+def test_a_file_for_the_graph(ws, tmp_path):
+    assert run(ws, "-f", "dot", "-o", tmp_path / "graph.dot")[0] == 0
+    assert (tmp_path / "graph.dot").read_text().startswith("digraph")
