@@ -81,7 +81,7 @@ def test_first_line_tells_scripts_apart(data, kind):
     assert decode("script", encode(facts)) == facts
 
 
-@pytest.mark.parametrize("kind", sorted(set(EXTRACTORS) - {"script"}))
+@pytest.mark.parametrize("kind", sorted(set(EXTRACTORS) - {"script", "flow_script"}))
 def test_what_is_too_large_is_named_and_not_read(kind):
     facts = extract(kind, b"#" * (8 * 1024 * 1024 + 1))
     assert [p.message for p in facts.facts.problems] == ["larger than 8 MB"]
