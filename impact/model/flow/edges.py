@@ -153,15 +153,40 @@ def launched_flow(whole: Flow, launch: Launch) -> Flow:
 
 def met(workspace: Workspace) -> Iterator[Pair]:
     """Pairs that a launch file starts, then pairs that nothing starts together and that have nobody else to talk to:
-    the workspace's programs need not be made to run together, but these have no other use."""
+    the workspace's programs need not be made to run together, but these have no other use. What launch files start of
+    the latter has to go by the same name there."""
     seen = set()
+    started = _Started(workspace)
     for launch, flow in flows(workspace):
         for pair in flow.pairs(launch):
             key = (*_place(pair.giver.endpoint), *_place(pair.taker.endpoint))
-            if key in seen or (not launch and not _left_to_each_other(flow, pair)):
+            if key in seen or (not launch and not (started.may_meet(pair) and _left_to_each_other(flow, pair))):
                 continue
             seen.add(key)
             yield pair
+
+
+class _Started:
+    """The programs that launch files start, with the names that they have there."""
+
+    def __init__(self, workspace: Workspace):
+        self._names: dict[str, set[str]] = {}
+        self._together: list[set[str]] = []
+        for launch in workspace.launches:
+            programs = {start.node: start.program for start in launch.starts}
+            self._together.append(set(programs.values()))
+            for program in programs.values():
+                self._names.setdefault(program, set())
+            for one in launch.graph.endpoints:
+                if one.node in programs:
+                    self._names[programs[one.node]].add(one.topic)
+
+    def may_meet(self, pair: Pair) -> bool:
+        """Whether two programs that no launch file starts together have the names that the source gives."""
+        sides = (pair.giver, pair.taker)
+        if any({side.node.id for side in sides} <= together for together in self._together):
+            return False
+        return all(side.endpoint.topic in self._names.get(side.node.id, {side.endpoint.topic}) for side in sides)
 
 
 def unstarted(workspace: Workspace) -> Flow:

@@ -118,7 +118,8 @@ class Values:
                 yield unknown
                 continue
             hows = {one.how for one in row}
-            how: How = min(hows, key=_LEAST.index, default="literal")
+            known: list[How] = [how for how in _LEAST if how in hows]
+            how = known[0] if known else _LEAST[-1]
             named = next((one.parameter for one in row if one.parameter), "")
             yield Value("".join(one.text or "" for one in row), how, "", named)
 

@@ -1,0 +1,205 @@
+"""What rules over the message flow leave alone, each beside the small change that makes them speak."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from rosimpact.impact.base import compare
+from rosimpact.impact.check import Options, check
+
+OPTIONS = Options(targets=("jazzy",), preview=True, jobs=1, select=("graph", "qos"))
+MANIFEST = """<?xml version="1.0"?>
+<package format="3">
+  <name>quay</name>
+  <version>1.0.0</version>
+  <description>quay</description>
+  <maintainer email="robots@example.org">Robots</maintainer>
+  <license>Apache-2.0</license>
+  <exec_depend>rclpy</exec_depend>
+  <export><build_type>ament_python</build_type></export>
+</package>
+"""
+HEAD = """import rclpy
+from geometry_msgs.msg import Twist, TwistStamped
+from nav_msgs.srv import GetMap
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from std_srvs.srv import Trigger
+
+"""
+STARTED = '<launch>\n  <node pkg="quay" exec="crane"/>\n  <node pkg="quay" exec="ship"/>\n</launch>\n'
+TALKS = "self.out = self.create_publisher(Twist, 'course', 10)"
+LISTENS = "self.create_subscription(Twist, 'course', print, 10)"
+
+
+def node(name: str, *lines: str) -> str:
+    """A module with a node that does these lines when it is made."""
+    body = "".join(f"        {line}\n" for line in lines)
+    return (
+        f"{HEAD}\nclass {name.title()}(Node):\n    def __init__(self):\n        super().__init__('{name}')\n{body}\n\n"
+        f"def main():\n    rclpy.init()\n    rclpy.spin({name.title()}())\n"
+    )
+
+
+def quay(crane: str, ship: str, launch: str = "", config: str = "") -> dict[str, str]:
+    """A package of two nodes, a crane and a ship, of what each does."""
+    scripts = "'crane = quay.crane:main', 'ship = quay.ship:main'"
+    files = {
+        "quay/package.xml": MANIFEST,
+        "quay/setup.py": "from setuptools import setup\n\nsetup(name='quay', version='1.0.0', packages=['quay'],\n"
+        f"      entry_points={{'console_scripts': [{scripts}]}})\n",
+        "quay/quay/__init__.py": "",
+        "quay/quay/crane.py": node("crane", *crane.split("\n")),
+        "quay/quay/ship.py": node("ship", *ship.split("\n")),
+    }
+    if launch:
+        files["quay/launch/quay.launch.xml"] = launch
+    if config:
+        files["quay/config/quay.yaml"] = config
+    return files
+
+
+def with_inner(start: str, inner: str) -> str:
+    """STARTED with something within the first node."""
+    return STARTED.replace('exec="crane"/>', f'exec="crane" name="crane">{inner}</node>').replace("\n", start + "\n", 1)
+
+
+REMAP = with_inner("", '<remap from="heading" to="/course"/>')
+LOADS = with_inner("", '<param from="$(find-pkg-share quay)/config/quay.yaml"/>')
+BEST = "profile = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)\n"
+
+
+class Row(NamedTuple):
+    """rule: its name. files: where it is silent. spoilt: path below quay/, old and new text: then it speaks, as
+    gravely as told."""
+
+    rule: str
+    files: dict[str, str]
+    spoilt: tuple[str, str, str]
+    told: str = "warning"
+
+
+ROWS = {
+    "a node that offers both types": Row(
+        "topic-type-mismatch",
+        quay(TALKS + "\nself.old = self.create_publisher(TwistStamped, 'course', 10)",
+             "self.create_subscription(TwistStamped, 'course', print, 10)", STARTED),
+        ("quay/crane.py", "self.old = self.create_publisher(TwistStamped, 'course', 10)", "pass"),
+        "error",
+    ),
+    "types that differ where a remapping parts the names": Row(
+        "topic-type-mismatch",
+        quay(TALKS, "self.create_subscription(TwistStamped, 'course', print, 10)",
+             with_inner("", '<remap from="course" to="heading"/>')),
+        ("launch/quay.launch.xml", 'from="course"', 'from="other"'),
+        "error",
+    ),
+    "types that differ in nodes with others to talk to": Row(
+        "topic-type-mismatch",
+        quay(TALKS, "self.create_subscription(TwistStamped, 'course', print, 10)\n" + LISTENS),
+        ("quay/ship.py", LISTENS, "pass"),
+    ),
+    "digits that tell names apart": Row(
+        "near-miss-name",
+        quay("self.out = self.create_publisher(Twist, 'course1', 10)",
+             "self.create_subscription(Twist, 'course2', print, 10)"),
+        ("quay/ship.py", "'course2'", "'courses1'"),
+    ),
+    "a publisher of an unknown name": Row(
+        "near-miss-name",
+        quay(TALKS + "\nself.any = self.create_publisher(Twist, input(), 10)",
+             "self.create_subscription(Twist, 'courses', print, 10)"),
+        ("quay/crane.py", "input()", "'far_away'"),
+    ),
+    "a server of an unknown name": Row(
+        "unmatched-client",
+        quay("self.create_service(GetMap, 'port/chart', print)\nself.create_service(GetMap, input(), print)",
+             "self.client = self.create_client(GetMap, 'chart')"),
+        ("quay/crane.py", "input()", "'far_away'"),
+    ),
+    "services whose type says nothing": Row(
+        "unmatched-client",
+        quay("self.create_service(Trigger, 'port/start', print)\nself.client = self.create_client(Trigger, 'start')",
+             LISTENS),
+        ("quay/crane.py", "(Trigger", "(GetMap"),
+    ),
+    "a node that is handed to code from elsewhere": Row(
+        "dead-remap",
+        quay("import far\nfar.Tool(self)\n" + TALKS, LISTENS, REMAP),
+        ("quay/crane.py", "import far\n        far.Tool(self)\n        ", ""),
+    ),
+    "a name that is put together": Row(
+        "dead-remap",
+        quay("self.out = self.create_publisher(Twist, input(), 10)", LISTENS, REMAP),
+        ("quay/crane.py", "input()", "'course'"),
+    ),
+    "parameters asked for by prefix": Row(
+        "unknown-parameter",
+        quay("self.declare_parameter('reach', 3.0)\nself.get_parameters_by_prefix('arm')", LISTENS, LOADS,
+             "crane:\n  ros__parameters:\n    height: 3.0\n"),
+        ("quay/crane.py", "self.get_parameters_by_prefix('arm')", "pass"),
+        "note",
+    ),
+    "parameters for every node": Row(
+        "unknown-parameter",
+        quay("self.declare_parameter('reach', 3.0)", LISTENS, LOADS, "/**:\n  ros__parameters:\n    height: 3.0\n"),
+        ("config/quay.yaml", "/**", "crane"),
+        "note",
+    ),
+    "a profile that is chosen under a condition": Row(
+        "qos-reliability",
+        quay(BEST + "if rclpy.ok():\n    profile = QoSProfile(depth=1)\n" + TALKS.replace("10", "profile"), LISTENS),
+        ("quay/crane.py", "if rclpy.ok():\n            profile = QoSProfile(depth=1)\n        ", ""),
+    ),
+    "a reliable publisher of a best-effort subscriber": Row(
+        "qos-reliability",
+        quay(BEST + TALKS + "\n" + LISTENS.replace("10", "profile"), "pass"),
+        ("quay/crane.py", "'course', 10)\n        self.create_subscription(Twist, 'course', print, profile)",
+         "'course', profile)\n        self.create_subscription(Twist, 'course', print, 10)"),
+    ),
+}  # fmt: skip
+
+
+def written(folder: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return folder
+
+
+def said(folder: Path, rule: str, cache: Path) -> set[str]:
+    return {f.severity for f in check(folder, OPTIONS._replace(cache=cache)).findings if f.rule == rule}
+
+
+@pytest.mark.parametrize("row", ROWS.values(), ids=ROWS)
+def test_what_is_left_alone(row: Row, tmp_path: Path):
+    assert said(written(tmp_path / "a", row.files), row.rule, tmp_path / "cache") == set()
+    path, old, new = row.spoilt
+    spoilt = {**row.files, f"quay/{path}": row.files[f"quay/{path}"].replace(old, new)}
+    assert spoilt != row.files
+    assert said(written(tmp_path / "b", spoilt), row.rule, tmp_path / "cache") == {row.told}
+
+
+RENAMED = {
+    "both sides": ("'heading'", "'heading'", set()),
+    "the publisher": ("'heading'", "'course'", {"warning"}),
+    "the subscriber": ("'course'", "'heading'", {"warning"}),
+}
+
+
+@pytest.mark.parametrize(("talks", "listens", "told"), RENAMED.values(), ids=RENAMED)
+def test_an_edge_is_lost_when_one_side_is_renamed(talks: str, listens: str, told: set[str], tmp_path: Path):
+    base = written(tmp_path / "base", quay(TALKS, LISTENS))
+    files = quay(TALKS.replace("'course'", talks), LISTENS.replace("'course'", listens))
+    report = compare(written(tmp_path / "now", files), base, OPTIONS._replace(cache=tmp_path / "cache"))
+    assert {f.severity for f in report.findings if f.rule == "lost-edge"} == told
+
+
+def test_a_subscriber_that_was_removed_is_a_note(tmp_path: Path):
+    base = written(tmp_path / "base", quay(TALKS, LISTENS))
+    now = written(tmp_path / "now", quay(TALKS, "pass"))
+    report = compare(now, base, OPTIONS._replace(cache=tmp_path / "cache"))
+    assert {f.severity for f in report.findings if f.rule == "lost-edge"} == {"note"}
