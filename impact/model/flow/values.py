@@ -17,6 +17,7 @@ NODE, NAMESPACE = "{node}", "{ns}"
 """Stand in a value for the name and the namespace of the node that evaluates it (ROS 2 writes them so in names)."""
 _MOST = 12
 _DEEPEST = 12
+_FAR = 6
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
@@ -228,6 +229,8 @@ class Values:
 
     def _by_reference(self, variable: Variable, seen: tuple) -> Iterator[Value]:
         """What functions write into a variable that is passed to them by reference."""
+        if len(seen) > _FAR:
+            return  # from hand to hand: a walk over everything that is passed on would not end in time
         for caller, call, place in self.code.passed.get(variable, ()):
             for target in self.code.targets(call.callee, caller):
                 parameters = target.facts.parameters
