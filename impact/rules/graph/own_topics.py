@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...model.flow.edges import Flow, Sure, launched_flow, unstarted, whole_flow
+from ...model.flow.edges import Sure, whole_flow
 from ...model.workspace import Workspace
 
 _SIDES = {"publisher": "subscriber", "subscriber": "publisher"}
@@ -18,32 +18,22 @@ _TOOLS = frozenset(
 )  # fmt: skip
 
 
-def one_sided(workspace: Workspace, role: str) -> Iterator[tuple[Sure, str]]:
-    """Endpoints of a role (publisher or subscriber) whose topic has no other side, one a topic, with where that is so:
-    a launch file, or the workspace. Topics are left out that tools and people outside of the workspace may use: those
-    of types that the workspace does not define, private ones, and what is known of tools."""
-    own = workspace.interface_names
+def one_sided(workspace: Workspace, role: str) -> Iterator[Sure]:
+    """Endpoints of a role (publisher or subscriber) of a type that nothing in the workspace has on the other side, one
+    a topic. Topics are left out that tools and people outside of the workspace may use: those of types that the
+    workspace does not define, private ones, and what is known of tools."""
+    flow = whole_flow(workspace)
+    met = {one.type for one in flow.graph.endpoints if one.role == _SIDES[role]}
     told: set[object] = set()
-    for where, flow in _flows(workspace):
-        for one in flow.sure(role):
-            endpoint = one.endpoint
-            type_ = flow.type_of(endpoint)
-            package = type_.partition("/")[0]
-            private = endpoint.written.startswith("~") or endpoint.topic.startswith(f"{one.node.name}/")
-            place = (endpoint.path, endpoint.line)
-            if package not in own or endpoint.implied or private or not told.isdisjoint((endpoint.topic, place)):
-                continue
-            if endpoint.topic.rpartition("/")[2] in _TOOLS or "debug" in endpoint.topic or flow.others(endpoint):
-                continue
-            if not flow.may_have(_SIDES[role], type_):
-                told.update((endpoint.topic, place))
-                yield one, where
-
-
-def _flows(workspace: Workspace) -> Iterator[tuple[str, Flow]]:
-    """Launch files that start nothing from elsewhere, then what no launch file starts."""
-    whole = whole_flow(workspace)
-    for launch in workspace.launches:
-        if not launch.missing:
-            yield f"`{launch.path}`", launched_flow(whole, launch)
-    yield "the workspace", unstarted(workspace)
+    for one in flow.sure(role):
+        endpoint = one.endpoint
+        type_ = flow.type_of(endpoint)
+        if type_.partition("/")[0] not in workspace.interface_names or not met.isdisjoint((type_, "", "*")):
+            continue
+        private = endpoint.written.startswith("~") or endpoint.topic.startswith(f"{one.node.name}/")
+        place = (endpoint.path, endpoint.line)
+        if endpoint.implied or private or not told.isdisjoint((endpoint.topic, place)):
+            continue
+        if endpoint.topic.rpartition("/")[2] not in _TOOLS and "debug" not in endpoint.topic:
+            told.update((endpoint.topic, place))
+            yield one

@@ -1,8 +1,8 @@
 """unfed-subscriber: a node listens to what nothing publishes.
 
 What it does
-    Reports subscribers of messages that the workspace itself defines, on a topic that nothing in the workspace
-    publishes. One note a topic.
+    Reports subscribers of messages that the workspace itself defines, and that nothing in the workspace publishes,
+    whatever the topic. One note a topic.
 
 Why it matters
     Its callback never runs: the publisher was renamed, is missing, or was never written.
@@ -18,7 +18,7 @@ Use instead
 
 Not reported
     Topics of types from other packages, which drivers, simulators and other workspaces publish as well; private topics
-    and those for debugging; topics that a publisher of an unknown name may feed.
+    and those for debugging; types that something in the workspace publishes under another name.
 """
 
 from ...model.build import At
@@ -30,12 +30,13 @@ from .own_topics import one_sided
 
 @rule(severity="note", preview=True, per_target=False)
 def unfed_subscriber(workspace: Workspace):
-    for one, where in one_sided(workspace, "subscriber"):
+    for one in one_sided(workspace, "subscriber"):
         endpoint = one.endpoint
         yield Hit(
             At(endpoint.path, endpoint.line),
             endpoint.topic,
-            f"nothing in {where} publishes `{endpoint.topic}` (`{endpoint.type}`), which `{said(one.node)}` reads",
+            f"nothing in the workspace publishes `{endpoint.type}`, which `{said(one.node)}` reads on "
+            f"`{endpoint.topic}`",
             f"publish `{endpoint.topic}`, or stop subscribing to it",
             one.node.package,
         )

@@ -1,8 +1,8 @@
 """unread-topic: nothing reads what a node publishes.
 
 What it does
-    Reports publishers of messages that the workspace itself defines, on a topic that nothing in the workspace
-    subscribes to. One note a topic.
+    Reports publishers of messages that the workspace itself defines, and that nothing in the workspace subscribes to,
+    whatever the topic. One note a topic.
 
 Why it matters
     It is work for nobody, or a sign that the reader was renamed or never written.
@@ -18,7 +18,7 @@ Use instead
 
 Not reported
     Topics of types from other packages, which tools, other workspaces and recordings read as well; private topics and
-    those for debugging; topics that a subscriber of an unknown name may read.
+    those for debugging; types that something in the workspace reads under another name.
 """
 
 from ...model.build import At
@@ -30,12 +30,13 @@ from .own_topics import one_sided
 
 @rule(severity="note", preview=True, per_target=False)
 def unread_topic(workspace: Workspace):
-    for one, where in one_sided(workspace, "publisher"):
+    for one in one_sided(workspace, "publisher"):
         endpoint = one.endpoint
         yield Hit(
             At(endpoint.path, endpoint.line),
             endpoint.topic,
-            f"nothing in {where} reads `{endpoint.topic}` (`{endpoint.type}`), which `{said(one.node)}` publishes",
+            f"nothing in the workspace reads `{endpoint.type}`, which `{said(one.node)}` publishes on "
+            f"`{endpoint.topic}`",
             f"subscribe to `{endpoint.topic}`, or stop publishing it",
             one.node.package,
         )
