@@ -28,20 +28,15 @@ from ...model.build import At
 from ...model.flow.launches import Renamed, Start
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
+from .given import given
 
 _COMMON = frozenset(("/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/diagnostics"))
 
 
 @rule(severity="warning", preview=True, per_target=False)
 def dead_remap(workspace: Workspace):
-    given: dict[tuple[str, int, str], list[tuple[Start, Renamed]]] = {}
-    elsewhere = {place for launch in workspace.launches for place in launch.elsewhere}
-    for launch in workspace.launches:
-        for start in launch.starts:
-            for renamed in start.renamed:
-                given.setdefault((renamed.path, renamed.line, renamed.written), []).append((start, renamed))
-    for (path, line, written), rows in given.items():
-        if f"{path}:{line}" in elsewhere or any(_lives(start, renamed, workspace.ros) for start, renamed in rows):
+    for (path, line, written), rows in given(workspace, lambda start: start.renamed, lambda each: each.written):
+        if any(_lives(start, renamed, workspace.ros) for start, renamed in rows):
             continue
         start, _ = rows[0]
         programs = {each.program.partition("/")[2] for each, _ in rows}

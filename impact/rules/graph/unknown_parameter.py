@@ -24,10 +24,11 @@ Not reported
 """
 
 from ...model.build import At
-from ...model.flow.launches import Given, Start
+from ...model.flow.launches import Start
 from ...model.flow.slips import is_slip
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
+from .given import given
 
 # What every node, or the framework around it, understands.
 _COMMON = frozenset(
@@ -39,14 +40,8 @@ _COMMON_HEADS = ("qos_overrides", "bond", "diagnostic_updater", "actionlib", "li
 
 @rule(severity="note", preview=True, per_target=False)
 def unknown_parameter(workspace: Workspace):
-    given: dict[tuple[str, int, str], list[tuple[Start, Given]]] = {}
-    elsewhere = {place for launch in workspace.launches for place in launch.elsewhere}
-    for launch in workspace.launches:
-        for start in launch.starts:
-            for setting in start.given:
-                given.setdefault((setting.path, setting.line, setting.name), []).append((start, setting))
-    for (path, line, name), rows in given.items():
-        if f"{path}:{line}" in elsewhere or any(_asks(start, name) for start, _ in rows):
+    for (path, line, name), rows in given(workspace, lambda start: start.given, lambda each: each.name):
+        if any(_asks(start, name) for start, _ in rows):
             continue
         start, _ = rows[0]
         near = [known for known in start.parameters if is_slip(_last(known), _last(name))]
