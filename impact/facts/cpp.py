@@ -128,7 +128,7 @@ _PACKAGE_LITERAL = re.compile(r'"([A-Za-z]\w*)"\s*[,)]')
 _SPACE = re.compile(r"\s+")
 
 
-def _decode(data: bytes) -> str:
+def text_of(data: bytes) -> str:
     """The text of a source, one line break form, undecodable bytes as one replacement character each or so."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         text = data.decode("utf-16", "replace")
@@ -233,7 +233,7 @@ class Scan(NamedTuple):
 @lru_cache(maxsize=4)
 def scan(data: bytes) -> Scan:
     """Reads a file as far as all that looks into it needs."""
-    text = _decode(data)
+    text = text_of(data)
     problems: list[Problem] = []
     # Where each line starts, for places.
     starts = [0, *accumulate(len(line) + 1 for line in text.split("\n"))]
@@ -393,7 +393,7 @@ def extract(data: bytes) -> CppFile:
         defined=tuple(defined),
         using=tuple(dict.fromkeys(_SPACE.sub("", match.group(1)) for match in _USING.finditer(visible))),
         problems=tuple(sorted(problems, key=_by_line)),
-        exports=_exports(visible),
+        exports=exports_of(visible),
         references=_references(text, visible, place),
         main=any(
             _BEFORE_MAIN.search(visible, max(0, match.start() - 60), match.start()) for match in _MAIN.finditer(visible)
@@ -419,7 +419,7 @@ def _includes(found, segments, place) -> tuple[Include, ...]:
     return tuple(includes)
 
 
-def _exports(visible: str) -> tuple[str, ...]:
+def exports_of(visible: str) -> tuple[str, ...]:
     """Classes registered as plugins or components: the first argument, or the later one of ROS 1's old macros."""
     exports: dict[str, None] = {}
     for match in _EXPORT.finditer(visible):

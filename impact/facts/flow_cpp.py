@@ -14,7 +14,7 @@ from bisect import bisect_right
 
 from tree_sitter import Node, Parser
 
-from .cpp import _exports, scan
+from .cpp import exports_of, scan
 from .flow import Alias, Assignment, Class, Expr, FlowFile, Member
 from .flow_cpp_clean import Cleaned, cleaned, cleaned_further
 from .flow_cpp_grammar import (
@@ -66,7 +66,7 @@ def extract(data: bytes) -> FlowFile:
     reader.leave_outside()
     exports: tuple[str, ...] = ()
     if any(word in source.text for word in EXPORTING):
-        exports = _exports(scan(data).visible)
+        exports = exports_of(scan(data).visible)
     return FlowFile(
         "cpp",
         tuple(reader.aliases),

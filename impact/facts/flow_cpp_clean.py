@@ -8,7 +8,7 @@ from itertools import accumulate, count, pairwise
 from operator import add
 from typing import NamedTuple
 
-from .cpp import _decode, scan
+from .cpp import scan, text_of
 
 
 class Region(NamedTuple):
@@ -57,7 +57,7 @@ _BETWEEN = re.compile(r"[(),<>;{}]")
 
 def cleaned(data: bytes) -> Cleaned:
     """The source of a file, ready to be parsed. Undecodable bytes become replacement characters, line breaks `\\n`."""
-    text = _decode(data)
+    text = text_of(data)
     source = text
     if not source.isascii() or "\0" in source:
         source = _NOT_ASCII.sub(_stand_in, source)

@@ -27,7 +27,7 @@ def render(logic: Logic, version: str) -> str:
     shared = re.search(r"<style>(.*?)</style>", folder.joinpath("page.html").read_text(encoding="utf-8"), re.DOTALL)
     template = template.replace("{{style}}", shared[1] if shared else "")
     values = {
-        "policy": page._policy(template),
+        "policy": page.policy_of(template),
         "title": html.escape(safe(printable(f"rosimpact logic: {logic.repository}"))),
         "data": _data(logic, version),
     }
@@ -55,5 +55,5 @@ def _data(logic: Logic, version: str) -> str:
         "commits": heads,
         "changes": rows,
     }
-    text = printable(json.dumps(page._clean(data), ensure_ascii=False, separators=(",", ":")))
+    text = printable(json.dumps(page.clean(data), ensure_ascii=False, separators=(",", ":")))
     return re.sub("[<>&\u2028\u2029]", lambda match: f"\\u{ord(match[0]):04x}", text)

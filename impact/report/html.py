@@ -24,14 +24,15 @@ def render(report: Report) -> str:
     script puts it into text nodes; the content security policy allows that script and style alone, by their hashes."""
     template = Path(__file__).with_name("page.html").read_text(encoding="utf-8")
     values = {
-        "policy": _policy(template),
+        "policy": policy_of(template),
         "title": html.escape(safe(printable(f"rosimpact: {report.root}"))),
         "data": _data(report),
     }
     return _PLACEHOLDER.sub(lambda match: values[match[1]], template)
 
 
-def _policy(template: str) -> str:
+def policy_of(template: str) -> str:
+    """The content security policy of a page: its own scripts and styles by their hashes, and nothing else."""
     sources = []
     for tag in ("script", "style"):
         found = re.search(rf"<{tag}>(.*?)</{tag}>", template, re.DOTALL)
@@ -72,7 +73,7 @@ def _data(report: Report) -> str:
         },
         "findings": [_finding(report, finding, names) for finding in report.findings],
     }
-    text = printable(json.dumps(_clean(data), ensure_ascii=False, separators=(",", ":")))
+    text = printable(json.dumps(clean(data), ensure_ascii=False, separators=(",", ":")))
     return re.sub("[<>&\u2028\u2029]", lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
@@ -92,12 +93,12 @@ def _finding(report: Report, finding: Finding, names: list[str]) -> list[Any]:
     ]  # fmt: skip
 
 
-def _clean(value: Any) -> Any:
+def clean(value: Any) -> Any:
     """The value with control and direction characters in its texts replaced."""
     if isinstance(value, str):
         return safe(value)
     if isinstance(value, dict):
-        return {safe(key): _clean(item) for key, item in value.items()}
+        return {safe(key): clean(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_clean(item) for item in value]
+        return [clean(item) for item in value]
     return value

@@ -33,7 +33,7 @@ def render(selection: Selection, base: Graph | None, everything: bool) -> str:
     script puts it into text nodes; the content security policy allows that script and style alone, by their hashes."""
     template = _template()
     values = {
-        "policy": page._policy(template),
+        "policy": page.policy_of(template),
         "title": html.escape(safe(printable(f"rosimpact graph: {selection.graph.root}"))),
         "data": _data(selection, base),
     }
@@ -76,7 +76,7 @@ def _data(selection: Selection, base: Graph | None) -> str:
         ],
         "coverage": msgspec.to_builtins(graph.coverage),
     }
-    text = printable(json.dumps(page._clean(data), ensure_ascii=False, separators=(",", ":")))
+    text = printable(json.dumps(page.clean(data), ensure_ascii=False, separators=(",", ":")))
     return re.sub("[<>&\u2028\u2029]", lambda match: f"\\u{ord(match[0]):04x}", text)
 
 

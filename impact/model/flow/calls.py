@@ -326,6 +326,3 @@ def _nested(value: Expr, depth: int = 0) -> Iterator[Expr]:
     elif depth < 3 and value.kind in ("call", "choice", "bind", "list"):
         for part in value.parts:
             yield from _nested(part, depth + 1)
-
-
-__all__ = ["Calls", "Use", "parsed"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -671,5 +671,3 @@ def _groups(found: list[Cls], source: Source, scope: str) -> Mapping[int, list[C
         groups.setdefault(near, []).append(cls)
     return groups
 
-
-Lookup = Callable[[str], Cls | None]

@@ -25,6 +25,7 @@ from .graph import (
     Node,
     ParameterUse,
     Publish,
+    Qos,
     Timer,
     Trigger,
     Unresolved,
@@ -85,6 +86,8 @@ class Join:
         self.sites = Sites(self.code, self.calls, self.values)
         self.reach = Reach(self.sites)
         self.triggers = self._triggers()
+        # Of a use it is the same in every node that runs it.
+        self._qos: dict[int, Qos | None] = {}
 
     # Nodes
 
@@ -121,9 +124,9 @@ class Join:
                 continue
             what = start.plugin.value or start.executable.value
             if what is None:
-                shown = start.plugin.shown or start.executable.shown
+                written = start.plugin.shown or start.executable.shown
                 reasons = "; ".join((*start.executable.reasons, *start.plugin.reasons))
-                missing.append(Unresolved("started node", reasons or "its executable is not known", *at, shown))
+                missing.append(Unresolved("started node", reasons or "its executable is not known", *at, written))
                 continue
             fitting = [one for one in programs if self._starts(one.program, start)]
             if not fitting:
@@ -345,35 +348,13 @@ class Join:
         )  # fmt: skip
 
     def _library(self, fn: Fn) -> Node | None:
-        path = fn.source.path
-        for package in self.built:
-            if package.package == fn.source.package:
-                for name, sources in package.libraries.items():
-                    if path in sources:
-                        return Node(
-                            f"{package.package}/{name}",
-                            "",
-                            package.package,
-                            "library",
-                            name,
-                            "",
-                            fn.source.facts.language,
-                            path,
-                            0,
-                        )
-        if not fn.source.package:
+        package, path = fn.source.package, fn.source.path
+        if not package:
             return None
-        return Node(
-            f"{fn.source.package}/{path.rpartition('/')[2]}",
-            "",
-            fn.source.package,
-            "library",
-            "",
-            "",
-            fn.source.facts.language,
-            path,
-            0,
-        )
+        own = (one.libraries.items() for one in self.built if one.package == package)
+        name = next((name for libraries in own for name, sources in libraries if path in sources), "")
+        id = f"{package}/{name or path.rpartition('/')[2]}"
+        return Node(id, "", package, "library", executable=name, language=fn.source.facts.language, path=path)
 
     def _missing(self, site: Site) -> tuple[str, str] | None:
         known = [value for value in site.names if value.text is not None]
@@ -397,7 +378,9 @@ class Join:
         use = site.use
         node = _node_of(owner)
         topic, how, reason = self.name(site, value, owner)
-        qos = qos_of(self.calls, self.values, use)
+        if id(use) not in self._qos:
+            self._qos[id(use)] = qos_of(self.calls, self.values, use)
+        qos = self._qos[id(use)]
         return Endpoint(
             site.role, node.id if node else "", topic, site.type, *_place(use), site.written, how, qos,
             _callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,

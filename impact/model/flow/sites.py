@@ -13,7 +13,7 @@ from msgspec import structs
 
 from ...facts.flow import Expr
 from .calls import Calls, Use
-from .code import Code, Fn, Variable, around, tail
+from .code import Code, Fn, Variable, around, parameter_of, tail
 from .graph import Role
 from .types import interface_of, interface_of_header, parsed, split
 from .values import Value, Values, beside
@@ -217,9 +217,7 @@ class Sites:
                 return spot[1:]
             if isinstance(spot, str) and spot.startswith("<"):
                 text = self.calls.template_argument(use, int(spot.strip("<>")))
-                if not text and row.does == "subscriber":
-                    text = self._parameter_type(use)
-                if not text and row.does == "server":
+                if not text and row.does in ("subscriber", "server"):
                     text = self._parameter_type(use)
             elif spot == "of receiver":
                 kind = code.type_of(Expr("name", self.calls.receiver_of(use)), fn)
@@ -474,8 +472,6 @@ class Sites:
         return []
 
     def _passed_bodies(self, name: str, fn: Fn, use: Use | None, depth: int) -> list[Fn]:
-        from .code import parameter_of
-
         for one in self.code.chain(fn):
             place = parameter_of(one, name)
             if place is None:
@@ -588,8 +584,6 @@ class Sites:
         for other in self._resets.get(variable, ()):
             return self.handle(other[1], other[0], depth + 1)
         if variable.kind == "local":
-            from .code import parameter_of
-
             place = parameter_of(fn, variable.name)
             if place is not None:
                 owner = self.code.owner_of(fn)
@@ -755,8 +749,6 @@ class Sites:
                 if text and text != receiver:
                     yield from self.publishers(text, writer, depth + 1)
         if variable.kind == "local":
-            from .code import parameter_of
-
             for one in code.chain(fn):
                 place = parameter_of(one, variable.name)
                 if place is None:
