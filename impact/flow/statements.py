@@ -327,7 +327,7 @@ def built(state: State, facts: Mapping[str, Any]) -> Built:
     """What the build of a package makes, as far as its CMake files and setup.py say it without variables."""
     executables: dict[str, tuple[str, ...]] = {}
     libraries: dict[str, tuple[str, ...]] = {}
-    components: dict[str, str] = {}
+    components: dict[str, tuple[str, ...]] = {}
     links: dict[str, tuple[str, ...]] = {}
     scripts: dict[str, str] = {}
     paths = {file.path for file in state.files}
@@ -352,7 +352,8 @@ def built(state: State, facts: Mapping[str, Any]) -> Built:
                 elif name == "rclcpp_components_register_node":
                     given = dict(zip(rest[::2], rest[1::2], strict=False))
                     if "PLUGIN" in given:
-                        components[given["PLUGIN"].strip('"')] = given.get("EXECUTABLE", "").strip('"')
+                        name, program = given["PLUGIN"].strip('"'), given.get("EXECUTABLE", "").strip('"')
+                        components[name] = (*components.get(name, ()), *((program,) if program else ()))
         elif file.kind == "setup_py":
             for name, module, _ in one.entry_points:
                 module, _, function = module.partition(":")

@@ -103,6 +103,7 @@ class Exported(msgspec.Struct, frozen=True, array_like=True, gc=False):
     catkin_depends, system_depends (DEPENDS), include_dirs, libraries, cfg_extras, plugin_description, component
     (rclcpp_components: item is the class).
     context: for a plugin description the package of the base class, for a component the library it is in.
+    executable: the program that is made to run the component alone, empty for none.
     """
 
     item: str
@@ -110,6 +111,7 @@ class Exported(msgspec.Struct, frozen=True, array_like=True, gc=False):
     at: At
     conditions: tuple[Condition, ...] = ()
     context: str = ""
+    executable: str = ""
 
 
 class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -130,9 +130,11 @@ def rclcpp_components_register_node(run: Interpreter, call: Call, args: list[Wor
     if not args:
         return
     given = sections(args[1:], name_set("PLUGIN EXECUTABLE EXECUTOR RESOURCE_INDEX NO_UNDEFINED_SYMBOLS"))
+    programs = given.get("EXECUTABLE", [])[:1]
     for item in given.get("PLUGIN", [])[:1]:
-        run.add_export(item, "component", item.at, run.under(item), str(args[0]))
-    for item in given.get("EXECUTABLE", [])[:1]:
+        program = "".join(run.shown(one) for one in programs)
+        run.add_export(item, "component", item.at, run.under(item), str(args[0]), program)
+    for item in programs:
         run.new_target(item, "executable", item.at)
         run.add_install(
             Install("targets", (str(item),), f"lib/{package_name(run)}", run.place(item.at), (), run.under(item))

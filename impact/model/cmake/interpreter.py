@@ -924,10 +924,12 @@ class Interpreter:
         if not self.silent and install.items:
             self.installs[install] = None
 
-    def add_export(self, item: str, how: str, at: At, conditions: tuple[Condition, ...], context: str = "") -> None:
+    def add_export(
+        self, item: str, how: str, at: At, conditions: tuple[Condition, ...], context: str = "", executable: str = ""
+    ) -> None:
         """Collects a promise to dependants."""
         if not self.silent and item:
-            self.exports[Exported(self.shown(item), how, self.place(at), conditions, context)] = None
+            self.exports[Exported(self.shown(item), how, self.place(at), conditions, context, executable)] = None
 
     def add_standard(self, number: int, at: At, is_default: bool, by_flag: bool) -> None:
         """Collects a C++ standard set for everything."""

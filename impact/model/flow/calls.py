@@ -144,7 +144,7 @@ class Calls:
     def _first_fits(self, wanted: str, fn: Fn, call: Call) -> bool:
         positional = [argument for argument in call.arguments if argument.kind != "keyword"]
         if not positional:
-            return wanted == "text" and bool(call.arguments)
+            return wanted == "other" or (wanted == "text" and bool(call.arguments))
         return self.is_node(positional[0], fn) == (wanted == "node")
 
     def is_node(self, value: Expr, fn: Fn) -> bool:

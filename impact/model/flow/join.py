@@ -159,19 +159,23 @@ class Join:
         """Whether a program is what pluginlib knows by a name."""
         wanted = self.plugins.get(name)
         if wanted is None:
+            package, slash, _ = name.rpartition("/")
             wanted = name.replace("/", "::")
-            return program.plugin == wanted or tail(program.plugin) == tail(wanted)
+            same = not slash or program.package == package
+            return program.plugin == wanted or (same and tail(program.plugin) == tail(wanted))
         return program.plugin.removeprefix("::") == wanted.removeprefix("::")
 
     def _starts(self, program: Program, start: Started) -> bool:
-        if start.package.value not in (None, program.package):
+        # pluginlib knows nodelets of all packages, and a launch file names that of the loader beside them.
+        anywhere = bool(start.plugin.value) and start.package.value == "nodelet"
+        if not anywhere and start.package.value not in (None, program.package):
             return False
         if start.plugin.value:
             return bool(program.plugin) and self._is_plugin(program, start.plugin.value)
         executable = start.executable.value or ""
-        if program.executable:
-            return executable in (program.executable, program.executable.removesuffix(".py"))
-        return bool(program.plugin) and executable == _snake(tail(program.plugin))
+        return bool(program.executable) and executable in (
+            program.executable, program.executable.removesuffix(".py"),
+        )  # fmt: skip
 
     def _kinds(self, cls) -> frozenset[str]:
         return self.calls.kinds_of(

@@ -26,15 +26,15 @@ class Program(NamedTuple):
 
 
 class Built(NamedTuple):
-    """What the build of one package tells. executables and libraries: target to its sources; components: class to
-    executable or empty; scripts: name of an installed or executable Python file to its path, entry points with the
-    function behind a colon; links: target to the targets of the workspace that it links. plugins: what
-    pluginlib calls a class to the class."""
+    """What the build of one package tells. executables and libraries: target to its sources; components: class to the
+    executables that are made to run it alone; scripts: name of an installed or executable Python file to its path,
+    entry points with the function behind a colon; links: target to the targets of the workspace that it links. plugins:
+    what pluginlib calls a class to the class."""
 
     package: str
     executables: Mapping[str, tuple[str, ...]]
     libraries: Mapping[str, tuple[str, ...]]
-    components: Mapping[str, str]
+    components: Mapping[str, tuple[str, ...]]
     scripts: Mapping[str, str]
     links: Mapping[str, tuple[str, ...]]
     plugins: Mapping[str, str] = {}
@@ -148,14 +148,19 @@ def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
             main = mains[0] if mains else None
             place = (main.source.path, main.facts.line) if main else (sources[0] if sources else "", 0)
             yield Program(package.package, "executable", name, "", tuple(mains), files, *place)
-        for name, path in exported.get(package.package, ()):
+        components = {name.removeprefix("::"): executables for name, executables in package.components.items()}
+        loaded = [(name.removeprefix("::"), path) for name, path in exported.get(package.package, ())]
+        registered = {name for name, _ in loaded}
+        loaded += [(name, "") for name in components if name not in registered]
+        for name, path in loaded:
             cls = _class(code, name, package.package)
+            if cls is None and not path:
+                continue  # registered by the build, of another package's code
             kind = _loaded_as(cls, code, kinds_of) if cls is not None else "plugin"
             roots = tuple(code.functions_of(cls)) if cls is not None else ()
             place = (cls.source.path, cls.facts.line) if cls is not None else (path, 0)
-            yield Program(
-                package.package, kind, package.components.get(name, ""), name, roots, frozenset((path,)), *place
-            )
+            for executable in components.get(name) or ("",):
+                yield Program(package.package, kind, executable, name, roots, frozenset((path or place[0],)), *place)
         for name, where in package.scripts.items():
             path, _, function = where.partition(":")
             fns = by_path.get(path, ())

@@ -119,8 +119,8 @@ class Sites:
             if use.row.does in _ROLES and not self.wraps(use.fn):
                 for one in self._rows(use):
                     found.extend(self._endpoints(one))
-            elif use.row.does == "node":
-                found.extend(self._further(Site("publisher", use, (), "", "", "")))
+            elif use.row.does in ("node", "further"):
+                found.extend(self._further(Site("publisher", use, (), "", self.prefix(use), "")))
         return found
 
     @property

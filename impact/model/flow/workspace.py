@@ -81,10 +81,17 @@ def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[Bu
     }
     for package in workspace:
         targets = package.build.targets
+        components: dict[str, tuple[str, ...]] = {}
+        for exported in package.build.exports:
+            if exported.how == "component":
+                alone = (exported.executable,) if exported.executable else ()
+                components[exported.item] = tuple(dict.fromkeys((*components.get(exported.item, ()), *alone)))
+        running = {executable for executables in components.values() for executable in executables}
         executables = {
-            target.output_name or target.name: target.sources for target in targets if target.kind == "executable"
+            target.output_name or target.name: target.sources
+            for target in targets
+            if target.kind == "executable" and (target.sources or target.name not in running)
         }
-        components = {exported.item: "" for exported in package.build.exports if exported.how == "component"}
         yield Built(
             package.name, executables, libraries, components, _scripts(package, files), links, _plugins(package)
         )

@@ -1,12 +1,16 @@
 """Small bodies of code, joined."""
 
+from pathlib import Path
 from textwrap import dedent
 
+from rosimpact.impact.check import open_tree
 from rosimpact.impact.facts import flow_cpp, flow_python
+from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.frameworks import Frameworks
 from rosimpact.impact.model.flow.graph import Graph
 from rosimpact.impact.model.flow.join import Join
 from rosimpact.impact.model.flow.nodes import Built
+from rosimpact.impact.model.flow.workspace import graph_of, linked
 
 
 def joined(files: dict[str, str], ros: int = 2, built: tuple[Built, ...] = (), table: Frameworks | None = None) -> Join:
@@ -41,3 +45,22 @@ def graph(files: dict[str, str], ros: int = 2, **more) -> Graph:
 def ends(found: Graph, role: str) -> set[tuple[str, str, str]]:
     """(node, topic or `?`, type) of the endpoints of a role, implied ones left out."""
     return {(e.node, e.topic or "?", e.type) for e in found.endpoints if e.role == role and not e.implied}
+
+
+def graph_on_disk(root: Path, files: dict[str, str], launch: str = "") -> Graph:
+    """The graph of a workspace that is written to a folder, or of what one of its launch files starts."""
+    for name, text in files.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(dedent(text).lstrip())
+    with Store(root / ".cache") as store:
+        return graph_of(linked(open_tree(root, ""), store), None, launch=launch)
+
+
+def manifest(name: str, build: str) -> str:
+    """A manifest of a package. build: `catkin`, `ament_cmake` or `ament_python`."""
+    return (
+        f'<?xml version="1.0"?><package format="3"><name>{name}</name><version>1.0.0</version>'
+        '<description>x</description><maintainer email="a@b.org">a</maintainer><license>MIT</license>'
+        f"<buildtool_depend>{build}</buildtool_depend><export><build_type>{build}</build_type></export></package>"
+    )

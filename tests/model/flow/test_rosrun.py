@@ -106,3 +106,21 @@ def test_what_every_node_has():
         ("server", "/other/get_loggers", "roscpp/GetLoggers"),
         ("server", "/other/set_logger_level", "roscpp/SetLoggerLevel"),
     }
+
+
+@pytest.mark.parametrize(
+    "made, expected",
+    [
+        ("nodelet::Loader box;", {"/box/load_nodelet", "/box/unload_nodelet", "/box/list"}),
+        (
+            "auto box = std::make_shared<nodelet::Loader>(true);",
+            {"/box/load_nodelet", "/box/unload_nodelet", "/box/list"},
+        ),
+        ('ros::NodeHandle nh("in"); nodelet::Loader box(nh);', {"/in/load_nodelet", "/in/unload_nodelet", "/in/list"}),
+        ("nodelet::Loader box(false);", set()),
+    ],
+)
+def test_services_of_a_manager_of_nodelets(made, expected):
+    main = f'int main(int argc, char** argv) {{ ros::init(argc, argv, "box"); {made} ros::spin(); }}'
+    found = joined({"p/box.cpp": main}, 1).graph()
+    assert {e.topic for e in found.endpoints if e.framework == "nodelet"} == expected
