@@ -4,7 +4,9 @@ usage: graph.py [--list] REPOSITORY[@REV] ...
 
 The regular expression looks for calls by their names in C++ sources whose comments and literals are blanked, and leaves
 out what has a type or a class before it as a declaration has; it knows nothing of receivers. `found` are its sites at
-whose line (or two beside it) the graph has one. With --list, those that it has not are printed, to be read by a person.
+whose line (or two beside it) the graph has one; `extra` are the graph's own that it has not, other than what a framework
+makes by itself (/rosout, /tf). With --list, the sites that the graph lacks and its extra ones are printed, to be read by
+a person.
 Cold: with an empty cache; warm: again; beside both the time of a bare tree-sitter parse of the same C++ bytes.
 """
 
@@ -75,25 +77,33 @@ def measured(repository: str, listed: bool) -> Counter[str]:
                 workspace = linked(tree, store)
                 graph = graph_of(workspace, store)
             times.append(time.perf_counter() - start)
-        sources = [each for each in code_of(workspace, workspace.gathered) if not each.endswith(".py")]
+        kinds = workspace.gathered.kinds
+        sources = [each for each in code_of(workspace, workspace.gathered) if kinds[each] == "flow_cpp"]
     data = {each: tree.read(each) for each in sources}
     bare = _bare(data.values())
     have = {"publisher": Counter(), "subscriber": Counter(), "publish": Counter()}
     for endpoint in graph.endpoints:
         if endpoint.role in have:
             have[endpoint.role][endpoint.path, endpoint.line] += 1
+    implied = Counter((each.path, each.line) for each in graph.endpoints if each.implied)
     have["publish"].update((each.path, each.line) for each in graph.publishes)
     for wrapper in graph.coverage.wrappers:
         have.get(wrapper.what, Counter())[wrapper.path, wrapper.line] += 1
     total: Counter[str] = Counter()
     for what, names in NAMES.items():
+        told = set()
         for each, content in data.items():
             for line in counted(content.decode("utf-8", "replace"), names):
+                told.update((each, line + beside) for beside in range(-2, 3))
                 total[what] += 1
                 if any((each, line + beside) in have[what] for beside in range(-2, 3)):
                     total[f"{what} found"] += 1
                 elif listed:
                     print(f"  not found: {what} {each}:{line}")
+        for each, line in sorted(place for place in have[what] - implied if place[0] in data and place not in told):
+            total[f"{what} extra"] += 1
+            if listed:
+                print(f"  extra: {what} {each}:{line}")
     subscribers = [e for e in graph.endpoints if e.role == "subscriber" and not e.implied]
     places = {(e.path, e.line): bool(e.callback) for e in subscribers}
     total.update({
@@ -120,7 +130,9 @@ def _bare(contents) -> float:
 
 
 def _line(name: str, total: Counter[str]) -> None:
-    sites = ", ".join(f"{what} {total[f'{what} found']}/{total[what]}" for what in NAMES)
+    sites = ", ".join(
+        f"{what} {total[f'{what} found']}/{total[what]} and {total[f'{what} extra']} extra" for what in NAMES
+    )
     print(
         f"{name}: {sites}; callbacks {total['with callback']}/{total['subscribers']}; resolved {total['resolved']}/"
         f"{total['calls']} ({total['by default']} by a parameter's default), without a name {total['no name']}, "
@@ -131,7 +143,7 @@ def _line(name: str, total: Counter[str]) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("repositories", nargs="+")
-    parser.add_argument("--list", action="store_true", help="print the sites that are not found")
+    parser.add_argument("--list", action="store_true", help="print the sites that are not found, and the extra ones")
     options = parser.parse_args()
     everything: Counter[str] = Counter()
     for repository in options.repositories:

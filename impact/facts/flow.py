@@ -30,7 +30,8 @@ class Expr(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | bind | | the function, then the bound arguments (std::bind, boost::bind, functools.partial) |
     | list | | its elements (tuples, braces) |
     | keyword | name of the argument; `*` and `**` for what Python unpacks | its value |
-    | other | the source, its white space as single blanks, at most 120 characters | |
+    | other | the source, its white space as single blanks, at most 120 characters | of a comprehension, what each
+      element is |
     """
 
     kind: str

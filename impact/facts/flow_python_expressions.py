@@ -350,11 +350,11 @@ class Expressions(Strings):
         element = target + ".[]" if target and target != "return" else ""
         if node.__class__ is ast.DictComp:
             self.visit(node.key)
-            self.value(node.value, "escape", to, target=element)
+            each = self.value(node.value, "escape", to, target=element)
         else:
-            self.value(node.elt, "escape", to, target=element)
+            each = self.value(node.elt, "escape", to, target=element)
         self.guard, self.in_class = saved, in_class
-        return self.other(node)
+        return Expr("other", self.other(node).text, (each,))
 
     def walked(self, target, iterated, line: int) -> None:
         """The head of a for: what is walked through and the variable that is each of it, under the loop's guard."""

@@ -72,6 +72,13 @@ def _words(value: Expr) -> Iterator[str]:
         yield from _words(part)
 
 
+def _holds(value: Expr, made: set[tuple[str, tuple[Expr, ...]]]) -> bool:
+    """Whether an expression is one of some calls, by callee and arguments, or has one among its parts."""
+    return (value.kind in ("call", "make") and (value.text, value.parts) in made) or any(
+        _holds(part, made) for part in value.parts
+    )
+
+
 def _place_in_row(value: Expr) -> tuple[Expr, int] | None:
     """What is walked through, and the place in each of its rows, of `rows[each][1]`."""
     if value.kind == "index" and len(value.parts) == 2 and value.parts[0].kind == "index":
@@ -359,16 +366,43 @@ class Sites:
                 return tuple(found), ""
             value = value or one
         if value is None:
-            return self._joined_callbacks(use)
+            return self._callbacks_of_options(use) or self._joined_callbacks(use)
         return (), f"the callback `{shown(value)[:80]}` is not in the workspace or not followed"
+
+    def _callbacks_of_options(self, use: Use) -> tuple[tuple[Fn, ...], str] | None:
+        """Those of the options of ROS 1 that are all a call is given, None without any: `subscribe(options)`.
+
+        Source: http://docs.ros.org/en/noetic/api/roscpp/html/structros_1_1SubscribeOptions.html (create, init)."""
+        options = self.calls.argument(use, (0,))
+        if options is None or options.kind != "name":
+            return None
+        fn, variable = use.fn, self.code.identity(options.text, use.fn)
+        made = [call for _, call in self.code.results.get(variable, ()) if "Options::create" in call.callee]
+        made += [call for call in fn.facts.calls if call.callee.startswith(f"{options.text}.init")]
+        found = [body for call in made if len(call.arguments) > 2 for body in self.bodies(call.arguments[2], fn, use)]
+        return (tuple(found), "") if found else None
 
     def _joined_callbacks(self, use: Use) -> tuple[tuple[Fn, ...], str]:
         """For filters: the callbacks registered with whatever joins them."""
-        variable = self._variable(use) if use.row.does == "subscriber" else None
+        variable = (self._variable(use) or self._joint(use)) if use.row.does == "subscriber" else None
         if variable is None:
             return (), ""
         found = list(dict.fromkeys(fn for fn in self.joins.get(variable, ())))
         return tuple(found), ""
+
+    def _joint(self, use: Use) -> Variable | None:
+        """What is made of filters that stand among its arguments: `sync = TimeSynchronizer([Subscriber(...)], 10)`."""
+        calls, here = use.fn.facts.calls, (use.call.line, use.call.column)
+        made = {(call.callee, call.arguments) for call in calls if (call.line, call.column) == here}
+        around = [
+            call
+            for call in calls
+            if call.target and (call.line, call.column) != here and any(_holds(each, made) for each in call.arguments)
+        ]
+        if around:
+            nearest = min(around, key=lambda call: abs(call.line - use.call.line))
+            return self.code.identity(nearest.target, use.fn)
+        return None
 
     @cached_property
     def joins(self) -> dict[Variable, list[Fn]]:

@@ -1,5 +1,6 @@
 """ROS 1 nodes in C++: names, handles, types, callbacks, and what publishes where."""
 
+import pytest
 from joining import ends, graph
 
 TALKER = """
@@ -192,6 +193,52 @@ def test_filters_get_the_callback_of_their_synchronizer():
         ("p/a", "/info", "sensor_msgs/CameraInfo"),
     }
     assert {e.callback.name for e in found.endpoints if not e.implied} == {"A::both"}
+
+
+def test_callbacks_that_options_hold():
+    found = graph({"p/a.cpp": """
+        void first(const std_msgs::String::ConstPtr& msg) {}
+        void second(const std_msgs::String::ConstPtr& msg) {}
+        int main(int c, char** v) {
+          ros::init(c, v, "a");
+          ros::NodeHandle n;
+          auto made = ros::SubscribeOptions::create<std_msgs::String>("one", 1, first, ros::VoidPtr(), &queue);
+          ros::Subscriber a = n.subscribe(made);
+          ros::SubscribeOptions told;
+          told.init<std_msgs::String>("two", 1, second);
+          ros::Subscriber b = n.subscribe(told);
+          ros::spin();
+        }
+    """}, 1)  # fmt: skip
+    assert [e.callback and e.callback.name for e in found.endpoints if e.role == "subscriber" and not e.implied] == [
+        "first",
+        "second",
+    ]
+
+
+@pytest.mark.parametrize(
+    "filters",
+    [
+        "[message_filters.Subscriber('a', Image), message_filters.Subscriber('b', Image)]",
+        "[message_filters.Subscriber(topic, Image) for topic in ('a', 'b')]",
+    ],
+)
+def test_filters_without_a_name_get_the_callback_of_what_is_made_of_them(filters):
+    found = graph({"p/a.py": f"""
+        import message_filters
+        import rospy
+        from sensor_msgs.msg import Image
+
+        def both(a, b):
+            pass
+
+        rospy.init_node("a")
+        sync = message_filters.TimeSynchronizer({filters}, 10)
+        sync.registerCallback(both)
+        rospy.spin()
+    """}, 1)  # fmt: skip
+    subscribers = [e for e in found.endpoints if e.role == "subscriber" and not e.implied]
+    assert [(e.topic, e.callback and e.callback.name) for e in subscribers] == [("/a", "both"), ("/b", "both")]
 
 
 def test_a_publisher_passed_to_functions_and_bound():
