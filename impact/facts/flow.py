@@ -61,6 +61,7 @@ class Guard(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | cpp | the preprocessor's condition is true (negated ones written `!(...)`) |
     | macro | inside the block of an unknown macro; text: its head |
     | with | inside a Python `with`; text: its head |
+    | never | it stands behind a jump that always happens; text: `after return`, the jump's first word (`early` too) |
     """
 
     kind: str

@@ -68,6 +68,8 @@ ENDIF = kind("#endif", False)
 ALTERNATIVES = (PREPROC_ELSE, PREPROC_ELIF, PREPROC_ELIFDEF)
 LABELED = kind("labeled_statement")
 
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_CONTINUE = re.compile(r"\bcontinue\b")
 _MARKS = re.compile(r"[()\[\]{}]|\|\||\?|,|(?<![=!<>])=(?!=)")
 LONGEST_COMPOSED = 3000
 MOST_CONDITIONS = 500
@@ -142,11 +144,15 @@ class Statements(Declarations):
         ended = STAYS
         conditions: list[Condition] = []
         headed: Node | None = None
+        jumped: Node | None = None
         regions = self.regions
         for child in children:
             number = child.kind_id
             if number == COMMENT:
                 continue
+            if jumped is not None and number != LABELED:
+                guard = self.never(jumped, guard)
+                jumped = None
             if headed is not None:
                 outer = self.guard("macro", self.said(headed), self.line(headed), guard)
                 headed = None
@@ -158,21 +164,38 @@ class Statements(Declarations):
                     self.value(headed, guard)
                     continue
             elif number == LABELED:
-                guard, conditions, ended = base, [], STAYS
+                guard, conditions, ended, jumped = base, [], STAYS, None
             if regions:
                 leaving = self.statement(child, guard)
             else:
                 read = STATEMENTS.get(number)
                 leaving = self.statement(child, guard) if read is None else read(self, child, guard)
+            if regions and leaving in (JUMPS, BREAKS):
+                leaving = self.regionally(child, leaving)
             if leaving == STAYS or ended:
                 continue
             if not isinstance(leaving, tuple):
-                ended = leaving
+                ended, jumped = leaving, child
                 continue
             conditions += leaving
             for condition in leaving:
                 guard = self.guard(condition.kind, condition.text, condition.line, guard, True)
         return ended or tuple(conditions) or STAYS
+
+    def never(self, node: Node, guard: int) -> int:
+        """A guard around what stands behind a statement that always leaves."""
+        word = _WORD.search(self.text, node.start_byte, node.end_byte)
+        return self.guard("never", f"after {word[0] if word else 'a jump'}", self.line(node), guard, True)
+
+    def regionally(self, node: Node, leaving: Leaving) -> Leaving:
+        """How control leaves a jump: only where the blanked directives let it be compiled that the statements around it
+        do not stand under."""
+        parent = node.parent
+        around = parent.start_byte if parent is not None else node.start_byte
+        inner = [one for one in self.regions if one.start <= node.start_byte < one.end and one.start > around]
+        if not inner:
+            return leaving
+        return (Condition("cpp", f"!({inner[0].condition})", inner[0].line),) if len(inner) == 1 else STAYS
 
     def heads(self, node: Node, children: list[Node]) -> bool:
         """Whether `NAME(...)` without a semicolon is the head of the statement that follows it: one on the same line,
@@ -341,8 +364,9 @@ class Statements(Declarations):
         inner = self.guard("do", text, self.line(node), guard)
         leaving = self.statement(body, inner)
         self.value(asked, inner)
-        # `do { ... } while (false)` runs once: a return inside is one outside.
-        return JUMPS if leaving == JUMPS else STAYS
+        # `do { ... } while (false)` runs once: a return inside is one outside, and `continue` goes on behind it.
+        goes_on = _CONTINUE.search(self.text, body.start_byte, body.end_byte)
+        return JUMPS if leaving == JUMPS and not goes_on else STAYS
 
     # Switch
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Callable, Iterator
 
 from .flow import Access, Alias, Assignment, Expr, FlowFile
@@ -88,25 +89,34 @@ class Statements(Expressions):
         """Reads statements; gives how control leaves them."""
         saved = self.guard
         left: list[Condition] | None = None
-        jumped = False
+        jumped: ast.stmt | None = None
+        behind = False
         readers = _STATEMENTS
         for node in statements:
+            if jumped is not None and not behind:
+                self.never(jumped)
+                behind = True
             reader = readers.get(node.__class__)
             if reader is None:
                 self.visit(node)
                 continue
             leaving = reader(self, node)
             if leaving is None:
-                jumped = True
-            elif leaving and not jumped:
+                jumped = jumped or node
+            elif leaving and jumped is None:
                 left = left or []
                 left += leaving
                 for condition in leaving:
                     self.push(condition.kind, condition.text, condition.line, early=True)
         self.guard = saved
-        if jumped:
+        if jumped is not None:
             return JUMPS
         return tuple(left) if left else STAYS
+
+    def never(self, node: ast.stmt) -> None:
+        """A guard around what stands behind a statement that always leaves."""
+        word = "exit" if node.__class__ is ast.Expr else node.__class__.__name__.lower()
+        self.push("never", f"after {word}", node.lineno, early=True)
 
     def test(self, node: ast.expr) -> Test:
         operand = ""
@@ -214,7 +224,9 @@ class Statements(Expressions):
                 value = self.value(item.context_expr, "read", target=self.spelt(variable))
                 self.bind(variable, value, node.lineno)
                 heads.append(f"{self.source(item.context_expr)} as {self.source(variable)}")
-        return self.under("with", ", ".join(heads), node.lineno, node.body)
+        leaving = self.under("with", ", ".join(heads), node.lineno, node.body)
+        swallows = leaving is None and any(_SWALLOWS.match(head) for head in heads)
+        return STAYS if swallows else leaving
 
     def match(self, node: ast.Match) -> Leaving:
         subject = self.value(node.subject, "read")
@@ -515,6 +527,7 @@ def _definitions(statements: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.A
                 stack.extend(reversed(handler.body))
 
 
+_SWALLOWS = re.compile(r"(?:[\w.]+\.)?(?:suppress|raises|assertRaises\w*)\(")
 _STATEMENTS: dict[type, Callable[..., Leaving]] = {
     ast.If: Statements.if_,
     ast.While: Statements.while_,

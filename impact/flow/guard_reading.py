@@ -9,7 +9,7 @@ from typing import Literal
 
 from ..model.flow.graph import GuardAt
 from . import guard_cpp, guard_python
-from .guard_terms import Piece, Reading, Term, define, join, names_in, negation, rebuilt, renamed, substituted
+from .guard_terms import FALSE, Piece, Reading, Term, define, join, names_in, negation, rebuilt, renamed, substituted
 
 Language = Literal["cpp", "python"]
 
@@ -89,6 +89,8 @@ def read(language: Language, kind: str, text: str) -> Reading:
     if kind in ("do", "with"):
         # What runs once at least, or inside a context, runs under no condition.
         return Reading()
+    if kind == "never":
+        return Reading((Piece(f"never: {text}", FALSE),))
     if kind == "catch":
         return Reading((Piece(f"catch ({text})", _caught(text)),))
     return Reading((Piece(text, Term("opaque", f"{kind} {' '.join(text.split())}")),))

@@ -9,10 +9,7 @@ by the commit, so that a second run reads neither.
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cache
-from pathlib import Path as FilePath
 from typing import Any, NamedTuple
 
 import msgspec
@@ -20,15 +17,14 @@ import msgspec
 from .. import processes
 from ..facts import kinds
 from ..facts.store import Store, fact_key, pack, unpack
-from .history import Commit, File, History, State
-from .logic_changes import Change, Reached, Side, changes, settled
-from .logic_match import Names
-from .statements import EMPTY, Digest, digest, kind_of_facts
+from .history import Commit, History, State
+from .logic_changes import Change, Reached, Side
+from .logic_states import compared, decoded, digest_key, safe_digest, stamp
+from .statements import kind_of_facts
 
 Progress = Callable[[str, int, int], None]
 _STATES_AT_ONCE = 24
 _COMMITS_AT_ONCE = 24
-_LONGEST_TEXT = 500_000
 
 
 class Range(NamedTuple):
@@ -198,7 +194,7 @@ class _Run:
         statements = unresolved = 0
         unread: list[str] = []
         for state in states.values():
-            one = _decoded(self.digests.packed, state.key)
+            one = decoded(self.digests.packed.get(state.key))
             statements += len(one.statements)
             unresolved += sum(not any(one.outlets[place].topic for place in said.outlets) for said in one.statements)
             unread += [state.whole(path) for path in one.unread]
@@ -274,18 +270,9 @@ def _compare_chunk(repository: str, digests: Mapping[bytes, bytes], steps: Seque
 
 
 def _compared(history: History, step: _Step, digests: Mapping[bytes, bytes]) -> list[Change]:
-    old = Side([(state, _decoded(digests, state.key)) for state in step.old])
-    new = Side([(state, _decoded(digests, state.key)) for state in step.new])
-    if settled(old, new):
-        return []
-    files = _renamed_files(history, step)
-    names = Names({}, files)
-    found = list(changes(old, new, names))
-    if old.packages and new.packages and any(change.kind != "equivalent" for change in found):
-        words = _renamed_words(history, step, files)
-        if words:
-            found = list(changes(old, new, Names(words, files)))
-    return sorted(found, key=lambda change: (change.path, change.line, change.kind, change.why))
+    old = Side([(state, decoded(digests.get(state.key))) for state in step.old])
+    new = Side([(state, decoded(digests.get(state.key))) for state in step.new])
+    return compared(old, new, lambda: _renamed_files(history, step), lambda file: history.read(file.id))
 
 
 def _renamed_files(history: History, step: _Step) -> dict[str, str]:
@@ -294,32 +281,6 @@ def _renamed_files(history: History, step: _Step) -> dict[str, str]:
     if not old - new or not new - old:
         return {}
     return history.renames(step.commit.parent, step.commit.id)
-
-
-def _renamed_words(history: History, step: _Step, files: Mapping[str, str]) -> dict[str, str]:
-    """Identifiers that are called otherwise in the files that a commit changed."""
-    from .guard_renames import propose_renames
-    from .guards import Language
-
-    old = {state.whole(file.path): file for state in step.old for file in state.files}
-    new = {state.whole(file.path): file for state in step.new for file in state.files}
-    found: dict[str, str] = {}
-    languages: tuple[Language, ...] = ("cpp", "python")
-    for language in languages:
-        before: list[str] = []
-        after: list[str] = []
-        for path, file in sorted(old.items()):
-            other = new.get(files.get(path, path))
-            if file.kind == language and other is not None and other.id != file.id:
-                before.append(_text(history, file))
-                after.append(_text(history, other))
-        if before and sum(map(len, before)) + sum(map(len, after)) <= _LONGEST_TEXT:
-            found.update(propose_renames("\n".join(before), "\n".join(after), language))
-    return found
-
-
-def _text(history: History, file: File) -> str:
-    return history.read(file.id).decode("utf-8", "replace")
 
 
 # Digests
@@ -335,33 +296,20 @@ class _Digests:
 
     def load(self, keys: Iterable[bytes]) -> dict[bytes, bytes]:
         """All that are known, those of these keys that the store has among them."""
-        wanted = {_digest_key(key): key for key in keys if key not in self.packed}
+        wanted = {digest_key(key): key for key in keys if key not in self.packed}
         for row, data in self.store.memos("digest", wanted).items():
             self.packed[wanted[row]] = pack(data)
         return self.packed
 
     def add(self, rows: Sequence[tuple[bytes, bytes]]) -> None:
         self.packed.update(rows)
-        self.store.remember("digest", [(_digest_key(key), unpack(data)) for key, data in rows])
+        self.store.remember("digest", [(digest_key(key), unpack(data)) for key, data in rows])
 
     def inlets(self, key: bytes):
         known = self._inlets.get(key)
         if known is None:
-            known = self._inlets[key] = _decoded(self.packed, key).inlets
+            known = self._inlets[key] = decoded(self.packed.get(key)).inlets
         return known
-
-
-_decoder = msgspec.msgpack.Decoder(Digest)
-
-
-def _decoded(digests: Mapping[bytes, bytes], key: bytes) -> Digest:
-    data = digests.get(key)
-    if data is None:
-        return EMPTY
-    try:
-        return _decoder.decode(unpack(data))
-    except (ValueError, msgspec.MsgspecError):
-        return EMPTY
 
 
 def _chunked(states: Iterable[State]) -> list[list[State]]:
@@ -388,15 +336,8 @@ def _digest_chunk(repository: str, folder: str, states: Sequence[State]) -> list
             known = {key: facts for key, facts in known.items() if key in wanted}
             known.update(_facts(history, store, [key for key in wanted if key not in known]))
             facts = {file.path: known.get((file.id, kind_of_facts(file))) for file in state.files}
-            rows.append((state.key, pack(msgspec.msgpack.encode(_safe_digest(state, facts)))))
+            rows.append((state.key, pack(msgspec.msgpack.encode(safe_digest(state, facts)))))
     return rows
-
-
-def _safe_digest(state: State, facts: Mapping[str, Any]) -> Digest:
-    try:
-        return digest(state, facts)
-    except RecursionError:
-        return EMPTY  # code nested beyond all reason in one of a thousand commits must not end the run
 
 
 def _facts(history: History, store: Store, wanted: Sequence[tuple[str, str]]) -> Iterator[tuple[tuple[str, str], Any]]:
@@ -421,21 +362,5 @@ def _facts(history: History, store: Store, wanted: Sequence[tuple[str, str]]) ->
 # Keys
 
 
-def _digest_key(key: bytes) -> bytes:
-    return key + _stamp("facts", "model/flow")
-
-
 def _commit_key(commit: str, folder: str) -> bytes:
-    return bytes.fromhex(commit) + folder.encode("utf-8", "surrogateescape") + _stamp("facts", "model/flow", "flow")
-
-
-@cache
-def _stamp(*folders: str) -> bytes:
-    """Changes whenever the code does that makes facts, joins them, or compares."""
-    root = FilePath(__file__).parent.parent
-    stamp = hashlib.sha1()
-    files = [path for folder in folders for path in (root / folder).glob("*.*") if path.suffix in (".py", ".toml")]
-    files += [root / "flow" / name for name in ("statements.py", "history.py", "logic_meaning.py")]
-    for path in sorted(set(files)):
-        stamp.update(path.name.encode() + path.read_bytes())
-    return stamp.digest()[:8]
+    return bytes.fromhex(commit) + folder.encode("utf-8", "surrogateescape") + stamp("facts", "model/flow", "flow")

@@ -46,7 +46,7 @@ class Change(msgspec.Struct, frozen=True):
     parent where it is gone. node: that runs it, several joined by `, `. topic: as the node's code knows it, the
     publisher's name where that is not known. topics: its full names, before and after. old, new: what it was and is
     published under, None where there is no statement; empty for no condition. why: what differs, in one clause.
-    reaches: subscribers at the commit.
+    reaches: subscribers at the commit. unreachable: nothing leads to the statement any more, and something did.
     """
 
     kind: Kind
@@ -62,6 +62,7 @@ class Change(msgspec.Struct, frozen=True):
     new: str | None
     why: str
     reaches: tuple[Reached, ...] = ()
+    unreachable: bool = False
 
 
 class Side(NamedTuple):
@@ -165,6 +166,12 @@ def _compared(one: At, other: At, names: Names, successors: Mapping[int, Outlet]
         yield _change("changed", other, outlets, was, is_now, f"published on `{is_now}`, was `{was}`")
     first, second = one.said, other.said
     old_shown, new_shown = _shown(first.ways, first), _shown(second.ways, second)
+    if asked(first, names) != asked(second):
+        why = _never(second)
+        if why and not _never(first):
+            found = _change("tightened", other, outlets, old_shown, new_shown, why)
+            yield msgspec.structs.replace(found, unreachable=True)
+            return
     if _cut_off(first) or _cut_off(second):
         kind, why = _verdict(_own(first), _own(second), names, second.language)
         if kind != "equivalent":
@@ -199,6 +206,32 @@ def _compared(one: At, other: At, names: Names, successors: Mapping[int, Outlet]
         yield _change(kind, other, outlets, old_shown, new_shown, why)
     elif asked(first, names) != asked(second):
         yield _change("equivalent", other, outlets, old_shown, new_shown, "says the same in other words")
+
+
+def _never(said: Said) -> str:
+    """Why a statement never runs, as far as that is sure; empty where it may."""
+    speech: guards.Language = "python" if said.language == "python" else "cpp"
+    whys: list[str] = []
+    for way in said.ways:
+        why = next((f"never runs: it stands {gate.text}" for gate in way.gates if gate.kind == "never"), "")
+        if not why:
+            sides = [[gate] for gate in way.gates if gate.kind in ("if", "unless")]
+            functions = dict.fromkeys(gate.of for gate in way.gates)
+            sides += [[gate for gate in way.gates if gate.fixed and gate.of == of] for of in functions]
+            at_once = next((side for side in sides if side and _contradicts(side, speech)), None)
+            if at_once is None:
+                return ""
+            for gate in list(at_once):
+                fewer = [one for one in at_once if one is not gate]
+                at_once = fewer if fewer and _contradicts(fewer, speech) else at_once
+            texts = " and ".join(dict.fromkeys(f"`{_condition(gate, speech == 'python')}`" for gate in at_once))
+            why = f"never runs: {texts} cannot hold"
+        whys.append(why)
+    return "" if _cut_off(said) else "; ".join(dict.fromkeys(whys))
+
+
+def _contradicts(gates: Sequence[Gate], speech: guards.Language) -> bool:
+    return guards.impossible(_guards([Path(Start("unknown"), tuple(gates))])[0], speech)
 
 
 def _cut_off(said: Said) -> bool:
@@ -398,6 +431,8 @@ def _condition(gate: Gate, python: bool) -> str:
     if gate.kind in ("if", "while"):
         needs = (" or " in text) if python else ("||" in text)
         return f"({text})" if needs else text
+    if gate.kind == "never":
+        return f"[never: {text}]"
     if gate.kind in ("for", "do", "catch", "with", "macro", "cpp"):
         return f"[{'#if' if gate.kind == 'cpp' else gate.kind} {text}]"
     return text

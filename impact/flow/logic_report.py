@@ -129,6 +129,7 @@ def _entry(commit: Commit, change: Change) -> dict[str, Any]:
         "old": change.old,
         "new": change.new,
         "why": change.why,
+        "unreachable": change.unreachable,
         "reaches": [
             {
                 "package": reached.package,

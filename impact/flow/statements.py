@@ -27,16 +27,22 @@ _LIVE = frozenset(
 )  # fmt: skip
 _OK = re.compile(r"(?:[\w.]|->)+(?:\.|->)ok\(\)")
 _LOOPS = frozenset(("while", "do"))
+_CALLS = re.compile(r"\w\s*[(\[]|\]\s*\(")
+_NAMES = re.compile(r"(?<![\w.>:\"'])(?:this->|self\.)?([A-Za-z_]\w*)(?![\w\"':])")
+"""Variables in a condition, without what stands behind a point or in a scope."""
+_WORDS = frozenset(("and", "or", "not", "is", "in", "true", "false", "True", "False", "None", "nullptr", "NULL"))
 
 
 class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A guard. kind, text and of as in GuardAt; meaning: the text with local variables and predicates of the package
-    put back into what they stand for, empty where that is the text."""
+    put back into what they stand for, empty where that is the text. fixed: what it asks is the same wherever its
+    function asks it, since nothing there changes it."""
 
     kind: str
     text: str
     of: str
     meaning: str = ""
+    fixed: bool = False
 
 
 class Start(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -141,6 +147,8 @@ class _Digester:
         self.join, self.state = join, state
         self.running = join.running()
         self.meaning = Meaning(join.code)
+        self._fixed: dict[tuple[str, str, str], bool] = {}
+        self._calling: dict[int, bool] = {}
         # What a framework subscribes to by itself (a transform listener) makes nothing run.
         self.implied = {
             (site.use.fn.source.path, site.use.call.line)
@@ -254,10 +262,41 @@ class _Digester:
                 start = Start(kind, self._pace(guard) or (start.detail if start.kind == kind else ""))
             if asked:
                 meaning = self.meaning.of(guard) if asked == guard.text else ""
-                gates.append(Gate(guard.kind, asked, guard.of, meaning))
+                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
         if start.kind in ("start", "unknown"):
             start = Start(start.kind)
         return Path(start, tuple(gates))
+
+    def _is_fixed(self, guard: GuardAt) -> bool:
+        """Whether a guard asks for variables alone that its function, and what that calls of the code, leaves alone."""
+        asked = (guard.path, guard.of, guard.text)
+        known = self._fixed.get(asked)
+        if known is None:
+            fn = self.join.code.by_name.get((guard.path, guard.of))
+            plain = guard.kind in ("if", "unless") and not _CALLS.search(guard.text)
+            known = plain and fn is not None and all(self._stays(name, fn) for name in _NAMES.findall(guard.text))
+            self._fixed[asked] = known
+        return known
+
+    def _stays(self, name: str, fn: Fn) -> bool:
+        if name in _WORDS or name.isupper():
+            return True
+        local = name in fn.locals
+        made = [row for target in (name, f"this.{name}") for row in fn.assigned.get(target, ())]
+        parameter = any(one.name == name for one in fn.facts.parameters)
+        if len(made) > (local and not parameter) or any(row.operator != "=" for row in made):
+            return False
+        touched = any(
+            one.kind != "read" and one.path.removeprefix("this.").partition(".")[0] == name for one in fn.facts.accesses
+        )
+        return not touched and (local or not self._calls_own(fn))
+
+    def _calls_own(self, fn: Fn) -> bool:
+        known = self._calling.get(id(fn))
+        if known is None:
+            code = self.join.code
+            known = self._calling[id(fn)] = any(code.targets(call.callee, fn) for call in fn.facts.calls)
+        return known
 
     def _pace(self, guard: GuardAt) -> str:
         """The rate at which a loop goes round, as it is written where it is made; empty when none is seen."""

@@ -139,7 +139,7 @@ def test_guards(text, expected):
         ("try: x()\nexcept E: return\np()", ["early unless except E"]),
         ("try: x()\nexcept E: return\nexcept F: y()\np()", ["early unless except E"]),
         ("try: return x()\nexcept E: y()\np()", ["early catch E"]),
-        ("try: return x()\nexcept E: return\np()", []),
+        ("try: return x()\nexcept E: return\np()", ["early never after try"]),
         ("if a:\n    try: return x()\n    except E: raise\np()", ["early unless a"]),
         ("try:\n    if a: return\nfinally: x()\np()", ["early unless a"]),
         ("try:\n    if a: return\nexcept E: x()\np()", []),
@@ -150,6 +150,19 @@ def test_guards(text, expected):
         ("match a:\n  case 1 if b: return\np()", ["early unless a == 1 and b"]),
         ("if a:\n    return\n    x()\np()", ["early unless a"]),
         ("if a:\n    def g(): return\np()", []),
+        # behind what always jumps
+        ("return\np()", ["early never after return"]),
+        ("raise E\nif a: p()", ["early never after raise", "if a"]),
+        ("sys.exit()\np()", ["early never after exit"]),
+        ("if a: return\nelse: return\np()", ["early never after if"]),
+        ("if a: return\nreturn\np()", ["early unless a", "early never after return"]),
+        ("for x in y:\n    continue\n    p()", ["for x in y", "early never after continue"]),
+        ("for x in y:\n    break\np()", []),
+        ("while True:\n    x()\np()", ["early never after while"]),
+        ("with b: return\np()", ["early never after with"]),
+        ("with suppress(E): return\np()", []),
+        ("if a:\n    with contextlib.suppress(E): return\np()", []),
+        ("try: return\nfinally: p()", []),
     ],
 )  # fmt: skip
 def test_what_follows_a_jump(text, expected):

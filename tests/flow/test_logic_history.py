@@ -431,6 +431,42 @@ STEPS = (
         ),
         (("tightened", "frames", "std::exception"),),
     ),
+    # Never again
+    Step(
+        "behind a return",
+        put(CAM, ("      pub_->publish(frame);", "      return;\n      pub_->publish(frame);")),
+        (("tightened", "frames", "never runs: it stands after return"),),
+    ),
+    Step(
+        "reached again",
+        put(CAM, ("      return;\n      pub_->publish(frame);", "      pub_->publish(frame);")),
+        (("widened", "frames", "never"),),
+    ),
+    Step(
+        "a contradiction",
+        put(CAM, ("      pub_->publish(frame);", "      if (mode_ == 7) {\n        pub_->publish(frame);\n      }")),
+        (
+            (
+                "tightened",
+                "frames",
+                "never runs: `(mode_ == 1 || mode_ == 2 || mode_ == 3)` and `mode_ == 7` cannot hold",
+            ),
+        ),
+    ),
+    Step(
+        "no contradiction where it may be assigned",
+        put(CAM, ("if (mode_ == 7)", "mode_ = next_;\n      if (mode_ == 7)")),
+    ),
+    Step(
+        "nor is it told then",
+        put(CAM, ("if (mode_ == 7)", "if (mode_ == 8)")),
+        (("changed", "frames", "`mode_ == 8` was `mode_ == 7`"),),
+    ),
+    Step(
+        "python: behind a raise",
+        put(PY, ("            self.pub.publish", "            raise ValueError\n            self.pub.publish")),
+        (("tightened", "state", "never runs: it stands after raise"),),
+    ),
     # rosbuild
     Step("a slower loop", put(BEEP, ("rate(5)", "rate(1)")), (("trigger changed", "beeps", "rate 1"),)),
     Step(

@@ -1,0 +1,97 @@
+"""Two states of some packages compared, wherever their files are from; and digests as they are kept."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path as FilePath
+from typing import Any
+
+import msgspec
+
+from ..facts.store import unpack
+from .guard_renames import propose_renames
+from .guards import Language
+from .history import File, State
+from .logic_changes import Change, Side, changes, settled
+from .logic_match import Names
+from .statements import EMPTY, Digest, digest
+
+_LONGEST_TEXT = 500_000
+_decoder = msgspec.msgpack.Decoder(Digest)
+
+
+def compared(
+    old: Side, new: Side, renamed: Callable[[], Mapping[str, str]], read: Callable[[File], bytes]
+) -> list[Change]:
+    """What happened to publishing from one side to the other, by path and line, rewordings included.
+
+    renamed: gives files that are called otherwise now, as paths of the repository; asked where anything differs. read:
+    the bytes of a file of either side.
+    """
+    if settled(old, new):
+        return []
+    files = renamed()
+    found = list(changes(old, new, Names({}, files)))
+    if old.packages and new.packages and any(change.kind != "equivalent" for change in found):
+        words = renamed_words([one for one, _ in old.packages], [one for one, _ in new.packages], files, read)
+        if words:
+            found = list(changes(old, new, Names(words, files)))
+    return sorted(found, key=lambda change: (change.path, change.line, change.kind, change.why))
+
+
+def renamed_words(
+    old: list[State], new: list[State], files: Mapping[str, str], read: Callable[[File], bytes]
+) -> dict[str, str]:
+    """Identifiers that are called otherwise in the files that differ. files: those that are called otherwise."""
+    was = {state.whole(file.path): file for state in old for file in state.files}
+    is_now = {state.whole(file.path): file for state in new for file in state.files}
+    found: dict[str, str] = {}
+    languages: tuple[Language, ...] = ("cpp", "python")
+    for language in languages:
+        before: list[str] = []
+        after: list[str] = []
+        for path, file in sorted(was.items()):
+            other = is_now.get(files.get(path, path))
+            if file.kind == language and other is not None and other.id != file.id:
+                before.append(read(file).decode("utf-8", "replace"))
+                after.append(read(other).decode("utf-8", "replace"))
+        if before and sum(map(len, before)) + sum(map(len, after)) <= _LONGEST_TEXT:
+            found.update(propose_renames("\n".join(before), "\n".join(after), language))
+    return found
+
+
+def safe_digest(state: State, facts: Mapping[str, Any]) -> Digest:
+    """The digest of a state, an empty one of code that is nested beyond all reason: it must not end the run."""
+    try:
+        return digest(state, facts)
+    except RecursionError:
+        return EMPTY
+
+
+def decoded(data: bytes | None) -> Digest:
+    """A digest as it was packed; an empty one where that cannot be read."""
+    if data is None:
+        return EMPTY
+    try:
+        return _decoder.decode(unpack(data))
+    except (ValueError, msgspec.MsgspecError):
+        return EMPTY
+
+
+def digest_key(key: bytes) -> bytes:
+    """Under which the digest of a state with this key is remembered."""
+    return key + stamp("facts", "model/flow")
+
+
+@cache
+def stamp(*folders: str) -> bytes:
+    """Changes whenever the code does that makes facts, joins them, or compares."""
+    root = FilePath(__file__).parent.parent
+    hashed = hashlib.sha1()
+    files = [path for folder in folders for path in (root / folder).glob("*.*") if path.suffix in (".py", ".toml")]
+    files += [root / "flow" / name for name in ("statements.py", "history.py", "logic_meaning.py")]
+    for path in sorted(set(files)):
+        hashed.update(path.name.encode() + path.read_bytes())
+    return hashed.digest()[:8]
