@@ -15,6 +15,7 @@ from .check import run as run_check
 from .config import ConfigError
 from .findings import SettingsError, fails
 from .report.report import Coverage, Report
+from .report.text import PLAIN, Style, style_for
 from .targets.distro import TargetError
 from .targets.snapshot import SnapshotError
 from .tree import TreeError, WorkingTree, shown
@@ -298,7 +299,7 @@ def graph(
             try:
                 text = draw(
                     found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
-                    hops=hops, everything=everything,
+                    hops=hops, everything=everything, style=_style(output),
                 )  # fmt: skip
             except NothingSelected as error:
                 raise Failed(str(error)) from None
@@ -340,8 +341,7 @@ def logic(
             elif format == "json":
                 text = logic_report.as_json(found, __version__)
             else:
-                coloured = output is None and _coloured()
-                text = logic_report.text(found, logic_report.COLOURED if coloured else logic_report.PLAIN)
+                text = logic_report.text(found, _style(output))
             _deliver(text, output)
     except Failed as error:
         return failed(str(error))
@@ -351,10 +351,14 @@ def logic(
     return 0
 
 
-def _coloured() -> bool:
-    from .report.text import style_for
+def _style(output: Path | None) -> Style:
+    """How text is written: for the terminal that reads it; in a file or a pipe, lines are as long as they are."""
+    from .report.columns import UNBROKEN
 
-    return bool(style_for(sys.stdout).colours)
+    if output is not None:
+        return PLAIN._replace(width=UNBROKEN)
+    style = style_for(sys.stdout)
+    return style if sys.stdout.isatty() else style._replace(width=UNBROKEN)
 
 
 def explain(name: str | None) -> int:

@@ -139,7 +139,7 @@ def test_beside_a_base(ws):
     source.write_text(source.read_text().replace("pub_->publish", "if (ready_) pub_->publish"))
     code, out, _ = run(ws, "--base", "HEAD")
     assert code == 0
-    assert "~ publishes  /talker" in out
+    assert "~ publishes   /talker" in out
     assert "changed: guards" in out
     code, out, _ = run(ws, "--rev", "HEAD")
     assert "when ready_" not in out

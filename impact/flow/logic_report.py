@@ -4,68 +4,62 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import Any
 
 from ...corpus.told import counted
 from ..findings import printable
-from ..report.report import one_line, safe
+from ..report.columns import UNBROKEN, Piece, laid_out
+from ..report.report import one_line
+from ..report.text import PLAIN, Style
 from .history import Commit
 from .logic import Logic
 from .logic_changes import KINDS, Change
 
 SCHEMA = 1
-_COLOURS = {"tightened": "1;31", "gone": "1;31", "trigger changed": "1;33", "changed": "1;33", "widened": "1;36",
-            "new": "1;32", "equivalent": "2", "commit": "1", "dim": "2"}  # fmt: skip
+_ROLES = {"tightened": "error", "gone": "error", "trigger changed": "warning", "changed": "warning", "widened": "note",
+          "new": "good", "equivalent": "dim"}  # fmt: skip
 _MOST_READERS = 6
+_WIDE = PLAIN._replace(width=UNBROKEN)
 
 
-class Style(NamedTuple):
-    """How text is written. colours: terminal codes by kind, empty for none."""
-
-    colours: Mapping[str, str] = {}
-
-
-PLAIN = Style()
-COLOURED = Style(_COLOURS)
-
-
-def text(logic: Logic, style: Style = PLAIN) -> str:
-    """The changes by commit, newest first, and one line on what was looked at."""
+def text(logic: Logic, style: Style = _WIDE) -> str:
+    """The changes by commit, newest first, and what was looked at."""
     lines: list[str] = []
     for commit, changes in groupby(logic.changes, key=lambda pair: pair[0]):
-        lines.append(_painted(f"{commit.id[:10]}  {commit.date[:10]}  {one_line(commit.summary)}", "commit", style))
+        head = [Piece(f"{commit.id[:10]}  {commit.date[:10]}", "bold"), Piece(one_line(commit.summary), "bold")]
+        lines += laid_out(head, style, 0, 12)
         for _, change in changes:
-            lines.extend(_lines(change, style))
+            lines += _lines(change, style)
         lines.append("")
-    lines.append(summary(logic))
-    return safe("\n".join(lines))
+    lines += laid_out([Piece(summary(logic))], style, 0, 2)
+    return "\n".join(lines)
 
 
 def _lines(change: Change, style: Style) -> Iterator[str]:
-    kind = _painted(f"{change.kind:15s}", change.kind, style)
     node = f" ({one_line(change.node)})" if change.node else ""
-    yield f"  {kind} {one_line(change.topic) or '?'}{node}  {one_line(change.path)}:{change.line}"
+    head = [
+        Piece(f"{change.kind:15s}", _ROLES[change.kind]),
+        Piece((one_line(change.topic) or "?") + node),
+        Piece("", path=f"{one_line(change.path)}:{change.line}"),
+    ]
+    yield from laid_out(head, style, 2, 6)
     if change.why:
-        yield f"      {one_line(change.why)}"
+        yield from laid_out([Piece(one_line(change.why))], style, 6, 8)
     if change.old is not None and change.new is not None:
-        yield _painted(f"      - {one_line(change.old) or 'always'}", "dim", style)
-        yield _painted(f"      + {one_line(change.new) or 'always'}", "dim", style)
-    elif change.old or change.new:
-        yield _painted(f"      {'-' if change.old else '+'} {one_line(change.old or change.new or '')}", "dim", style)
+        said = [f"- {change.old or 'always'}", f"+ {change.new or 'always'}"]
+    else:
+        said = [f"{sign} {text}" for sign, text in (("-", change.old), ("+", change.new)) if text]
+    for line in said:
+        yield from laid_out([Piece(one_line(line), "dim")], style, 6, 8)
     for number, reached in enumerate(change.reaches):
         if number == _MOST_READERS:
-            yield f"      … and {counted(len(change.reaches) - number, 'further subscriber')}"
+            yield f"      and {counted(len(change.reaches) - number, 'further subscriber')}"
             break
         callback = f", {reached.callback}" if reached.callback else ""
-        place = f"{one_line(reached.path)}:{reached.line}"
-        yield f"      reaches {one_line(reached.node or reached.package)}{one_line(callback)}  {place}"
-
-
-def _painted(line: str, role: str, style: Style) -> str:
-    code = style.colours.get(role)
-    return f"\x1b[{code}m{line}\x1b[0m" if code else line
+        who = Piece(f"reaches {one_line((reached.node or reached.package) + callback)}")
+        yield from laid_out([who, Piece("", path=f"{one_line(reached.path)}:{reached.line}")], style, 6, 8)
 
 
 def summary(logic: Logic) -> str:

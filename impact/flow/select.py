@@ -18,10 +18,12 @@ HIDDEN = (
 
 
 class Selection(NamedTuple):
-    """Part of a graph, and how many topics, services and actions were left out of it as HIDDEN."""
+    """Part of a graph. hidden: how many topics, services and actions were left out of it as HIDDEN; asked: whether
+    something was asked for, so that it need not be the whole."""
 
     graph: Graph
     hidden: int
+    asked: bool = False
 
 
 class NothingSelected(ValueError):
@@ -43,6 +45,8 @@ def selected(
     kept_names = set(names)
     if packages:
         kept_nodes &= {node.id for node in graph.nodes if _fits(node.package, packages, ("",))}
+        if not kept_nodes:
+            raise NothingSelected(_unknown("package with nodes", packages, [node.package for node in graph.nodes]))
     if nodes:
         kept_nodes &= _nodes(graph, nodes)
     if topics:
@@ -77,7 +81,7 @@ def selected(
         timers=tuple(t for t in graph.timers if t.node in kept_nodes),
         parameters=tuple(p for p in graph.parameters if p.node in kept_nodes),
     )
-    return Selection(part, len(hidden))
+    return Selection(part, len(hidden), asked)
 
 
 def _fits(name: str, patterns: Collection[str], prefixes: Sequence[str]) -> bool:
@@ -126,7 +130,7 @@ def _unknown(what: str, asked: Sequence[str], known: Collection[str]) -> str:
     from difflib import get_close_matches
 
     wanted = ", ".join(asked)
-    close = get_close_matches(wanted.lstrip("/"), [name.lstrip("/") for name in known if name], 3, 0.5)
+    close = get_close_matches(wanted.lstrip("/"), sorted({name.lstrip("/") for name in known if name}), 3, 0.5)
     near = f"; there is {', '.join(f'`{name}`' for name in close)}" if close else ""
     return f"`{wanted}`: no {what} of this name{near}"
 

@@ -74,7 +74,7 @@ def render(report: Report, style: Style = PLAIN) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _paint(style: Style, role: str, text: str) -> str:
+def painted(style: Style, role: str, text: str) -> str:
     code = style.colours.get(role)
     return f"\x1b[{code}m{text}\x1b[0m" if code else text
 
@@ -91,7 +91,7 @@ def _targets(report: Report, style: Style) -> list[str]:
         names = ", ".join(_described(target) for target in targets)
         groups.append(f"{names}: {one_line(reason)}" if reason else names)
     base = f" (new against {one_line(report.base)})" if report.base else ""
-    lines = [_paint(style, "bold", "targets ") + "; ".join(groups) + base]
+    lines = [painted(style, "bold", "targets ") + "; ".join(groups) + base]
     for target in report.targets:
         lines += [f"  {one_line(target.name)}: {one_line(note)}" for note in target.notes]
     return lines
@@ -113,9 +113,9 @@ def _packages(report: Report, findings: list[Finding], style: Style) -> list[str
     lines: list[str] = []
     shown: Counter[tuple[str, str]] = Counter()
     for name, group in by_package.items():
-        title = _paint(style, "bold", one_line(name or "workspace"))
+        title = painted(style, "bold", one_line(name or "workspace"))
         if folders.get(name, "") not in ("", ".", name):
-            title += _paint(style, "dim", f" {style.symbols[4]} {one_line(folders[name])}")
+            title += painted(style, "dim", f" {style.symbols[4]} {one_line(folders[name])}")
         lines += ["", title]
         more: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
         for finding in sorted(group, key=lambda finding: rank.get(finding.severity, 3)):
@@ -135,7 +135,7 @@ def _head(report: Report, finding: Finding, style: Style) -> str:
     where = f" {', '.join(finding.targets)}" if len(names) > 1 and finding.targets else ""
     if where and len(finding.targets) == len(names):
         where = " all targets"
-    label = _paint(style, finding.severity, f"{finding.severity}[{finding.rule}]")
+    label = painted(style, finding.severity, f"{finding.severity}[{finding.rule}]")
     return f"{label}{one_line(where)}: {one_line(finding.message)}"
 
 
@@ -143,18 +143,18 @@ def _finding(report: Report, finding: Finding, style: Style) -> list[str]:
     place = one_line(finding.path)
     if finding.line:
         place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")
-    lines = [_head(report, finding, style), f"  {_paint(style, 'dim', style.symbols[3])} {place}"]
+    lines = [_head(report, finding, style), f"  {painted(style, 'dim', style.symbols[3])} {place}"]
     excerpt = report.excerpt(finding.path, finding.line) if finding.line else []
     _, shown = focus(finding, excerpt)
     margin = len(str(finding.line))
     if shown is not None and shown.text.strip():
         text, offset, width = _clipped(shown, style.width - margin - 5)
-        lines.append(f"  {_paint(style, 'dim', f'{finding.line} |')} {text}")
+        lines.append(f"  {painted(style, 'dim', f'{finding.line} |')} {text}")
         if width:
-            caret = _paint(style, finding.severity, "^" * width)
-            lines.append(f"  {' ' * margin} {_paint(style, 'dim', '|')} {' ' * offset}{caret}")
+            caret = painted(style, finding.severity, "^" * width)
+            lines.append(f"  {' ' * margin} {painted(style, 'dim', '|')} {' ' * offset}{caret}")
     if finding.help:
-        lines.append(f"  {_paint(style, 'help', 'help:')} {one_line(finding.help)}")
+        lines.append(f"  {painted(style, 'help', 'help:')} {one_line(finding.help)}")
     return lines
 
 
@@ -220,7 +220,7 @@ def _matrix(report: Report, style: Style) -> list[str]:
     for label, row_cells in rows:
         line = label + " " * (first - cells(label))
         for head, (text, role) in zip(heads, row_cells, strict=True):
-            line += "  " + _paint(style, role, text) + " " * max(0, cells(head) - cells(text))
+            line += "  " + painted(style, role, text) + " " * max(0, cells(head) - cells(text))
         lines.append(line.rstrip())
     return lines
 
@@ -230,17 +230,17 @@ def _summary(report: Report, style: Style) -> str:
     findings = fresh(report)
     counts = count_by_severity(findings)
     found = [
-        _paint(style, severity, counted(number, severity))
+        painted(style, severity, counted(number, severity))
         + ("" if severity in style.severities else f" (shown with --{severity}s)")
         for severity, number in counts.items()
         if number
     ]
     if report.failure:
-        text = _paint(style, "error", "failed") + f": {one_line(report.failure)}"
+        text = painted(style, "error", "failed") + f": {one_line(report.failure)}"
     elif not report.coverage.parsed and not findings:
-        text = _paint(style, "error", "nothing was analysed")
+        text = painted(style, "error", "nothing was analysed")
     else:
-        text = ", ".join(found) if found else _paint(style, "good", "nothing found")
+        text = ", ".join(found) if found else painted(style, "good", "nothing found")
     if report.base:
         old = len(report.findings) - len(findings)
         text += f", {old:,} older" if old else ""

@@ -16,6 +16,7 @@ from rosimpact.impact.flow.drawing.json import schema
 from rosimpact.impact.flow.drawing.mermaid import MOST, ROOM, escaped
 from rosimpact.impact.flow.select import NothingSelected
 from rosimpact.impact.model.flow.graph import GuardAt
+from rosimpact.impact.report.text import PLAIN
 
 ROOT = Path(__file__).parents[2]
 NOW = robot()
@@ -30,21 +31,101 @@ def test_text():
     scan = lines[lines.index("/scan  sensor_msgs/LaserScan") :][:4]
     assert scan == [
         "/scan  sensor_msgs/LaserScan",
-        "  publishes  /driver  driver/driver.cpp:5  [best_effort]",
-        "              publish at driver/driver.cpp:6  when ready_; on timer 100ms",
-        "  subscribes /planner  planner/planner.cpp:5  [→ Planner::onScan]",
+        "  publishes   /driver  driver/driver.cpp:5  [best_effort]",
+        "      publish at driver/driver.cpp:6  when ready_; on timer 100ms",
+        "  subscribes  /planner  planner/planner.cpp:5  [→ Planner::onScan]",
     ]
     assert "/calibrate (service)  std_srvs/Trigger" in lines
     assert "8 of 9 API calls resolved; 3 files read" in text
-    assert lines[-1].startswith("  planner/planner.cpp:7: publisher name `unknown()`: ")
+    assert lines[-1].startswith("  planner/planner.cpp:7:  publisher name `unknown()`: ")
 
 
 def test_text_beside_a_base():
     lines = draw(NOW, "text", BEFORE).splitlines()
-    assert any(line.startswith("~ publishes  /driver") and "changed: QoS, guards" in line for line in lines)
-    assert any(line.startswith("+ serves     /driver") for line in lines)
-    assert any(line.startswith("- serves     /driver") for line in lines)
-    assert any(line.startswith("  subscribes /mover") for line in lines)
+    place = lines.index("~ publishes   /driver  driver/driver.cpp:5  [changed: QoS, guards; best_effort]")
+    assert lines[place + 1 : place + 5] == [
+        "    - QoS 10",
+        "    + QoS rclcpp::SensorDataQoS()",
+        "    - publish at driver/driver.cpp:6  on timer 100ms",
+        "    + publish at driver/driver.cpp:6  when ready_; on timer 100ms",
+    ]
+    assert "+ serves      /driver  driver/driver.cpp:7  [→ Driver::calibrate]" in lines
+    assert "- serves      /driver  driver/driver.cpp:7  [→ Driver::calibrate]" in lines
+    assert any(line.startswith("  subscribes  /mover") for line in lines)
+
+
+def test_of_a_statement_that_many_ways_lead_to_the_ways_that_differ_are_said():
+    def driver(guard):
+        return DRIVER.replace("if (ready_) pub_->publish(scan_);", "send();").replace(
+            "void calibrate",
+            f"void send() {{ pub_->publish(scan_); }} void again() {{ if ({guard}) send(); }} void calibrate",
+        ).replace("server_ =", "other_ = create_wall_timer(1s, [this]() { again(); }); server_ =")  # fmt: skip
+
+    lines = draw(robot(driver=driver("late_")), "text", robot(driver=driver("early_"))).splitlines()
+    place = next(number for number, line in enumerate(lines) if line.startswith("~ "))
+    assert lines[place + 1 : place + 4] == [
+        "      publish at driver/driver.cpp:9  on timer 100ms, timer 1s; 2 ways lead there",
+        "        - when early_; on timer 1s",
+        "        + when late_; on timer 1s",
+    ]
+
+
+def test_in_text_nodes_that_run_the_same_code_stand_together():
+    driver = "driver/driver"
+    (twin,) = (structs.replace(node, id="driver/twin", name="/twin") for node in NOW.nodes if node.id == driver)
+    both = structs.replace(
+        NOW,
+        nodes=(*NOW.nodes, twin),
+        endpoints=(*NOW.endpoints, *(structs.replace(e, node=twin.id) for e in NOW.endpoints if e.node == driver)),
+        publishes=(*NOW.publishes, *(structs.replace(p, node=twin.id) for p in NOW.publishes if p.node == driver)),
+    )
+    text = draw(both, "text")
+    assert "  publishes   /driver, /twin  driver/driver.cpp:5  [best_effort]\n" in text
+    assert text.count("publish at driver/driver.cpp:6") == 1
+
+
+def test_nodes_without_edges_are_named_in_text():
+    lone = structs.replace(NOW.nodes[0], id="lone/lone", name="/lone")
+    assert "\n1 node with none of these: /lone\n" in draw(structs.replace(NOW, nodes=(*NOW.nodes, lone)), "text")
+
+
+def test_the_answer_to_a_question_lists_what_is_not_resolved_where_it_looked():
+    assert "planner/planner.cpp:7:  publisher name" in draw(NOW, "text", topics=["scan"])
+    text = draw(NOW, "text", nodes=["driver"], topics=["scan"])
+    assert "planner/planner.cpp:7" not in text
+    assert text.endswith("  1 is not resolved; --all lists it\n")
+
+
+NARROW = PLAIN._replace(width=60)
+LONG = "a_package_with_a_long_name/a_package_with_a_long_name/a_module_with_a_rather_long_name.cpp"
+
+
+def test_text_keeps_within_a_narrow_terminal_and_loses_nothing_but_folders():
+    long = {"path": LONG, "line": 5}
+    graph = structs.replace(
+        NOW,
+        endpoints=tuple(structs.replace(each, **long) for each in NOW.endpoints),
+        publishes=tuple(
+            structs.replace(
+                each, guards=(GuardAt("if", " && ".join(f"ready_{n}" for n in range(30)), LONG, 5),), **long
+            )
+            for each in NOW.publishes
+        ),
+    )
+    text = draw(graph, "text", style=NARROW)
+    assert max(map(len, text.splitlines())) <= 60
+    words = set(draw(graph, "text").split()) - {f"{LONG}:5"}
+    assert words <= set(text.split())
+    assert "      .../a_module_with_a_rather_long_name.cpp:5\n" in text
+    assert "/..." not in draw(graph, "text"), "in a file or a pipe nothing is shortened"
+
+
+def test_colours_mark_what_differs():
+    painted = draw(NOW, "text", BEFORE, style=PLAIN._replace(colours={"good": "32", "error": "31", "warning": "33"}))
+    assert "\x1b[32m+ serves" in painted
+    assert "\x1b[31m- serves" in painted
+    assert "\x1b[33m~ publishes" in painted
+    assert re.sub(r"\x1b\[\d*m", "", painted).split() == draw(NOW, "text", BEFORE).split()
 
 
 @pytest.mark.parametrize("base", [None, BEFORE])
@@ -143,6 +224,7 @@ def test_what_is_hidden_is_not_said_to_be_gone():
         ("rclcpp::SensorDataQoS()", "rclcpp::SensorDataQoS()", ""),
         ("10", "rclcpp::QoS(10)", ""),
         ("10", "11", "QoS"),
+        ("A::b::lambda@3:7", "A::b::lambda@4:9", ""),
         ("qos_of_old()", "qos_of_new()", "QoS"),
     ],
 )
@@ -188,7 +270,8 @@ def test_mermaid_keeps_within_its_room_and_keeps_what_differs():
         ([("if", "a || b"), ("if", "c")], "(a || b) and c"),
         ([("if", "a or b"), ("unless", "c or d")], "(a or b) and not (c or d)"),
         ([("if", "a && b"), ("if", "c")], "a && b and c"),
-        ([("if", "ordered"), ("while", "ok()")], "ordered and while ok()"),
+        ([("if", "ordered"), ("while", "ok()")], "ordered, in while ok()"),
+        ([("while", "ok()"), ("for", "a : b")], "in while ok() in for a : b"),
     ],
 )
 def test_guards_in_a_line_mean_what_they_mean_nested(guards, said):

@@ -70,7 +70,7 @@ def test_formats(tmp_path, typed) -> None:
     repository = history(tmp_path / "repo", beep(), beep(("True)", "True) and ready()")))
     shown = typed(repository)
     assert shown.exit_code == 0
-    assert "tightened       beeps (beep/beep)  scripts/beep.py:7" in shown.stdout
+    assert "tightened        beeps (beep/beep)  scripts/beep.py:7" in shown.stdout
     document = json.loads(typed(repository, "--format", "json").stdout)
     assert [change["kind"] for change in document["changes"]] == ["tightened", "new"]
     page = tmp_path / "page.html"

@@ -646,7 +646,7 @@ def test_text(made: Made) -> None:
     shown = text(chosen(made.logic))
     block = shown[shown.index(made.commits["ask for more"][:10]) :].split("\n\n")[0]
     assert block.split("\n")[1:] == [
-        "  tightened       chatter (talker/talker)  talker/src/talker.cpp:19",
+        "  tightened        chatter (talker/talker)  talker/src/talker.cpp:19",
         "      only when `msg->data.size() > 0` too",
         "      - messages of `input`: enabled_",
         "      + messages of `input`: enabled_ && msg->data.size() > 0",

@@ -60,7 +60,7 @@ def test_what_is_near(around, hops, packages):
         ({"nodes": ["plannr"]}, "`plannr`: no node of this name; there is `planner/planner`"),
         ({"topics": ["scam"]}, "no topic, service or action of this name; there is `scan`"),
         ({"around": "nowhere-near"}, "no node or topic"),
-        ({"packages": ["none"]}, "no node"),
+        ({"packages": ["none"]}, "`none`: no package with nodes of this name; there is `planner`"),
     ],
 )
 def test_what_is_not_there(asked, said):

@@ -9,18 +9,21 @@ from typing import Any
 from msgspec import structs
 
 from ...model.flow.graph import Graph
+from ...report.text import Style
 from ..select import NothingSelected, Selection, selected
+from .text import WIDE
+from .text import render as as_text
 
 FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
 
 
 def draw(
     graph: Graph, format: str, base: Graph | None = None, *, nodes: Sequence[str] = (), topics: Sequence[str] = (),
-    packages: Sequence[str] = (), around: str = "", hops: int = 2, everything: bool = False,
+    packages: Sequence[str] = (), around: str = "", hops: int = 2, everything: bool = False, style: Style = WIDE,
 ) -> str:  # fmt: skip
     """A graph in one of FORMATS. base: what it is compared with: then what is new, gone and changed is marked.
 
-    nodes to everything: as for selected(). Raises NothingSelected.
+    nodes to everything: as for selected(). style: how text is written. Raises NothingSelected.
     """
     keep = everything or format == "json"
     asked: dict[str, Any] = {
@@ -30,8 +33,9 @@ def draw(
         part, before = selected(graph, **asked), None
     else:
         part, before = _compared(graph, base, asked)
-    module = import_module(f".{format}", __name__)
-    return module.render(part, before, everything)
+    if format == "text":
+        return as_text(part, before, everything, style)
+    return import_module(f".{format}", __name__).render(part, before)
 
 
 def _compared(graph: Graph, base: Graph, asked: dict[str, Any]) -> tuple[Selection, Graph]:
@@ -49,7 +53,9 @@ def _compared(graph: Graph, base: Graph, asked: dict[str, Any]) -> tuple[Selecti
     nodes = {node.id for part in parts for node in part.graph.nodes}
     nodes |= {endpoint.node for part in parts for endpoint in part.graph.endpoints}
     names = {each.topic for part in parts for each in (*part.graph.endpoints, *part.graph.publishes)}
-    return Selection(_within(graph, nodes, names), max(part.hidden for part in parts)), _within(base, nodes, names)
+    return Selection(_within(graph, nodes, names), max(part.hidden for part in parts), parts[0].asked), _within(
+        base, nodes, names
+    )
 
 
 def _within(graph: Graph, nodes: set[str], names: set[str]) -> Graph:

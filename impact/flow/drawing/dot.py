@@ -11,7 +11,7 @@ COLOURS = {"added": "#1a7f37", "removed": "#cf222e", "changed": "#bf8700", "": "
 _SHAPES = {"topic": "box", "service": "diamond", "action": "hexagon"}
 
 
-def render(selection: Selection, base: Graph | None, everything: bool) -> str:
+def render(selection: Selection, base: Graph | None) -> str:
     """A digraph in the DOT language (https://graphviz.org/doc/info/lang.html)."""
     graph = selection.graph
     names = (names_of(base) if base is not None else {}) | names_of(graph)

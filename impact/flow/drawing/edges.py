@@ -8,12 +8,13 @@ from typing import Literal, NamedTuple
 
 from msgspec import structs
 
-from ...model.flow.graph import Endpoint, Graph, Publish, Qos
+from ...model.flow.graph import Endpoint, Graph, GuardAt, Publish, Qos
 from ..select import kind_of
 
 Mark = Literal["", "added", "removed", "changed"]
 _CHOICE = re.compile(r"\|\||\?|\b(?:or|if|lambda)\b")
 """What binds less than `and`."""
+_PLACE = re.compile(r"lambda@\d+:\d+")
 _OUT = frozenset(("publisher", "client", "action client"))
 
 
@@ -21,7 +22,7 @@ class Edge(NamedTuple):
     """Endpoints of one role between a node and a name, and the publish statements there.
 
     kind: topic, service or action. mark: how it differs from the base; why: in which of type, QoS, guards or triggers a
-    changed one does.
+    changed one does; before: what that was in the base.
     """
 
     node: str
@@ -33,6 +34,7 @@ class Edge(NamedTuple):
     publishes: tuple[Publish, ...]
     mark: Mark = ""
     why: str = ""
+    before: Edge | None = None
 
     @property
     def outward(self) -> bool:
@@ -48,7 +50,8 @@ def edges(graph: Graph, base: Graph | None = None) -> list[Edge]:
         for key, edge in now.items():
             before = old.get(key)
             why = "" if before is None else _difference(before, edge)
-            now[key] = edge._replace(mark="added" if before is None else "changed" if why else "", why=why)
+            mark: Mark = "added" if before is None else "changed" if why else ""
+            now[key] = edge._replace(mark=mark, why=why, before=before if why else None)
         now.update({key: edge._replace(mark="removed") for key, edge in old.items() if key not in now})
     return sorted(now.values(), key=lambda edge: (edge.name, edge.kind, not edge.outward, edge.role, edge.node))
 
@@ -82,11 +85,11 @@ def _difference(before: Edge, now: Edge) -> str:
 
 
 def _qos(endpoint: Endpoint) -> Qos | str:
-    """What is told; how it is written counts where nothing else is known."""
+    """What is told; how it is written counts where nothing else is known, and where it is written never."""
     if endpoint.qos is None:
         return Qos()
     told = structs.replace(endpoint.qos, written="")
-    return endpoint.qos.written if told == Qos() and endpoint.qos.written else told
+    return _PLACE.sub("lambda", endpoint.qos.written) if told == Qos() and endpoint.qos.written else told
 
 
 def _guards(publishes: Sequence[Publish]) -> frozenset:
@@ -107,16 +110,25 @@ def names_of(graph: Graph) -> dict[str, str]:
     return {node.id: node.name if node.name and count[node.name] == 1 else node.id for node in graph.nodes}
 
 
-def guard_text(publish: Publish) -> str:
-    """The guards of a publish statement in one line; one that is a choice itself stands in parentheses among others."""
-    alone = len(publish.guards) == 1
+def conditions(guards: Sequence[GuardAt]) -> str:
+    """What must hold, in one line; what is a choice itself stands in parentheses among others. Empty for nothing."""
+    asked = [guard for guard in guards if guard.kind in ("if", "unless")]
     return " and ".join(
         f"not ({guard.text})"
         if guard.kind == "unless"
-        else f"{guard.kind} {guard.text}"
-        if guard.kind != "if"
-        else guard.text
-        if alone or not _CHOICE.search(guard.text)
         else f"({guard.text})"
-        for guard in publish.guards
+        if len(asked) > 1 and _CHOICE.search(guard.text)
+        else guard.text
+        for guard in asked
     )
+
+
+def loops(guards: Sequence[GuardAt]) -> str:
+    """The loops, `catch` and the like among guards, outermost first; empty for none."""
+    return " in ".join(f"{guard.kind} {guard.text}" for guard in guards if guard.kind not in ("if", "unless"))
+
+
+def guard_text(publish: Publish) -> str:
+    """The guards of a publish statement in one line."""
+    asked, around = conditions(publish.guards), loops(publish.guards)
+    return ", ".join([*([asked] if asked else []), *([f"in {around}"] if around else [])])

@@ -7,7 +7,7 @@ from ..select import Selection
 from .edges import edges, names_of
 
 
-def render(selection: Selection, base: Graph | None, everything: bool) -> str:
+def render(selection: Selection, base: Graph | None) -> str:
     """A directed graph of nodes and names (http://graphml.graphdrawing.org/), edges with role, place and guards."""
     import networkx
 

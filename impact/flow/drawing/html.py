@@ -28,7 +28,7 @@ _WAYS = 12
 _LONGEST = 2000
 
 
-def render(selection: Selection, base: Graph | None, everything: bool) -> str:
+def render(selection: Selection, base: Graph | None) -> str:
     """The page as text. What comes from the workspace stands only in a JSON block that cannot be left, and the page's
     script puts it into text nodes; the content security policy allows that script and style alone, by their hashes."""
     template = _template()
@@ -55,7 +55,6 @@ def _data(selection: Selection, base: Graph | None) -> str:
     """The graph as JSON in which no character can end the block: < > & and line separators are escaped."""
     graph = selection.graph
     found = edges(graph, base)
-    before = {} if base is None else {(edge.node, edge.name, edge.role): edge for edge in edges(base)}
     nodes = _nodes(graph, base, {edge.node for edge in found})
     places = {node["id"]: place for place, node in enumerate(nodes)}
     names = _names(found)
@@ -70,9 +69,7 @@ def _data(selection: Selection, base: Graph | None) -> str:
         "nodes": nodes,
         "names": names,
         "edges": [
-            _edge(edge, before.get((edge.node, edge.name, edge.role)))
-            | {"node": places.get(edge.node, -1), "name": named[edge.kind, edge.name]}
-            for edge in found
+            _edge(edge) | {"node": places.get(edge.node, -1), "name": named[edge.kind, edge.name]} for edge in found
         ],
         "coverage": msgspec.to_builtins(graph.coverage),
     }
@@ -131,9 +128,9 @@ def _names(found: Iterable[Edge]) -> list[dict[str, Any]]:
     return rows
 
 
-def _edge(edge: Edge, before: Edge | None) -> dict[str, Any]:
+def _edge(edge: Edge) -> dict[str, Any]:
     row = {"role": edge.role, "outward": edge.outward, "mark": edge.mark, "why": edge.why, **_said(edge)}
-    return row | {"before": _said(before)} if edge.mark == "changed" and before is not None else row
+    return row if edge.before is None else row | {"before": _said(edge.before)}
 
 
 def _said(edge: Edge) -> dict[str, Any]:

@@ -20,7 +20,7 @@ _LISTS = {
 }  # fmt: skip
 
 
-def render(selection: Selection, base: Graph | None, everything: bool) -> str:
+def render(selection: Selection, base: Graph | None) -> str:
     """The graph as one JSON object."""
     graph = selection.graph
     found: dict[str, Any] = {

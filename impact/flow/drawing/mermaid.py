@@ -15,7 +15,7 @@ _LINES = 90
 """Characters around the names of an edge and its ends, at most."""
 
 
-def render(selection: Selection, base: Graph | None, everything: bool) -> str:
+def render(selection: Selection, base: Graph | None) -> str:
     """A flowchart (https://mermaid.js.org/syntax/flowchart.html). What goes beyond MOST edges or ROOM is left out, what
     differs from the base last, and said."""
     graph = selection.graph

@@ -2,95 +2,205 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from ...model.flow.graph import Coverage, Endpoint, Graph, Publish
+from ....corpus.told import counted
+from ...model.flow.graph import Coverage, Endpoint, Graph, GuardAt, Publish, Trigger
+from ...report.columns import UNBROKEN, Piece, laid_out
 from ...report.report import one_line
+from ...report.text import PLAIN, Style
 from ..select import Selection
-from .edges import Edge, edges, guard_text, names_of
+from .edges import Edge, conditions, edges, loops, names_of
 
 _SHOWN = 20
+_HANG, _NODES = 6, 14
 _SIGN = {"added": "+ ", "removed": "- ", "changed": "~ ", "": "  "}
+_ROLES = {"added": "good", "removed": "error", "changed": "warning", "": ""}
 _VERBS = {
     "publisher": "publishes", "subscriber": "subscribes", "server": "serves", "client": "asks",
     "action server": "serves", "action client": "asks",
 }  # fmt: skip
+WIDE = PLAIN._replace(width=UNBROKEN)
 
 
-def render(selection: Selection, base: Graph | None, everything: bool) -> str:
+def render(selection: Selection, base: Graph | None, everything: bool = False, style: Style = WIDE) -> str:
     """The graph for people; everything: all that was not resolved, not the first 20 alone."""
     graph = selection.graph
     names = names_of(graph) | (names_of(base) if base is not None else {})
-    lines = [_head(graph, selection.hidden), ""]
-    group: list[Edge] = []
-    for edge in [*edges(graph, base), None]:
-        if group and (edge is None or (edge.name, edge.kind) != (group[0].name, group[0].kind)):
-            lines += [*_name(group, names), ""]
-            group = []
-        if edge is not None:
-            group.append(edge)
-    lines += _coverage(graph.coverage, everything)
-    return "\n".join(map(one_line, lines)) + "\n"
+    found = edges(graph, base)
+    lines = [*_head(found, graph, selection.hidden, style), ""]
+    groups: dict[tuple[str, str], list[Edge]] = {}
+    for edge in found:
+        groups.setdefault((edge.name, edge.kind), []).append(edge)
+    for group in groups.values():
+        lines += [*_name(group, names, style), ""]
+    alone = sorted({names[node.id] for node in graph.nodes} - {names.get(edge.node, "") for edge in found})
+    if alone:
+        said = f"{counted(len(alone), 'node')} with none of these: {', '.join(alone)}"
+        lines += [*_line([Piece(said)], style, 0, 2), ""]
+    lines += _coverage(selection, everything, style)
+    return "\n".join(lines) + "\n"
 
 
-def _head(graph: Graph, hidden: int) -> str:
-    kinds: dict[str, set[str]] = {"topic": set(), "service": set(), "action": set()}
-    for edge in edges(graph):
-        kinds[edge.kind].add(edge.name)
-    said = [f"{len(graph.nodes)} {'node' if len(graph.nodes) == 1 else 'nodes'}"]
-    said += [f"{len(found)} {kind}{'' if len(found) == 1 else 's'}" for kind, found in kinds.items() if found]
-    return ", ".join(said) + (f" ({hidden} that most nodes have are hidden; --all shows them)" if hidden else "")
+def _line(pieces: Sequence[Piece], style: Style, indent: int, hang: int = _HANG) -> Iterator[str]:
+    return laid_out(
+        [piece._replace(text=one_line(piece.text), path=one_line(piece.path)) for piece in pieces], style, indent, hang
+    )
 
 
-def _name(group: list[Edge], names: dict[str, str]) -> Iterator[str]:
+def _head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style) -> Iterator[str]:
+    said = [counted(len({node.id for node in graph.nodes}), "node")]
+    for kind in ("topic", "service", "action"):
+        names = {edge.name for edge in found if edge.kind == kind and edge.mark != "removed"}
+        said += [counted(len(names), kind)] if names else []
+    text = ", ".join(said)
+    if hidden:
+        are, them = ("is", "it") if hidden == 1 else ("are", "them")
+        text += f" ({counted(hidden, 'name')} that most nodes have {are} hidden; --all shows {them})"
+    return _line([Piece(text)], style, 0)
+
+
+def _name(group: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
     types = sorted({kind for edge in group for kind in edge.types})
-    shown = " or ".join(types) if types else "type not known"
     kind = "" if group[0].kind == "topic" else f" ({group[0].kind})"
-    yield f"{group[0].name}{kind}  {shown}"
+    yield from _line(
+        [Piece(group[0].name + kind, "bold"), Piece(" or ".join(types) if types else "type not known")], style, 0
+    )
+    for same in _alike(group):
+        yield from _edge(same, names, style)
+
+
+def _alike(group: Sequence[Edge]) -> list[list[Edge]]:
+    """Edges that the same lines of code make stand together: one library is used by many nodes."""
+    found: dict[tuple, list[Edge]] = {}
     for edge in group:
-        for place, endpoint in enumerate(_distinct(edge.endpoints)):
-            who = names.get(edge.node, edge.node) or "(no node)"
-            head = f"{_SIGN[edge.mark]}{_VERBS[edge.role]:10s} {who}" if place == 0 else f"{'':12s} "
-            yield f"{head}  {endpoint.path}:{endpoint.line}{_beside(endpoint, edge)}"
-        for publish in edge.publishes:
-            yield from _publish(publish)
+        found.setdefault((edge.mark, edge.why, edge.role, _said(edge), edge.before and _said(edge.before)), []).append(
+            edge
+        )
+    return list(found.values())
 
 
-def _distinct(endpoints: tuple[Endpoint, ...]) -> list[Endpoint]:
+def _said(edge: Edge) -> tuple:
+    """All that is written of an edge but its node."""
+    places = tuple((each.path, each.line, each.how, each.callback, each.qos) for each in edge.endpoints)
+    return edge.types, places, tuple(_statements(edge.publishes))
+
+
+def _edge(same: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
+    edge, mark = same[0], _ROLES[same[0].mark]
+    who = ", ".join(dict.fromkeys(names.get(each.node, each.node) or "(no node)" for each in same))
+    line = [Piece(f"{_SIGN[edge.mark]}{_VERBS[edge.role]:10s}", mark), Piece(who, mark, hang=_NODES)]
+    for endpoint in _distinct(edge.endpoints):
+        line.append(Piece("", path=f"{endpoint.path}:{endpoint.line}"))
+        beside = _beside(endpoint, edge, style)
+        line += [Piece(beside, mark or "dim")] if beside else []
+        yield from _line(line, style, _HANG if line[0].path else 0)
+        line = []
+    if edge.before is not None:
+        yield from _differences(edge, edge.before, style)
+        return
+    for statement in _statements(edge.publishes):
+        yield from _line(statement, style, _HANG, _HANG + 2)
+
+
+def _differences(edge: Edge, before: Edge, style: Style) -> Iterator[str]:
+    """What a changed edge was in the base (`-`) and is now (`+`), then its publish statements that are as they were."""
+    for said in (_types, _qualities):
+        old, now = said(before), said(edge)
+        for sign, role, lines in (("-", "error", old - now), ("+", "good", now - old)):
+            for line in sorted(lines):
+                yield from _line([Piece(f"{sign} {line}", role)], style, _HANG - 2, _HANG + 2)
+    old, now = ({statement[1:]: statement for statement in _statements(each.publishes)} for each in (before, edge))
+    for sign, role, lines in (("- ", "error", old.keys() - now.keys()), ("+ ", "good", now.keys() - old.keys())):
+        for statement in sorted((old | now)[line] for line in lines):
+            first = statement[0]._replace(text=sign + statement[0].text)
+            painted = [piece._replace(role=role) for piece in (first, *statement[1:])]
+            yield from _line(painted, style, _HANG - 2, _HANG + 2)
+    for line in sorted(now.keys() & old.keys(), key=now.__getitem__):
+        yield from _line(now[line], style, _HANG, _HANG + 2)
+        was, is_now = (_ways(each.publishes, line) for each in (before, edge))
+        for sign, role, ways in (("-", "error", was - is_now), ("+", "good", is_now - was)):
+            for way in sorted(ways):
+                yield from _line([Piece(f"{sign} {way}", role)], style, _HANG + 2, _HANG + 4)
+
+
+def _ways(publishes: Sequence[Publish], line: tuple[Piece, ...]) -> set[str]:
+    """Of the publish statements that are written as this line, the ways that lead there."""
+    return {
+        _when(way.guards, (way.trigger,)) or "always"
+        for publish in publishes
+        if _publish(publish)[1:] == line
+        for way in publish.by
+    }
+
+
+def _types(edge: Edge) -> set[str]:
+    return {f"type {kind}" for kind in edge.types}
+
+
+def _qualities(edge: Edge) -> set[str]:
+    return {f"QoS {each.qos.written}" for each in edge.endpoints if each.qos is not None and each.qos.written}
+
+
+def _distinct(endpoints: Sequence[Endpoint]) -> list[Endpoint]:
     return list({(endpoint.path, endpoint.line): endpoint for endpoint in endpoints}.values())
 
 
-def _beside(endpoint: Endpoint, edge: Edge) -> str:
+def _beside(endpoint: Endpoint, edge: Edge, style: Style) -> str:
     said = []
     if edge.why:
         said.append(f"changed: {edge.why}")
     if endpoint.how == "default":
         said.append("name: a parameter's default")
     if endpoint.callback is not None:
-        said.append(f"→ {endpoint.callback.name}")
+        said.append(f"{style.symbols[3]} {endpoint.callback.name}")
     qos = endpoint.qos
     if qos is not None:
         said += [value for value in (qos.reliability, qos.durability) if value not in ("", "reliable", "volatile")]
-    return f"  [{'; '.join(said)}]" if said else ""
+    return f"[{'; '.join(said)}]" if said else ""
 
 
-def _publish(publish: Publish) -> Iterator[str]:
-    guards = guard_text(publish)
-    triggers = ", ".join(dict.fromkeys(f"{t.kind} {t.detail}".strip() for t in publish.triggers if t.kind != "unknown"))
-    said = [f"when {guards}"] if guards else []
-    said += [f"on {triggers}"] if triggers else []
-    said += [f"{publish.ways} ways"] if publish.ways > 1 else []
-    yield f"{'':14s}publish at {publish.path}:{publish.line}{'  ' + '; '.join(said) if said else ''}"
+def _statements(publishes: Sequence[Publish]) -> list[tuple[Piece, ...]]:
+    """Publish statements: where, when and on what. One that publishes to several publishers is said once."""
+    return list(dict.fromkeys(map(_publish, publishes)))
 
 
-def _coverage(coverage: Coverage, everything: bool) -> Iterator[str]:
-    share = f", {coverage.by_default} by a parameter's default" if coverage.by_default else ""
-    yield f"{coverage.resolved} of {coverage.calls} API calls resolved{share}; {coverage.files} files read"
+def _publish(publish: Publish) -> tuple[Piece, ...]:
+    place = Piece("publish at ", path=f"{publish.path}:{publish.line}")
+    said = [_when(publish.guards, publish.triggers)] + [f"{publish.ways} ways lead there"] * (publish.ways > 1)
+    text = "; ".join(filter(None, said))
+    return (place, Piece(text)) if text else (place,)
+
+
+def _when(guards: Sequence[GuardAt], triggers: Sequence[Trigger]) -> str:
+    """Under which conditions, in which loops, and on what; empty for nothing."""
+    asked, around = conditions(guards), loops(guards)
+    on = ", ".join(dict.fromkeys(f"{each.kind} {each.detail}".strip() for each in triggers if each.kind != "unknown"))
+    said = {"when": asked, "in": around, "on": on}
+    return "; ".join(f"{word} {text}" for word, text in said.items() if text)
+
+
+def _coverage(selection: Selection, everything: bool, style: Style) -> Iterator[str]:
+    coverage: Coverage = selection.graph.coverage
+    share = f", {coverage.by_default:,} by a parameter's default" if coverage.by_default else ""
+    yield from _line(
+        [Piece(f"{coverage.resolved:,} of {counted(coverage.calls, 'API call')} resolved{share}; "
+               f"{counted(coverage.files, 'file')} read")], style, 0, 2,
+    )  # fmt: skip
     if coverage.unread:
-        yield f"{len(coverage.unread)} of them in part: {', '.join(coverage.unread[:5])}"
-    rest = coverage.unresolved if everything else coverage.unresolved[:_SHOWN]
-    for one in rest:
+        shown = coverage.unread if everything else coverage.unread[:5]
+        rest = f" and {len(coverage.unread) - len(shown)} more" if len(shown) < len(coverage.unread) else ""
+        yield from _line([Piece(f"{len(coverage.unread)} of them in part: {', '.join(shown)}{rest}")], style, 0, 2)
+    near = coverage.unresolved
+    if selection.asked and not everything:
+        paths = {each.path for each in (*selection.graph.endpoints, *selection.graph.publishes)}
+        near = tuple(one for one in near if one.path in paths)
+    shown = near if everything else near[:_SHOWN]
+    for one in shown:
         written = f" `{one.written}`" if one.written else ""
-        yield f"  {one.path}:{one.line}: {one.what}{written}: {one.reason}"
-    if len(rest) < len(coverage.unresolved):
-        yield f"  and {len(coverage.unresolved) - len(rest)} more; --all lists them"
+        pieces = [Piece("", path=f"{one.path}:{one.line}:"), Piece(f"{one.what}{written}: {one.reason}")]
+        yield from _line(pieces, style, 2, 4)
+    more = len(coverage.unresolved) - len(shown)
+    if more:
+        said = f"and {more:,} more" if shown else f"{more:,} {'is' if more == 1 else 'are'} not resolved"
+        yield from _line([Piece(f"{said}; --all lists {'it' if more == 1 else 'them'}")], style, 2)

@@ -1,0 +1,72 @@
+"""Lines of text that fit a terminal: broken between pieces first, then between words; paths lose their middle."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from .report import cells
+from .text import Style, painted
+
+UNBROKEN = sys.maxsize
+"""A width at which no line is broken: for files and pipes, where a line is what `grep` finds."""
+_BETWEEN = "  "
+_LEAST = 20
+
+
+class Piece(NamedTuple):
+    """Part of a line. role: how it is painted. path: `path:line` after the text; a piece with one is not broken, but may
+    lose folders. hang: columns before its further lines, for one that begins where it stands and is broken there."""
+
+    text: str
+    role: str = ""
+    path: str = ""
+    hang: int | None = None
+
+
+def laid_out(pieces: Sequence[Piece], style: Style, indent: int, hang: int) -> Iterator[str]:
+    """One line of pieces with two spaces between them, or as many as the style's width asks for.
+
+    indent: columns before the first line, hang: before those that follow. A word that is longer than a line stands on
+    one of its own.
+    """
+    line, used, gap = " " * indent, indent, ""
+    for piece in pieces:
+        room = max(_LEAST, style.width - hang)
+        text = piece.text + shortened(piece.path, room - cells(piece.text))
+        if gap and piece.hang is None and used + len(gap) + cells(text) > style.width:
+            yield line
+            line, used, gap = " " * hang, hang, ""
+        inner = hang if piece.hang is None else piece.hang
+        first, *others = [text] if piece.path else _words(text, style.width - used - len(gap), style.width - inner)
+        line, used = line + gap + painted(style, piece.role, first), used + len(gap) + cells(first)
+        for other in others:
+            yield line
+            line, used = " " * inner + painted(style, piece.role, other), inner + cells(other)
+        gap = _BETWEEN
+    yield line
+
+
+def _words(text: str, first: int, room: int) -> list[str]:
+    """The text as lines broken at spaces: one of at most `first` columns, then of at most `room`."""
+    if cells(text) <= first:
+        return [text]
+    margin = text[: len(text) - len(text.lstrip())]
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}" if lines[-1] else word
+        if lines[-1] and cells(longer) > max(_LEAST, room if lines[1:] else first - len(margin)):
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return [margin + lines[0], *lines[1:]]
+
+
+def shortened(path: str, room: int) -> str:
+    """A path that is too long without some of its folders: the file's name says most, then the first folder."""
+    folders = path.split("/")
+    shorter = ["/".join([folders[0], "...", *folders[cut:]]) for cut in range(2, len(folders))]
+    if len(folders) > 1:
+        shorter.append(f".../{folders[-1]}")
+    return next((each for each in (path, *shorter) if cells(each) <= room), shorter[-1] if shorter else path)
