@@ -23,7 +23,7 @@ _MOST_WAYS = 16
 _UNSAID = frozenset(("unknown", "start"))
 _UNLED = frozenset(("unknown", "thread"))
 """What leads to the statement is not known."""
-_LONGEST = 400
+_LONGEST = 4000
 _ABOUT = re.compile(r"(?<![\w.])[A-Za-z_][\w:]*(?:\s*\()?|[<>=!]=?|&&|\|\|")
 _DENIED = re.compile(r"(?:!\s*|not )([\w.:]+(?:->[\w.]+)*(?:\([\w.,: ]*\))?)")
 

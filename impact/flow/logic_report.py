@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from collections.abc import Iterator
 from itertools import groupby
@@ -21,6 +22,9 @@ SCHEMA = 1
 _ROLES = {"tightened": "error", "gone": "error", "trigger changed": "warning", "changed": "warning", "widened": "note",
           "new": "good", "equivalent": "dim"}  # fmt: skip
 _MOST_READERS = 6
+_TITLE, _TOPIC = 24, 19
+_LONG = 200
+_PARTS = re.compile(r"(?<= && )|(?<= \|\| )|(?<= and )|(?<= or )|(?<=[:;] )")
 _WIDE = PLAIN._replace(width=UNBROKEN)
 
 
@@ -28,8 +32,8 @@ def text(logic: Logic, style: Style = _WIDE) -> str:
     """The changes by commit, newest first, and what was looked at."""
     lines: list[str] = []
     for commit, changes in groupby(logic.changes, key=lambda pair: pair[0]):
-        head = [Piece(f"{commit.id[:10]}  {commit.date[:10]}", "bold"), Piece(one_line(commit.summary), "bold")]
-        lines += laid_out(head, style, 0, 12)
+        title = Piece(one_line(commit.summary), "bold", hang=_TITLE)
+        lines += laid_out([Piece(f"{commit.id[:10]}  {commit.date[:10]}", "bold"), title], style, 0, _TITLE)
         for _, change in changes:
             lines += _lines(change, style)
         lines.append("")
@@ -41,14 +45,15 @@ def _lines(change: Change, style: Style) -> Iterator[str]:
     node = f" ({one_line(change.node)})" if change.node else ""
     head = [
         Piece(f"{change.kind:15s}", _ROLES[change.kind]),
-        Piece((one_line(change.topic) or "?") + node),
+        Piece((one_line(change.topic) or "?") + node, hang=_TOPIC),
         Piece("", path=f"{one_line(change.path)}:{change.line}"),
     ]
     yield from laid_out(head, style, 2, 6)
     if change.why:
         yield from laid_out([Piece(one_line(change.why))], style, 6, 8)
     if change.old is not None and change.new is not None:
-        said = [f"- {change.old or 'always'}", f"+ {change.new or 'always'}"]
+        old, new = apart(change.old, change.new)
+        said = [f"- {old or 'always'}", f"+ {new or 'always'}"]
     else:
         said = [f"{sign} {text}" for sign, text in (("-", change.old), ("+", change.new)) if text]
     for line in said:
@@ -60,6 +65,22 @@ def _lines(change: Change, style: Style) -> Iterator[str]:
         callback = f", {reached.callback}" if reached.callback else ""
         who = Piece(f"reaches {one_line((reached.node or reached.package) + callback)}")
         yield from laid_out([who, Piece("", path=f"{one_line(reached.path)}:{reached.line}")], style, 6, 8)
+
+
+def apart(old: str, new: str) -> tuple[str, str]:
+    """Two long conditions without most of what they begin and end with alike, for people to see where they differ."""
+    if max(len(old), len(new)) <= _LONG:
+        return old, new
+    before, after = _PARTS.split(old), _PARTS.split(new)
+    least = min(len(before), len(after))
+    first = next((n for n in range(least) if before[n] != after[n]), least)
+    last = next((n for n in range(least - first) if before[-1 - n] != after[-1 - n]), least - first)
+    first, last = max(0, first - 1), max(0, last - 1)
+
+    def middle(parts: list[str]) -> str:
+        return "… " * (first > 0) + "".join(parts[first : len(parts) - last]) + "…" * (last > 0)
+
+    return middle(before), middle(after)
 
 
 def summary(logic: Logic) -> str:

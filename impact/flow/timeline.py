@@ -15,7 +15,7 @@ from ..report import html as page
 from ..report.report import safe
 from .logic import Logic
 from .logic_changes import KINDS
-from .logic_report import summary
+from .logic_report import apart, summary
 
 _PLACEHOLDER = re.compile(r"\{\{(policy|title|style|data)\}\}")
 
@@ -43,9 +43,12 @@ def _data(logic: Logic, version: str) -> str:
             commits[commit.id] = len(heads)
             heads.append([commit.id, commit.date, commit.summary])
         reached = [[one.package, one.node, one.callback, one.path, one.line] for one in change.reaches]
+        old, new = change.old, change.new
+        if old is not None and new is not None:
+            old, new = apart(old, new)
         rows.append(
             [commits[commit.id], change.kind, change.package, change.path, change.line, change.node, change.topic,
-             change.old, change.new, change.why, reached]
+             old, new, change.why, reached]
         )  # fmt: skip
     data = {
         "version": version,

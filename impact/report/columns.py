@@ -16,8 +16,8 @@ _LEAST = 20
 
 
 class Piece(NamedTuple):
-    """Part of a line. role: how it is painted. path: `path:line` after the text; a piece with one is not broken, but may
-    lose folders. hang: columns before its further lines, for one that begins where it stands and is broken there."""
+    """Part of a line. role: how it is painted. path: `path:line` after the text; a piece with one is not broken, but
+    may lose folders. hang: columns before its further lines, for one that begins where it stands."""
 
     text: str
     role: str = ""

@@ -11,7 +11,7 @@ import pytest
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.flow.history import History
 from rosimpact.impact.flow.logic import Coverage, Logic, Range, chosen, read
-from rosimpact.impact.flow.logic_report import as_json, text
+from rosimpact.impact.flow.logic_report import apart, as_json, text
 from rosimpact.impact.flow.timeline import render
 
 Tree = dict[str, str]
@@ -640,6 +640,23 @@ def test_only_a_package_or_a_topic(made: Made) -> None:
     assert "equivalent" in {change.kind for _, change in chosen(made.logic, everything=True).changes}
     topics = {change.topic for _, change in chosen(made.logic, topics=("/chatter",)).changes}
     assert topics == {"chatter", "speech"}
+
+
+LONG = [f"a_condition_that_takes_room_{n}" for n in range(9)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("a && b", "a && c", ("a && b", "a && c")),
+        (" && ".join([*LONG, "b"]), " && ".join([*LONG, "c"]), (f"… {LONG[-1]} && b", f"… {LONG[-1]} && c")),
+        (" and ".join(["b", *LONG]), " and ".join(LONG), (f"b and {LONG[0]} and …", f"{LONG[0]} and …")),
+        ("timer `1s`: " + " && ".join(LONG), "timer `2s`: " + " && ".join(LONG),
+         (f"timer `1s`: {LONG[0]} && …", f"timer `2s`: {LONG[0]} && …")),
+    ],
+)  # fmt: skip
+def test_of_long_conditions_people_are_shown_where_they_differ(old, new, said) -> None:
+    assert apart(old, new) == said
 
 
 def test_text(made: Made) -> None:

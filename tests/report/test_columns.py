@@ -60,7 +60,7 @@ def test_a_path_loses_its_middle(path, room, said):
     assert shortened(path, room) == said
 
 
-WORDS = st.lists(st.text("ab漢", min_size=1, max_size=12), min_size=1, max_size=12).map(" ".join)
+WORDS = st.lists(st.sampled_from(("a", "of", "漢字漢字", "condition_12")), min_size=1, max_size=12).map(" ".join)
 
 
 @given(st.lists(WORDS, min_size=1, max_size=5), st.integers(40, 120))
