@@ -65,7 +65,7 @@ def measured(repository: str, listed: bool) -> Counter[str]:
     """Prints a repository's line and returns its counts."""
     from rosimpact.impact.check import open_tree
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.model.flow.workspace import code_of, graph_of, linked
+    from rosimpact.impact.model.flow.workspace import code_of, facts_of, graph_of, linked
 
     path, _, revision = repository.partition("@")
     times = []
@@ -77,8 +77,8 @@ def measured(repository: str, listed: bool) -> Counter[str]:
                 workspace = linked(tree, store)
                 graph = graph_of(workspace, store)
             times.append(time.perf_counter() - start)
-        kinds = workspace.gathered.kinds
-        sources = [each for each in code_of(workspace, workspace.gathered) if kinds[each] == "flow_cpp"]
+        kinds = facts_of(workspace).kinds
+        sources = [each for each in code_of(workspace) if kinds[each] == "flow_cpp"]
     data = {each: tree.read(each) for each in sources}
     bare = _bare(data.values())
     have = {"publisher": Counter(), "subscriber": Counter(), "publish": Counter()}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import memo
 from .gather import gather
+from .model.flow.wanted import code_kinds
 from .model.view import View
 from .model.workspace import link
 from .report.report import Report
@@ -110,7 +111,8 @@ def read_pinned(path: Path) -> dict[str, str]:
 
 def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     """The workspace as it was in another tree, seen by the same targets."""
-    gathered = gather(tree, opened.store, jobs=jobs)
+    second = code_kinds(tree) if opened.gathered.second is not None else None
+    gathered = gather(tree, opened.store, jobs=jobs, second=second)
     workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.watched(opened.store), jobs)
     views = [View(workspace, view.target, view.providers, view.config) for view in opened.views]
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views)

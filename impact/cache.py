@@ -27,7 +27,7 @@ def code_stamp() -> str:
     for folder, folders, files in os.walk(root):
         folders[:] = sorted(name for name in folders if name not in ("__pycache__", "data"))
         for name in sorted(files):
-            if name.endswith(".py"):
+            if name.endswith((".py", ".toml")):
                 status = os.stat(os.path.join(folder, name))
                 stamp.update(
                     f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape")

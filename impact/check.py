@@ -16,6 +16,7 @@ from .config import Config, PathSetting, load, parse
 from .facts.store import Store
 from .gather import Gathered, gather
 from .judge import Crashes, hits_of
+from .model.flow.wanted import code_kinds
 from .model.view import View
 from .model.workspace import Workspace, link
 from .report.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
@@ -91,7 +92,7 @@ def run(
     """check(), with the configuration and the tree that it was made with. Raises as check() does."""
     started = time.perf_counter()
     rules = all_rules()
-    with open_workspace(path, options, progress) as opened:
+    with open_workspace(path, options, progress, lambda config: _chosen(rules, options, config)) as opened:
         tree, store, gathered, workspace, targets, views, config = opened
         chosen = _chosen(rules, options, config)
         settings = _settings(rules, config)
@@ -183,14 +184,22 @@ class Opened(NamedTuple):
 
 @contextmanager
 def open_workspace(
-    path: str | os.PathLike[str], options: Options = DEFAULTS, progress: Progress | None = None
+    path: str | os.PathLike[str],
+    options: Options = DEFAULTS,
+    progress: Progress | None = None,
+    chosen: Callable[[Config], Mapping[str, Rule]] | None = None,
 ) -> Iterator[Opened]:
-    """Reads a workspace up to its views. The store is closed at the end. Raises as check() does."""
+    """Reads a workspace up to its views. The store is closed at the end. Raises as check() does.
+
+    chosen: gives the rules that will be asked, so that all facts they need are made in one pass.
+    """
     root = Path(path)
     tree = open_tree(root, options.rev)
     config = settings_of(root, tree, options.config)
+    asks_flow = chosen is not None and any(rule.flow for rule in chosen(config).values())
     with Store(options.cache) as store:
-        gathered = gather(tree, store, jobs=options.jobs, progress=progress)
+        second = code_kinds(tree) if asks_flow else None
+        gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second)
         workspace = link(tree, gathered, store, None, memo.watched(store), options.jobs)
         gathered.problems += [*workspace.discovered.problems, *_left_out(workspace, gathered)]
         targets = choose_targets(options.targets, config, workspace, tree)

@@ -32,9 +32,11 @@ _CHUNK_BYTES = 256_000
 _WAVE_PER_JOB = 8
 _LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 
-# (path, content id, kind, bytes) of a file to extract; (content id, kind, packed facts, failure) of one extracted
-_Item = tuple[str, str, str, bytes]
+# (path, content id, kinds, bytes) of a file to extract; (content id, kind, packed facts, failure) of facts extracted
+_Item = tuple[str, str, tuple[str, ...], bytes]
 _Result = tuple[str, str, bytes, str]
+# (bytes, path, kinds) of a file to read
+_Unread = tuple[int, str, tuple[str, ...]]
 
 
 class Gathered:
@@ -42,7 +44,7 @@ class Gathered:
 
     kinds: kind by path, of every file that was recognised and could be read. ids: content id by path, of the same
     files. problems: what could not be read, the tree's own problems included. extracted: how many contents were parsed
-    in this run.
+    in this run. second: the facts of the second look at files, None where none was asked for.
     """
 
     def __init__(self, tree: Tree, store: Store):
@@ -52,6 +54,7 @@ class Gathered:
         self.ids: dict[str, str] = {}
         self.problems: list[PathProblem] = []
         self.extracted = 0
+        self.second: Gathered | None = None
         self._packed: dict[tuple[str, str], bytes] = {}
         self._decoded: dict[tuple[str, str], Any] = {}
 
@@ -112,14 +115,17 @@ def gather(
     jobs: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     kind_of: Callable[[str], str | None] = kinds.kind_of,
+    second: Callable[[str], str | None] | None = None,
 ) -> Gathered:
     """Finds or makes the facts of every file whose kind is known.
 
-    kind_of: the kind of facts wanted of a path, None for none; by its name when left out.
+    kind_of: the kind of facts wanted of a path, None for none; by its name when left out. second: the kind wanted of it
+    by the second look; a worker makes both facts of a file in one visit.
     jobs: processes to use, all available cores when None. progress: called with (done, total) bytes of the files whose
     facts are not known from an earlier run. KeyboardInterrupt passes through; what was parsed before it stays stored.
     """
     gathered = Gathered(tree, store)
+    beside = gathered.second = Gathered(tree, store) if second is not None else None
     key = tree.memory_key()
     entries = tree.entries()
     if key is not None:
@@ -128,29 +134,34 @@ def gather(
             tree.recall(memory)
     gathered.problems.extend(tree.problems)
 
-    unread: list[tuple[int, str, str]] = []
-    known: dict[bytes, list[tuple[int, str, str]]] = {}
+    unread: list[_Unread] = []
+    known: dict[bytes, tuple[int, str, str]] = {}
     known_id = tree.known_id
     for entry in entries:
         path, size = entry.path, entry.size
         kind = kind_of(path)
-        if kind is None:
+        other = second(path) if second is not None else None
+        if kind is None and other is None:
             continue
         if size > kinds.LARGEST:
             message = f"larger than {kinds.LARGEST >> 20} MB ({size >> 20} MB), taken for generated and not read"
             gathered.problems.append(PathProblem(path, message))
             continue
-        gathered.kinds[path] = kind
         content = known_id(path)
         if content is None:
-            unread.append((size, path, kind))
-        else:
-            gathered.ids[path] = content
-            known.setdefault(_key(content, kind), []).append((size, path, kind))
+            unread.append((size, path, tuple(each for each in (kind, other) if each is not None)))
+        for look, each in ((gathered, kind), (beside, other)):
+            if look is not None and each is not None:
+                look.kinds[path] = each
+                if content is not None:
+                    look.ids[path] = content
+                    known.setdefault(_key(content, each), (size, path, each))
     present = store.find(known)
-    for row, files in known.items():
+    lacking: dict[str, tuple[int, list[str]]] = {}
+    for row, (size, path, kind) in known.items():
         if row not in present:
-            unread.append(files[0])
+            lacking.setdefault(path, (size, []))[1].append(kind)
+    unread.extend((size, path, tuple(those)) for path, (size, those) in lacking.items())
 
     if unread:
         try:
@@ -180,7 +191,7 @@ def _remember(tree: Tree, store: Store, key: bytes | None) -> None:
 
 def _make(
     gathered: Gathered,
-    unread: list[tuple[int, str, str]],
+    unread: list[_Unread],
     jobs: int,
     progress: Callable[[int, int], None] | None,
 ) -> None:
@@ -189,9 +200,10 @@ def _make(
     unread.sort(key=lambda file: (-file[0], file[1]))
     total = sum(size for size, _, _ in unread)
     done = 0
-    paths_of: dict[tuple[str, str], list[str]] = {}
-    for path, content in gathered.ids.items():
-        paths_of.setdefault((content, gathered.kinds[path]), []).append(path)
+    paths_of: dict[tuple[str, str], list[tuple[Gathered, str]]] = {}
+    for look in _looks(gathered):
+        for path, content in look.ids.items():
+            paths_of.setdefault((content, look.kinds[path]), []).append((look, path))
 
     def advance(size: int) -> None:
         nonlocal done
@@ -205,8 +217,8 @@ def _make(
             rows = []
             for content, kind, packed, failure in results:
                 if failure:
-                    for path in paths_of[content, kind]:
-                        _drop(gathered, path, failure)
+                    for look, path in paths_of[content, kind]:
+                        _drop(look, path, failure)
                 else:
                     rows.append((_key(content, kind), packed))
             gathered.store.put(rows)
@@ -214,45 +226,55 @@ def _make(
             advance(sum(len(item[3]) for item in chunk))
 
 
+def _looks(gathered: Gathered) -> list[Gathered]:
+    return [gathered] if gathered.second is None else [gathered, gathered.second]
+
+
 def _chunks(
     gathered: Gathered,
-    unread: list[tuple[int, str, str]],
-    paths_of: dict[tuple[str, str], list[str]],
+    unread: list[_Unread],
+    paths_of: dict[tuple[str, str], list[tuple[Gathered, str]]],
     advance: Callable[[int], None],
 ) -> Iterator[list[_Item]]:
     """Reads files as they are needed and yields those whose content has no facts yet, about _CHUNK_BYTES at a time."""
+    looks = _looks(gathered)
     seen: set[tuple[str, str]] = set()
     chunk: list[_Item] = []
     size = 0
     for batch in _batches(unread):
-        items: dict[bytes, _Item] = {}
-        for expected, path, kind in batch:
+        rows: set[bytes] = set()
+        items: list[tuple[str, str, dict[str, bytes], bytes]] = []
+        for expected, path, those in batch:
             try:
                 data, content = gathered.tree.read_with_id(path)
             except OSError as error:
                 reason = (error.strerror or type(error).__name__).lower()
-                _drop(gathered, path, f"cannot be read: {reason}")
+                _unreadable(looks, path, f"cannot be read: {reason}")
                 advance(expected)
                 continue
             if data.startswith(_LFS_POINTER):
-                _drop(gathered, path, "a Git LFS pointer, its content is not here (git lfs pull)")
+                _unreadable(looks, path, "a Git LFS pointer, its content is not here (git lfs pull)")
                 advance(expected)
                 continue
-            if gathered.ids.get(path) != content:
-                gathered.ids[path] = content
-                paths_of.setdefault((content, kind), []).append(path)
-            if (content, kind) in seen:
+            for look in looks:
+                if path in look.kinds and look.ids.get(path) != content:
+                    look.ids[path] = content
+                    paths_of.setdefault((content, look.kinds[path]), []).append((look, path))
+            fresh = {kind: _key(content, kind) for kind in those if (content, kind) not in seen}
+            if not fresh:
                 advance(expected)
                 continue
-            seen.add((content, kind))
-            items[_key(content, kind)] = (path, content, kind, data)
-        present = gathered.store.find(items)
-        for row, item in items.items():
-            if row in present:
-                advance(len(item[3]))
+            seen.update((content, kind) for kind in fresh)
+            rows.update(fresh.values())
+            items.append((path, content, fresh, data))
+        present = gathered.store.find(rows)
+        for path, content, fresh, data in items:
+            lacking = tuple(kind for kind, row in fresh.items() if row not in present)
+            if not lacking:
+                advance(len(data))
                 continue
-            chunk.append(item)
-            size += len(item[3])
+            chunk.append((path, content, lacking, data))
+            size += len(data)
             if size >= _CHUNK_BYTES:
                 yield chunk
                 chunk, size = [], 0
@@ -260,8 +282,8 @@ def _chunks(
         yield chunk
 
 
-def _batches(unread: list[tuple[int, str, str]]) -> Iterator[list[tuple[int, str, str]]]:
-    batch: list[tuple[int, str, str]] = []
+def _batches(unread: list[_Unread]) -> Iterator[list[_Unread]]:
+    batch: list[_Unread] = []
     size = 0
     for file in unread:
         batch.append(file)
@@ -273,6 +295,14 @@ def _batches(unread: list[tuple[int, str, str]]) -> Iterator[list[tuple[int, str
         yield batch
 
 
+def _unreadable(looks: list[Gathered], path: str, message: str) -> None:
+    """Leaves a path out of every look; the first names it."""
+    _drop(looks[0], path, message)
+    for look in looks[1:]:
+        look.kinds.pop(path, None)
+        look.ids.pop(path, None)
+
+
 def _drop(gathered: Gathered, path: str, message: str) -> None:
     gathered.problems.append(PathProblem(path, message))
     gathered.kinds.pop(path, None)
@@ -282,12 +312,13 @@ def _drop(gathered: Gathered, path: str, message: str) -> None:
 def _extract(chunk: list[_Item]) -> list[_Result]:
     """What a worker does: bytes to packed facts, a file that its extractor fails on named and not fatal."""
     results: list[_Result] = []
-    for _, content, kind, data in chunk:
-        try:
-            results.append((content, kind, pack(kinds.encode(kinds.extract(kind, data))), ""))
-        except Exception as error:
-            reason = f"the {kind} extractor failed: {type(error).__name__}: {error}"
-            results.append((content, kind, b"", reason[:300]))
+    for _, content, those, data in chunk:
+        for kind in those:
+            try:
+                results.append((content, kind, pack(kinds.encode(kinds.extract(kind, data))), ""))
+            except Exception as error:
+                reason = f"the {kind} extractor failed: {type(error).__name__}: {error}"
+                results.append((content, kind, b"", reason[:300]))
     return results
 
 
@@ -373,17 +404,18 @@ def _in_forks(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_
 
 
 def _one_by_one(chunk: list[_Item]) -> list[_Result]:
-    """Each file in a process of its own turn; one that dies takes only its file with it."""
+    """Each kind of facts in a process of its own turn; one that dies takes only its file with it."""
     from concurrent.futures.process import BrokenProcessPool
 
     results: list[_Result] = []
     pool = processes.pool(1)
-    for item in chunk:
-        try:
-            results.extend(pool.submit(_extract, [item]).result())
-        except BrokenProcessPool:
-            results.append((item[1], item[2], b"", f"the {item[2]} extractor crashed on this file"))
-            pool.shutdown(wait=False)
-            pool = processes.pool(1)
+    for path, content, those, data in chunk:
+        for kind in those:
+            try:
+                results.extend(pool.submit(_extract, [(path, content, (kind,), data)]).result())
+            except BrokenProcessPool:
+                results.append((content, kind, b"", f"the {kind} extractor crashed on this file"))
+                pool.shutdown(wait=False)
+                pool = processes.pool(1)
     pool.shutdown(wait=False)
     return results

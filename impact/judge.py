@@ -49,11 +49,14 @@ def hits_of(
         kept[view.target.name] = said
         if not crashed:
             memo.remember(opened.store, view, names, said)
+    of_flow = _of_flow(opened, [rule for rule in every if rule.flow], crashed, before)
     for rule in every:
         if rule.name in names:
             for view in opened.views:
                 target = view.target.name
                 yield from ((name, target, hit) for name, hit in kept[target] if name == rule.name)
+        elif rule.flow:
+            yield from ((name, "", hit) for name, hit in of_flow if name == rule.name)
         else:
             yield from ((rule.name, "", hit) for hit in _tried(rule, "", crashed, _run(rule, opened, before)))
 
@@ -105,6 +108,24 @@ def _all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[tuple[str, H
     for rule in rules:
         for hit in _tried(rule, view.target.name, crashed, lambda rule=rule: rule.run(view)):
             yield rule.name, hit
+
+
+def _of_flow(
+    opened: Opened, rules: Sequence[Rule], crashed: Crashes, before: Workspace | None
+) -> list[tuple[str, Hit]]:
+    """What rules say of the message flow: remembered by all that it rests on, since joining it is dear."""
+    if not rules:
+        return []
+    key = memo.flow_key(opened.workspace, before, [rule.name for rule in rules])
+    known = memo.recall_flow(opened.store, key)
+    if known is not None:
+        return known
+    failed: Crashes = {}
+    said = [(rule.name, hit) for rule in rules for hit in _tried(rule, "", failed, _run(rule, opened, before))]
+    if not failed:
+        memo.remember_flow(opened.store, key, said)
+    crashed.update(failed)
+    return said
 
 
 def _run(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Hit]]:

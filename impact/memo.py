@@ -16,8 +16,10 @@ from .cache import code_stamp
 from .facts.store import Store
 from .model import watch
 from .model.build import At
+from .model.flow.wanted import stamp
 from .model.package import Watched
 from .model.view import View
+from .model.workspace import Workspace
 from .rules.cure import Declare, Insert, Remove, Replace
 from .rules.rule import Cure, Edit, Hit
 from .targets.fields import default_fields
@@ -62,33 +64,51 @@ def watched(store: Store) -> Watched:
 
 def key(view: View, rules: Iterable[str]) -> bytes:
     """The key of a view's judgement by these rules."""
-    stamp = hashlib.sha1(view.workspace.identity)
+    found = hashlib.sha1(view.workspace.identity)
     config = view.config
-    stamp.update(
+    found.update(
         repr(
             (code_stamp(), view.target.identity(), sorted(rules), config.private, config.underlays, config.repos)
         ).encode()
     )
-    return stamp.digest()
+    return found.digest()
 
 
 def recall(store: Store, view: View, rules: Sequence[str]) -> list[tuple[str, Hit]] | None:
     """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
-    data = store.memo("judgement", key(view, rules))
-    if data is None:
+    found = _recalled(store, key(view, rules))
+    if found is None:
         return None
-    try:
-        judgement = msgspec.msgpack.decode(data, type=_Judgement)
-        hits = [(h.rule, _hit(h)) for h in judgement.hits]
-    except (msgspec.MsgspecError, KeyError, TypeError):
-        return None
-    for kind, names in judgement.unresolved.items():
+    hits, unresolved = found
+    for kind, names in unresolved.items():
         view.unresolved.setdefault(kind, set()).update(names)
     return hits
 
 
 def remember(store: Store, view: View, rules: Sequence[str], hits: Iterable[tuple[str, Hit]]) -> None:
     """Keeps what the rules said for later runs."""
+    unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
+    _keep(store, key(view, rules), hits, unresolved)
+
+
+def flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
+    """The key of what these rules say of a workspace's message flow. before: the workspace at the base."""
+    stamps = [stamp(each) for each in (workspace, before) if each is not None]
+    return hashlib.sha1(repr((stamps, data_stamp(), sorted(rules))).encode()).digest()
+
+
+def recall_flow(store: Store, key: bytes) -> list[tuple[str, Hit]] | None:
+    """(rule, hit) on the message flow of an earlier run, None when there was none. key: a flow_key()."""
+    found = _recalled(store, key)
+    return found[0] if found is not None else None
+
+
+def remember_flow(store: Store, key: bytes, hits: Iterable[tuple[str, Hit]]) -> None:
+    """Keeps what rules said of the message flow for later runs."""
+    _keep(store, key, hits, {})
+
+
+def _keep(store: Store, key: bytes, hits: Iterable[tuple[str, Hit]], unresolved: dict[str, tuple[str, ...]]) -> None:
     stored = tuple(
         _Hit(
             rule,
@@ -104,8 +124,18 @@ def remember(store: Store, view: View, rules: Sequence[str], hits: Iterable[tupl
         )
         for rule, hit in hits
     )
-    unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
-    store.remember("judgement", [(key(view, rules), msgspec.msgpack.encode(_Judgement(stored, unresolved)))])
+    store.remember("judgement", [(key, msgspec.msgpack.encode(_Judgement(stored, unresolved)))])
+
+
+def _recalled(store: Store, key: bytes) -> tuple[list[tuple[str, Hit]], dict[str, tuple[str, ...]]] | None:
+    data = store.memo("judgement", key)
+    if data is None:
+        return None
+    try:
+        judgement = msgspec.msgpack.decode(data, type=_Judgement)
+        return [(h.rule, _hit(h)) for h in judgement.hits], judgement.unresolved
+    except (msgspec.MsgspecError, KeyError, TypeError):
+        return None
 
 
 def prepare(store: Store, target: Target) -> None:

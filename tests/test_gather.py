@@ -249,6 +249,73 @@ def test_a_file_that_its_extractor_fails_on(tmp_path, monkeypatch, small_chunks,
         assert gathered.facts("src/f6.cpp").facts.includes[0].path == "a6.h"
 
 
+def second_look(path):
+    return kinds.FLOW.get(kinds.kind_of(path) or "")
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_two_looks_at_a_file_take_one_visit(tmp_path, monkeypatch, small_chunks, jobs):
+    write(tmp_path / "ws", {**FILES, **sources(10)})
+    tree = WorkingTree(tmp_path / "ws")
+    read = []
+    read_with_id = tree.read_with_id
+    monkeypatch.setattr(tree, "read_with_id", lambda path: read.append(path) or read_with_id(path))
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(tree, store, jobs=jobs, second=second_look)
+        second = gathered.second
+        assert len(read) == len(set(read)) == 15
+        assert gathered.extracted == 4 + 10 + 1 + 10
+        assert gathered.kinds["p/src/node.cpp"] == "cpp" and second.kinds["p/src/node.cpp"] == "flow_cpp"
+        assert "p/package.xml" in gathered.kinds and "p/package.xml" not in second.kinds
+        assert gathered.facts("src/f1.cpp").facts.includes[0].path == "a1.h"
+        assert second.facts("src/f1.cpp").facts.functions[0].name == "f1"
+        assert second.facts("p/src/node.cpp") is second.facts("p/src/same.cpp")
+
+
+def test_only_the_look_that_is_new_is_taken(tmp_path):
+    write(tmp_path / "ws", FILES)
+    with Store(tmp_path / "cache") as store:
+        gather(WorkingTree(tmp_path / "ws"), store)
+        first = gather(WorkingTree(tmp_path / "ws"), store, second=second_look)
+        again = gather(WorkingTree(tmp_path / "ws"), store, second=second_look)
+        assert (first.extracted, again.extracted) == (1, 0)
+        assert first.second.kinds == again.second.kinds and first.second.ids == again.second.ids
+
+
+def test_a_second_look_alone(tmp_path):
+    with Store(tmp_path / "cache") as store:
+        tree = WorkingTree(write(tmp_path / "ws", FILES))
+        gathered = gather(tree, store, kind_of=lambda path: None, second=second_look)
+        assert not gathered.kinds and sorted(gathered.second.kinds) == ["p/src/node.cpp", "p/src/same.cpp"]
+
+
+@pytest.mark.parametrize(
+    ("how", "jobs", "message"),
+    [(raises, 1, "odd input"), (raises, 2, "odd input"), (dies, 2, "crashed on this file")],
+)
+def test_a_look_that_fails_leaves_the_other(tmp_path, monkeypatch, small_chunks, how, jobs, message):
+    files = sources(25)
+    files["src/f5.cpp"] = "int f5();  // POISON"
+    fail = failing(how)
+    extract = kinds.extract
+    write(tmp_path / "ws", files)
+    monkeypatch.setattr(kinds, "extract", lambda kind, data: (fail if kind == "flow_cpp" else extract)(kind, data))
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs, second=second_look)
+        assert gathered.problems == [] and sorted(gathered.kinds) == sorted(files)
+        assert [problem.path for problem in gathered.second.problems] == ["src/f5.cpp"]
+        assert message in gathered.second.problems[0].message
+        assert sorted(gathered.second.kinds) == sorted(files.keys() - {"src/f5.cpp"})
+
+
+def test_what_cannot_be_read_is_named_once(tmp_path):
+    write(tmp_path / "ws", {"a.cpp": "version https://git-lfs.github.com/spec/v1\n"})
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store, second=second_look)
+        assert [problem.path for problem in gathered.problems] == ["a.cpp"]
+        assert not gathered.second.problems and not gathered.kinds and not gathered.second.kinds
+
+
 def test_facts_that_the_store_lost_are_made_again(tmp_path):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:

@@ -4,6 +4,7 @@ import ast
 import codecs
 import re
 import warnings
+from functools import lru_cache
 from typing import NamedTuple
 
 import msgspec
@@ -109,10 +110,12 @@ def _as_python2(text: str, error: SyntaxError) -> tuple[tuple[Problem, ...], ast
     return old, None, text
 
 
+@lru_cache(maxsize=1)
 def read(data: bytes) -> Source:
     """One Python source parsed by this interpreter's own parser, Python 2 as far as it can be rewritten. Never raises.
 
-    Syntax newer than this interpreter is a problem, never `python2_only`.
+    The last source is remembered for the second look that message flow takes at it. Syntax newer than this interpreter
+    is a problem, never `python2_only`.
     """
     text, problems = _decode(data)
     try:

@@ -27,6 +27,7 @@ from .package import Digest, Watched, build_type_of, digest_of
 
 if TYPE_CHECKING:
     from .flow.graph import Graph
+    from .flow.join import Join
     from .flow.launches import Launch
 
 # Raise with every change of what a digest or the CMake interpreter says.
@@ -251,9 +252,16 @@ class Workspace:
     @cached_property
     def flow(self) -> Graph:
         """The message-flow graph of its code, without a launch file."""
-        from .flow.workspace import graph_of, read_beside
+        from .flow.workspace import graph_of
 
-        return graph_of(self, self.gathered.store, gathered=read_beside(self))
+        return graph_of(self, self.gathered.store)
+
+    @cached_property
+    def code(self) -> Join:
+        """Its code, joined for the message flow."""
+        from .flow.workspace import joined
+
+        return joined(self)
 
     @cached_property
     def launches(self) -> tuple[Launch, ...]:

@@ -203,3 +203,32 @@ def test_a_subscriber_that_was_removed_is_a_note(tmp_path: Path):
     now = written(tmp_path / "now", quay(TALKS, "pass"))
     report = compare(now, base, OPTIONS._replace(cache=tmp_path / "cache"))
     assert {f.severity for f in report.findings if f.rule == "lost-edge"} == {"note"}
+
+
+def test_what_was_said_is_remembered_until_something_changes(tmp_path, monkeypatch):
+    """A second run joins no code; an edit of a node, or of a launch file, is judged anew."""
+    from rosimpact.impact.model.flow.join import Join
+
+    def findings():
+        return [(one.rule, one.path, one.line) for one in check(tmp_path / "ws", options).findings]
+
+    def edit(files):
+        for path, text in files.items():
+            (tmp_path / "ws" / path).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / "ws" / path).write_text(text)
+
+    options = OPTIONS._replace(cache=tmp_path / "cache")
+    wrong = LISTENS.replace("Twist", "TwistStamped")
+    edit(quay(TALKS, wrong, STARTED))
+    first = findings()
+    assert "topic-type-mismatch" in [rule for rule, _, _ in first]
+    with monkeypatch.context() as patch:
+        patch.setattr(Join, "__init__", None)
+        assert findings() == first
+    remapped = STARTED.replace('exec="ship"/>', 'exec="ship"><remap from="curse" to="way"/></node>')
+    edit(quay(TALKS, LISTENS, remapped))
+    second = findings()
+    assert "dead-remap" in [rule for rule, _, _ in second]
+    assert "topic-type-mismatch" not in [rule for rule, _, _ in second]
+    edit(quay(TALKS, LISTENS, STARTED))
+    assert findings() == []

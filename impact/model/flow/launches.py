@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import posixpath
 from collections.abc import Iterator
 
 import msgspec
 
-from ...cache import code_stamp
 from ..launch import Launched, SettingFile, Started, file_values, follow
 from ..names_ros import NameRefused, canonical, ros1_name, ros2_name, ros2_rule
 from ..package import role_of_folder
@@ -17,10 +15,9 @@ from .graph import Graph
 from .join import Join, Running
 from .sight import Seeing, Sight
 from .started import Instance, InWorkspace, launch_kind
-from .workspace import joined, read_beside
+from .wanted import stamp
 
 _MOST = 300
-_READ = frozenset(("launch_xml", "launch_yaml", "params", "xml", "python", "manifest", "cmake"))
 
 
 class Renamed(msgspec.Struct, frozen=True):
@@ -74,7 +71,7 @@ def launches(workspace: Workspace) -> tuple[Launch, ...]:
     """What the launch files that no other includes start, with the defaults of their arguments. Remembered by the
     content of all that it rests on."""
     store = workspace.gathered.store
-    key = _key(workspace)
+    key = stamp(workspace)
     known = store.memo("launches", key) if store is not None else None
     if known is not None:
         try:
@@ -87,21 +84,11 @@ def launches(workspace: Workspace) -> tuple[Launch, ...]:
     return found
 
 
-def _key(workspace: Workspace) -> bytes:
-    stamp = hashlib.sha1(workspace.identity + code_stamp().encode())
-    gathered = workspace.gathered
-    for path in sorted(gathered.kinds):
-        if gathered.kinds[path] in _READ or gathered.kinds[path] in ("cpp", "script"):
-            row = f"{path} {gathered.ids.get(path, '')}\n"
-            stamp.update(row.encode("utf-8", "surrogateescape"))
-    return stamp.digest()
-
-
 def _launches(workspace: Workspace) -> Iterator[Launch]:
     followed = list(_followed(workspace))
     if not any(launch.started for _, launch, _ in followed):
         return
-    join = joined(workspace, read_beside(workspace))
+    join = workspace.code
     seeing = Seeing(workspace, join)
     sights: dict[str, Sight] = {}
     for path, launch, sources in followed:

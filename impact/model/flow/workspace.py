@@ -9,8 +9,7 @@ import msgspec
 
 from ...cache import code_stamp
 from ...facts.flow import FlowFile
-from ...facts.kinds import FLOW
-from ...facts.kinds import kind_of as kind_by_name
+from ...facts.kinds import kind_of
 from ...gather import Gathered, gather
 from ..package import Watched, role_of_folder
 from ..workspace import Package, Workspace, link
@@ -18,20 +17,14 @@ from .graph import Graph
 from .join import Join
 from .nodes import Built
 from .started import launched
+from .wanted import code_kinds
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
 _BUILD = frozenset(
     ("manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action")
 )
-_CODE = frozenset(FLOW.values())
 
 Progress = Callable[[int, int], None]
-
-
-def kind_of(path: str) -> str | None:
-    """The kind of facts that message flow wants of a path: code, and what tells how it is built."""
-    kind = kind_by_name(path)
-    return FLOW.get(kind or "") or (kind if kind in _BUILD else None)
 
 
 def linked(tree, store, jobs: int | None = None, progress: Progress | None = None) -> Workspace:
@@ -39,28 +32,31 @@ def linked(tree, store, jobs: int | None = None, progress: Progress | None = Non
 
     Rules on dependencies cannot be asked of it: the facts that they need are not read. progress: as gather() has it.
     """
-    gathered = gather(tree, store, jobs=jobs, progress=progress, kind_of=kind_of)
+
+    def of_build(path: str) -> str | None:
+        kind = kind_of(path)
+        return kind if kind in _BUILD else None
+
+    gathered = gather(tree, store, jobs=jobs, progress=progress, kind_of=of_build, second=code_kinds(tree))
     return link(tree, gathered, store, None, Watched(), jobs)
 
 
-def read_beside(workspace: Workspace, jobs: int | None = None, progress: Progress | None = None) -> Gathered:
-    """The flow facts of a workspace that was linked for other ends."""
+def facts_of(workspace: Workspace) -> Gathered:
+    """The flow facts of a workspace: those gathered with it, or else read now."""
     main = workspace.gathered
-
-    def wanted(path: str) -> str | None:
-        kind = kind_of(path)
-        return kind if kind in _CODE else None
-
-    return gather(main.tree, main.store, jobs=jobs, progress=progress, kind_of=wanted)
+    if main.second is None:
+        main.second = gather(main.tree, main.store, kind_of=code_kinds(main.tree))
+    return main.second
 
 
-def code_of(workspace: Workspace, gathered: Gathered) -> dict[str, str]:
-    """The code of the packages, by path the package it belongs to; tests are left out. gathered: holds flow facts."""
+def code_of(workspace: Workspace) -> dict[str, str]:
+    """The code of the packages, by path the package it belongs to; tests are left out."""
+    gathered = facts_of(workspace)
     found: dict[str, str] = {}
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in package.digest.files:
-            if gathered.kinds.get(path) in _CODE and role_of_folder(path[start:]) != "test":
+            if path in gathered.kinds and role_of_folder(path[start:]) != "test":
                 found[path] = package.name
     return found
 
@@ -135,10 +131,10 @@ def _runs(file: FlowFile) -> bool:
     return asks or any(call.callee == "rospy.init_node" for function in top for call in function.calls)
 
 
-def joined(workspace: Workspace, gathered: Gathered | None = None) -> Join:
-    """The code of a workspace, joined. gathered: its flow facts, those that it was linked from when left out."""
-    gathered = gathered or workspace.gathered
-    packages = code_of(workspace, gathered)
+def joined(workspace: Workspace) -> Join:
+    """The code of a workspace, joined."""
+    gathered = facts_of(workspace)
+    packages = code_of(workspace)
     gathered.preload(packages)
     facts = {path: gathered.facts(path).facts for path in packages}
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
@@ -147,27 +143,24 @@ def joined(workspace: Workspace, gathered: Gathered | None = None) -> Join:
 
 def graph_of(
     workspace: Workspace, store, root: str = "", rev: str = "", launch: str = "",
-    arguments: Mapping[str, str] | None = None, gathered: Gathered | None = None,
+    arguments: Mapping[str, str] | None = None,
 ) -> Graph:  # fmt: skip
-    """The message-flow graph of a workspace. store: remembers it by the content it was joined from. gathered: as for
-    joined().
+    """The message-flow graph of a workspace. store: remembers it by the content it was joined from.
 
     launch: the path of a launch file, relative to the workspace's root: then the graph of what it starts; arguments:
     the launch file's arguments.
     """
     if launch:
         start = launched(workspace, launch, arguments or {})
-        join = joined(workspace, gathered)
-        return join.graph(root, rev, _unread(join), start)
-    key = _key(workspace, gathered or workspace.gathered)
+        return workspace.code.graph(root, rev, _unread(workspace.code), start)
+    key = _key(workspace)
     known = store.memo("graph", key) if store is not None else None
     if known is not None:
         try:
             return msgspec.structs.replace(msgspec.msgpack.decode(known, type=Graph), root=root, rev=rev)
         except msgspec.MsgspecError:
             pass  # of another version: made anew
-    join = joined(workspace, gathered)
-    graph = join.graph(unread=_unread(join))
+    graph = workspace.code.graph(unread=_unread(workspace.code))
     if store is not None:
         store.remember("graph", [(key, msgspec.msgpack.encode(graph))])
     return msgspec.structs.replace(graph, root=root, rev=rev)
@@ -177,10 +170,10 @@ def _unread(join: Join) -> list[str]:
     return [source.path for source in join.code.sources if source.facts.unread]
 
 
-def _key(workspace: Workspace, gathered: Gathered) -> bytes:
+def _key(workspace: Workspace) -> bytes:
     stamp = hashlib.sha1(workspace.identity + code_stamp().encode())
+    gathered = facts_of(workspace)
     for path in sorted(gathered.kinds):
-        if gathered.kinds[path] in _CODE:
-            row = f"{path} {gathered.ids.get(path, '')} {gathered.kinds[path]}\n"
-            stamp.update(row.encode("utf-8", "surrogateescape"))
+        row = f"{path} {gathered.ids.get(path, '')} {gathered.kinds[path]}\n"
+        stamp.update(row.encode("utf-8", "surrogateescape"))
     return stamp.digest()

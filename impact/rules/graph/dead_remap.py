@@ -33,7 +33,7 @@ from .given import given
 _COMMON = frozenset(("/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/diagnostics"))
 
 
-@rule(severity="warning", preview=True, per_target=False)
+@rule(severity="warning", preview=True, flow=True)
 def dead_remap(workspace: Workspace):
     for (path, line, written), rows in given(workspace, lambda start: start.renamed, lambda each: each.written):
         if any(_lives(start, renamed, workspace.ros) for start, renamed in rows):

@@ -31,7 +31,7 @@ from ..rule import Hit, rule
 _WHAT = {"subscriber": "topic", "client": "service", "action client": "action"}
 
 
-@rule(severity="warning", preview=True, per_target=False)
+@rule(severity="warning", preview=True, flow=True)
 def topic_type_mismatch(workspace: Workspace):
     for pair in met(workspace):
         giver, taker = pair.giver.endpoint, pair.taker.endpoint

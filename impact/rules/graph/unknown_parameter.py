@@ -38,7 +38,7 @@ _COMMON = frozenset(
 _COMMON_HEADS = ("qos_overrides", "bond", "diagnostic_updater", "actionlib", "lifecycle")
 
 
-@rule(severity="note", preview=True, per_target=False)
+@rule(severity="note", preview=True, flow=True)
 def unknown_parameter(workspace: Workspace):
     for (path, line, name), rows in given(workspace, lambda start: start.given, lambda each: each.name):
         if any(_asks(start, name) for start, _ in rows):

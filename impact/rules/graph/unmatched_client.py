@@ -34,7 +34,7 @@ _EVERYWHERE = ("rcl_interfaces/", "lifecycle_msgs/", "composition_interfaces/", 
                "dynamic_reconfigure/", "roscpp/", "nodelet/", "std_srvs/", "sensor_msgs/SetCameraInfo")  # fmt: skip
 
 
-@rule(severity="warning", preview=True, per_target=False)
+@rule(severity="warning", preview=True, flow=True)
 def unmatched_client(workspace: Workspace):
     served = {
         one.topic

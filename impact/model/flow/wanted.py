@@ -1,0 +1,57 @@
+"""Which files of a tree the message flow reads, told before any of them is read."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+
+from ...cache import code_stamp
+from ...facts.kinds import FLOW, kind_of
+from ..package import role_of_folder
+from ..workspace import Workspace
+
+_READ = frozenset(("cpp", "python", "script", "launch_xml", "launch_yaml", "params", "xml", "manifest", "cmake"))
+_MANIFESTS = ("manifest", "manifest_variant")
+
+
+def code_kinds(tree) -> Callable[[str], str | None]:
+    """The kind of flow facts wanted of a path of a tree; None for what is no code, tests, and what no package owns.
+
+    Which folders are packages is not known before files are read: a file is left out when it would be a test of
+    whatever manifest lies above it.
+    """
+    roots = {entry.path.rpartition("/")[0] for entry in tree.entries() if kind_of(entry.path) in _MANIFESTS}
+    above: dict[str, tuple[int, ...]] = {}
+
+    def starts(folder: str) -> tuple[int, ...]:
+        """Where paths within each package that may own a folder begin."""
+        known = above.get(folder)
+        if known is None:
+            found = [0] if "" in roots else []
+            outer = folder
+            while outer:
+                if outer in roots:
+                    found.append(len(outer) + 1)
+                outer = outer.rpartition("/")[0]
+            known = above[folder] = tuple(found)
+        return known
+
+    def wanted(path: str) -> str | None:
+        kind = FLOW.get(kind_of(path) or "")
+        if kind is None:
+            return None
+        inside = starts(path.rpartition("/")[0])
+        return kind if any(role_of_folder(path[start:]) != "test" for start in inside) else None
+
+    return wanted
+
+
+def stamp(workspace: Workspace) -> bytes:
+    """Differs whenever something does that message flow, or what launch files start, is joined from."""
+    found = hashlib.sha1(workspace.identity + code_stamp().encode())
+    gathered = workspace.gathered
+    for path in sorted(gathered.kinds):
+        if gathered.kinds[path] in _READ:
+            row = f"{path} {gathered.ids.get(path, '')}\n"
+            found.update(row.encode("utf-8", "surrogateescape"))
+    return found.digest()
