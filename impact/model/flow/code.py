@@ -95,12 +95,15 @@ class Code:
         self.classes: dict[str, list[Cls]] = {}
         self.aliases: dict[str, dict[str, list[Alias]]] = {}
         self.shared_aliases: dict[tuple[str, str], list[Alias]] = {}
+        self._qualified: dict[str, list[tuple[str, Alias]]] = {}
         for source in self.sources:
             known = self.aliases.setdefault(source.path, {})
             for alias in source.facts.aliases:
                 known.setdefault(alias.name, []).append(alias)
                 if source.facts.language == "cpp" and alias.name != "*":
                     self.shared_aliases.setdefault((source.package, alias.name), []).append(alias)
+                    if alias.scope:
+                        self._qualified.setdefault(alias.name, []).append((source.package, alias))
             for cls in source.facts.classes:
                 self.classes.setdefault(tail(cls.name), []).append(Cls(source, cls))
             for facts in source.facts.functions:
@@ -123,6 +126,9 @@ class Code:
         for _ in range(5):
             head, separator, rest = _first(name)
             alias = self._alias(head, source, scope)
+            if alias is None and rest:
+                alias = self._qualified_alias(name, source)
+                separator, rest = ("", "") if alias is not None else (separator, rest)
             if alias is None:
                 break
             target = parsed(alias.target).name if source.facts.language == "cpp" and not rest else alias.target
@@ -138,6 +144,9 @@ class Code:
         for _ in range(5):
             head, _, rest = _first(kind.name)
             alias = self._alias(head, source, scope)
+            if alias is None and rest:
+                alias = self._qualified_alias(kind.name, source)
+                rest = "" if alias is not None else rest
             if alias is None:
                 break
             if rest:
@@ -162,6 +171,19 @@ class Code:
         if not fitting and len({alias.target for alias in found}) == 1:
             fitting = found[:1]
         return max(fitting, key=lambda alias: len(alias.scope), default=None)
+
+    def _qualified_alias(self, name: str, source: Source) -> Alias | None:
+        """What `ns::Name` is another name of, in C++; of several packages' the own one's."""
+        if source.facts.language != "cpp" or "::" not in name:
+            return None
+        wanted = parts_of(name)
+        found = [
+            (package, alias)
+            for package, alias in self._qualified.get(wanted[-1], ())
+            if (*parts_of(alias.scope), alias.name)[-len(wanted) :] == wanted
+        ]
+        own = [alias for package, alias in found if package == source.package] or [alias for _, alias in found]
+        return own[0] if own and len({alias.target for alias in own}) == 1 else None
 
     def class_of(self, name: str, source: Source, scope: str = "") -> Cls | None:
         """The class that a name means in a file and scope; None when there is none, or several that fit as well."""

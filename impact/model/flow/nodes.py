@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 from ...facts.flow import Expr
 from .calls import Use
-from .code import Cls, Code, Fn, made_in, tail
+from .code import Cls, Code, Fn, Source, made_in, tail
 from .sites import Sites
+from .types import parsed
 
 
 class Program(NamedTuple):
@@ -138,6 +139,7 @@ def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
     for fn in code.functions:
         by_path.setdefault(fn.source.path, []).append(fn)
     exported: dict[str, list[tuple[str, str]]] = {}
+    by_source = {source.path: source for source in code.sources}
     for source in code.sources:
         for name in source.facts.exports:
             exported.setdefault(source.package, []).append((name, source.path))
@@ -153,7 +155,7 @@ def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
         registered = {name for name, _ in loaded}
         loaded += [(name, "") for name in components if name not in registered]
         for name, path in loaded:
-            cls = _class(code, name, package.package)
+            cls = _class(code, name, package.package, by_source.get(path))
             if cls is None and not path:
                 continue  # registered by the build, of another package's code
             kind = _loaded_as(cls, code, kinds_of) if cls is not None else "plugin"
@@ -182,13 +184,17 @@ def _linked(name: str, package: Built, sources: Iterable[str]) -> Iterator[str]:
             queue.extend(package.links.get(one, ()))
 
 
-def _class(code: Code, name: str, package: str) -> Cls | None:
-    wanted = name.removeprefix("::").split("::")
+def _class(code: Code, name: str, package: str, source: Source | None) -> Cls | None:
+    """A class by the name that it is registered under in a file, or by the build."""
+    wanted = parsed(name).name.removeprefix("::").split("::")
     found = [
         cls
         for cls in code.classes.get(wanted[-1], ())
         if cls.source.package == package and cls.name.split("::")[-len(wanted) :] == wanted
     ]
+    if not found and source is not None:
+        meant = code.class_of(name.removeprefix("::"), source)
+        found = [meant] if meant is not None else []
     return found[0] if found else None
 
 

@@ -3,7 +3,7 @@
 from textwrap import dedent
 
 import pytest
-from joining import ends, graph_on_disk, manifest
+from joining import ends, graph, graph_on_disk, joined, manifest
 
 COMPONENTS = {
     "eyes/package.xml": manifest("eyes", "ament_cmake"),
@@ -131,3 +131,46 @@ def test_launch_files_load_nodelets(tmp_path, name):
         del files["arm/nodelets.xml"]
     found = graph_on_disk(tmp_path, {path: dedent(text) for path, text in files.items()}, "arm/launch/a.launch")
     assert ends(found, "publisher") == {("/x", "/x/far", "std_msgs/Bool")}
+
+
+FILTER = """
+    namespace est {
+    template <class T>
+    class Filter : public rclcpp::Node {
+     public:
+      explicit Filter(const rclcpp::NodeOptions& o) : rclcpp::Node("filter", o) {
+        pub_ = create_publisher<nav_msgs::msg::Odometry>("filtered", 1);
+      }
+      rclcpp::Publisher<nav_msgs::msg::Odometry>::SharedPtr pub_;
+    };
+    template class Filter<Ekf>;
+    using EkfNode = Filter<Ekf>;
+    }
+"""
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "std::make_shared<est::EkfNode>(options)",
+        "std::make_shared<est::Filter<est::Ekf>>(options)",
+        "std::shared_ptr<est::EkfNode>(new est::EkfNode(options))",
+    ],
+)
+def test_a_program_runs_what_it_makes_by_another_name(made):
+    main = f"int main(int c, char** v) {{ rclcpp::NodeOptions options; auto filter = {made}; rclcpp::spin(filter); }}"
+    join = joined({"est/include/est/filter.hpp": FILTER, "est/src/main.cpp": main, "est/src/other.cpp": OTHER})
+    assert ends(join.graph(), "publisher") == {("est/main", "/filtered", "nav_msgs/Odometry")}
+    (one,) = (one for one in join.running() if one.program.executable == "main")
+    assert "est::Filter" in one.classes
+
+
+OTHER = "int main(int c, char** v) { rclcpp::init(c, v); }"
+
+
+@pytest.mark.parametrize("name", ["est::EkfNode", "est::Filter<est::Ekf>"])
+def test_components_are_registered_by_other_names(name):
+    files = {"est/src/filter.cpp": f"{dedent(FILTER)}\nRCLCPP_COMPONENTS_REGISTER_NODE({name})\n"}
+    found = graph(files)
+    assert [(node.kind, node.plugin, node.name) for node in found.nodes] == [("component", name, "/filter")]
+    assert ends(found, "publisher") == {(f"est/{name}", "/filtered", "nav_msgs/Odometry")}
