@@ -96,8 +96,12 @@ class Code:
         self.aliases: dict[str, dict[str, list[Alias]]] = {}
         self.shared_aliases: dict[tuple[str, str], list[Alias]] = {}
         self._qualified: dict[str, list[tuple[str, Alias]]] = {}
+        # Packages of Python by the names of their folders.
+        self._packages: dict[str, list[Source]] = {}
         for source in self.sources:
             known = self.aliases.setdefault(source.path, {})
+            if source.path.endswith("/__init__.py"):
+                self._packages.setdefault(source.path.split("/")[-2], []).append(source)
             for alias in source.facts.aliases:
                 known.setdefault(alias.name, []).append(alias)
                 if source.facts.language == "cpp" and alias.name != "*":
@@ -198,11 +202,16 @@ class Code:
         name = self.meant(parsed(name).name if "<" in name else name, source, scope)
         if not name:
             return None
-        wanted = parts_of(name)
+        wanted = _absolute(name, source.path)
         found = [cls for cls in self.classes.get(wanted[-1], ()) if parts_of(cls.name)[-len(wanted) :] == wanted]
         if not found and source.facts.language == "python" and len(wanted) > 1:
             # Imported: the module is in the path, not in the class's name.
-            found = [cls for cls in self.classes.get(wanted[-1], ()) if _module_of(cls.source.path, wanted[:-1])]
+            found = [
+                cls
+                for path in self.exported_from(wanted)
+                for cls in self.classes.get(path[-1], ())
+                if _module_of(cls.source.path, path[:-1]) and cls.name == path[-1]
+            ]
         if len(found) > 1:
             found = max(_groups(found, source, scope).items(), default=(0, found))[1]
         names = {(cls.name, cls.source.package) for cls in found}
@@ -515,8 +524,7 @@ class Code:
                 if found:
                     return [*found, *self.overrides(owner, last)]
         elif last in self.aliases[fn.source.path]:
-            wanted = parts_of(self.meant(last, fn.source))
-            return [f for f in candidates or () if not f.facts.owner and _module_of(f.source.path, wanted[:-1])]
+            return self.imported(self.meant(last, fn.source), fn.source)
         return self._nearest([f for f in candidates or () if not f.facts.owner and f.name], fn)
 
     def _methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
@@ -530,13 +538,9 @@ class Code:
             return [*found, *self.overrides(owner, name)]
         if fn.source.facts.language == "python":
             meant = self.meant(f"{receiver}.{name}", fn.source)
-            if meant != f"{receiver}.{name}":
-                module = parts_of(meant)[:-1]
-                found = [
-                    f for f in self.by_tail.get(name, ()) if not f.facts.owner and _module_of(f.source.path, module)
-                ]
-                if found:
-                    return found
+            found = self.imported(meant, fn.source) if meant != f"{receiver}.{name}" else []
+            if found:
+                return found
         if receiver.endswith("()"):
             kind = self.type_of_call(receiver, fn, depth + 1)
         else:
@@ -545,6 +549,29 @@ class Code:
         if cls is None:
             return []
         return [*self.method(cls, name), *self.overrides(cls, name)]
+
+    def imported(self, name: str, source: Source) -> list[Fn]:
+        """The functions of Python that a name with its module means in a file; of several packages' the own one's."""
+        found = [
+            f
+            for *module, last in self.exported_from(_absolute(name, source.path))
+            for f in self.by_tail.get(last, ())
+            if not f.facts.owner and _module_of(f.source.path, module)
+        ]
+        own = [f for f in found if f.source.package == source.package]
+        return own or found
+
+    def exported_from(self, path: tuple[str, ...], depth: int = 0) -> Iterator[tuple[str, ...]]:
+        """A module of Python and a name in it, and the modules from which its package has the name."""
+        yield path
+        module, name = path[:-1], path[-1]
+        for source in self._packages.get(module[-1], ()) if module and depth < 4 else ():
+            if not _module_of(source.path, module):
+                continue
+            for alias in self.aliases[source.path].get(name, ()):
+                yield from self.exported_from(_absolute(alias.target, source.path), depth + 1)
+            for alias in self.aliases[source.path].get("*", ()):
+                yield from self.exported_from((*_absolute(alias.target, source.path), name), depth + 1)
 
     def _nearest(self, found: list[Fn], fn: Fn) -> list[Fn]:
         for near in (
@@ -684,6 +711,12 @@ def _module_of(path: str, module: Sequence[str]) -> bool:
     return bool(names) and parts[-len(names) :] == names
 
 
+def _absolute(target: str, path: str) -> tuple[str, ...]:
+    """The module that a file imports: of a relative one (`.node`) the folders too."""
+    up = len(target) - len(target.lstrip("."))
+    return (*path.split("/")[:-up], *parts_of(target)) if up else parts_of(target)
+
+
 def _groups(found: list[Cls], source: Source, scope: str) -> Mapping[int, list[Cls]]:
     """Classes by how near they are to whoever names them."""
     groups: dict[int, list[Cls]] = {}
@@ -692,4 +725,3 @@ def _groups(found: list[Cls], source: Source, scope: str) -> Mapping[int, list[C
         near += _within(scope, around(cls.name)) if around(cls.name) else 0
         groups.setdefault(near, []).append(cls)
     return groups
-

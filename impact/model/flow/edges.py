@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import cache, cached_property
+from functools import cached_property
 from typing import NamedTuple
 
-from ...targets.fields import default_fields
 from ..workspace import Workspace
+from .defined import released
 from .graph import Endpoint, Graph, Node
 from .launches import Launch
 
@@ -89,7 +89,7 @@ class Flow:
         package, _, name = endpoint.type.partition("/")
         own = self.interfaces.get(package)
         if own is None:
-            own = _defined(package, self.graph.ros)
+            own = released(package, self.graph.ros)
         known = name in own if own else package.endswith(_INTERFACES)
         return endpoint.type if name and known else ""
 
@@ -208,13 +208,6 @@ def _left_to_each_other(flow: Flow, pair: Pair) -> bool:
 
 def _fit(one: Endpoint, other: Endpoint) -> bool:
     return one.type == other.type or not one.type or not other.type or "*" in (one.type, other.type)
-
-
-@cache
-def _defined(package: str, ros: int) -> frozenset[str]:
-    """The interfaces that a released package ever had, none when it is not known."""
-    history = default_fields().history(package, ros)
-    return frozenset(name.rpartition("/")[2] for name in history.interfaces) if history is not None else frozenset()
 
 
 def _kind(role: str) -> str:

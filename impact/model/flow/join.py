@@ -14,6 +14,7 @@ from ..names_ros import NameRefused, canonical, ros1_name, ros2_name
 from . import nodes as programs_of
 from .calls import Calls, Use
 from .code import Code, Fn, Source, made_in, tail
+from .defined import Defined
 from .frameworks import Frameworks, frameworks
 from .graph import (
     Callback,
@@ -36,7 +37,7 @@ from .nodes import Built, Program, Reach
 from .qos import qos_of
 from .sites import Site, Sites, Statement, shown
 from .started import Instance, instances
-from .types import Type
+from .types import Type, parsed
 from .values import Value, Values
 
 _MOST_WAYS = 16
@@ -68,7 +69,7 @@ Owner = Running | Node | None
 
 class Join:
     """One body of code joined. files: facts by path; package_of: the package a path belongs to; built: what is built of
-    it; ros: the generation where a framework does not tell."""
+    it; ros: the generation where a framework does not tell; defined: knows which interfaces there are."""
 
     def __init__(
         self,
@@ -77,13 +78,14 @@ class Join:
         built: Iterable[Built] = (),
         ros: int = 2,
         table: Frameworks | None = None,
+        defined: Defined | None = None,
     ):
         self.ros, self.built = ros, list(built)
         self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
         self.code = Code(Source(path, package_of(path), facts) for path, facts in sorted(files.items()))
         self.calls = Calls(self.code, table or frameworks())
         self.values = Values(self.calls)
-        self.sites = Sites(self.code, self.calls, self.values)
+        self.sites = Sites(self.code, self.calls, self.values, defined or Defined())
         self.reach = Reach(self.sites)
         self.triggers = self._triggers()
         # Of a use it is the same in every node that runs it.
@@ -200,7 +202,7 @@ class Join:
             name = next((value.text for value in values if value.text), "")
             if name and "{" not in name:
                 break
-        default = program.executable or _snake(tail(program.plugin))
+        default = program.executable or _snake(tail(parsed(program.plugin).name))
         full = canonical("/" + (name or default).lstrip("/"))
         language = "python" if program.kind == "script" else "cpp"
         return Node(

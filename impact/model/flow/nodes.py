@@ -167,6 +167,10 @@ def programs(code: Code, built: Iterable[Built], kinds_of) -> Iterator[Program]:
             path, _, function = where.partition(":")
             fns = by_path.get(path, ())
             roots = [fn for fn in fns if fn.name in ("", function or "main")]
+            if function and fns and function not in {fn.name for fn in fns}:
+                # The package has the function from one of its modules.
+                meant = code.meant(function, fns[0].source)
+                roots += code.imported(meant if meant != function else f".{function}", fns[0].source)
             if roots:
                 yield Program(
                     package.package, "script", name, "", tuple(roots), frozenset((path,)), path, roots[0].facts.line

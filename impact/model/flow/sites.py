@@ -14,6 +14,7 @@ from msgspec import structs
 from ...facts.flow import Expr
 from .calls import Calls, Use
 from .code import Code, Fn, Variable, around, parameter_of, tail
+from .defined import Defined
 from .graph import Role
 from .types import interface_of, interface_of_header, parsed, split
 from .values import Value, Values, beside
@@ -115,8 +116,8 @@ def shown(value: Expr | None) -> str:
 class Sites:
     """All sites of a body of code."""
 
-    def __init__(self, code: Code, calls: Calls, values: Values):
-        self.code, self.calls, self.values = code, calls, values
+    def __init__(self, code: Code, calls: Calls, values: Values, defined: Defined):
+        self.code, self.calls, self.values, self.defined = code, calls, values, defined
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -281,7 +282,13 @@ class Sites:
         if len(found) > 1:
             included = {interface_of_header(header) for header in fn.source.facts.includes}
             found = [known for known in found if known in included] or found
-        return found[0] if found else ""
+        sure = [known for known in found if self.defined.has(known)]
+        return self._last_there([*found, *sure])
+
+    def _last_there(self, found: list[str]) -> str:
+        """Of interfaces that a name may mean the last that exists; empty where that cannot be told."""
+        may = [known for known in dict.fromkeys(reversed(found)) if self.defined.has(known) is not False]
+        return may[0] if len(may) == 1 or (may and self.defined.has(may[0])) else ""
 
     def _in_scope(self, name: str, fn: Fn) -> str:
         """A type's interface by the namespaces around the function: `Pose` inside `namespace turtlesim`."""
@@ -290,21 +297,27 @@ class Sites:
         scope = fn.name.rpartition("::")[0]
         while scope:
             known = interface_of(f"{scope}::{name}")
-            if known.partition("/")[0] == fn.source.package or known.partition("/")[0].endswith(
-                ("_msgs", "_srvs", "_interfaces")
-            ):
+            package = known.partition("/")[0]
+            ours = package == fn.source.package or package.endswith(("_msgs", "_srvs", "_interfaces"))
+            if ours and self.defined.has(known) is not False:
                 return known
             scope = scope.rpartition("::")[0]
         return ""
+
+    def _is_free(self, name: str, fn: Fn) -> bool:
+        """Whether a name of Python is neither a variable nor made in the file."""
+        return self.code.identity(name, fn).kind == "global" and not self.code.writes.get(self.code.identity(name, fn))
 
     def _python_type(self, value: Expr, fn: Fn, values: Values) -> str:
         meant = self.code.meant(value.text, fn.source)
         if interface_of(meant):
             return meant
         if "." not in value.text:
-            for alias in self.code.aliases[fn.source.path].get("*", ()):
-                if alias.target.endswith((".msg", ".srv", ".action")):
-                    return f"{alias.target}.{value.text}"
+            # Of two modules that have it, the one that is imported last.
+            stars = [alias.target for alias in self.code.aliases[fn.source.path].get("*", ())]
+            found = [f"{star}.{value.text}" for star in stars if star.endswith((".msg", ".srv", ".action"))]
+            if found and self._is_free(value.text, fn):
+                return self._last_there([interface_of(one) for one in found])
         for one in values.of(value, fn):
             if one.text and interface_of(one.text):
                 return one.text

@@ -13,6 +13,7 @@ from ...facts.kinds import kind_of
 from ...gather import Gathered, gather
 from ..package import Watched, role_of_folder
 from ..workspace import Package, Workspace, link
+from .defined import Defined
 from .graph import Graph
 from .join import Join
 from .nodes import Built
@@ -138,7 +139,8 @@ def joined(workspace: Workspace) -> Join:
     gathered.preload(packages)
     facts = {path: gathered.facts(path).facts for path in packages}
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
-    return Join(files, packages.__getitem__, built_of(workspace, files), workspace.ros)
+    defined = Defined(workspace.interface_names, workspace.ros)
+    return Join(files, packages.__getitem__, built_of(workspace, files), workspace.ros, defined=defined)
 
 
 def graph_of(

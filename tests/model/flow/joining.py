@@ -6,6 +6,7 @@ from textwrap import dedent
 from rosimpact.impact.check import open_tree
 from rosimpact.impact.facts import flow_cpp, flow_python
 from rosimpact.impact.facts.store import Store
+from rosimpact.impact.model.flow.defined import Defined
 from rosimpact.impact.model.flow.frameworks import Frameworks
 from rosimpact.impact.model.flow.graph import Graph
 from rosimpact.impact.model.flow.join import Join
@@ -13,7 +14,10 @@ from rosimpact.impact.model.flow.nodes import Built
 from rosimpact.impact.model.flow.workspace import graph_of, linked
 
 
-def joined(files: dict[str, str], ros: int = 2, built: tuple[Built, ...] = (), table: Frameworks | None = None) -> Join:
+def joined(
+    files: dict[str, str], ros: int = 2, built: tuple[Built, ...] = (), table: Frameworks | None = None,
+    defined: Defined | None = None,
+) -> Join:  # fmt: skip
     """Sources by path, the first folder being the package; every file with a main is an executable of its own, every
     Python file a script, unless told otherwise."""
     facts = {}
@@ -23,7 +27,7 @@ def joined(files: dict[str, str], ros: int = 2, built: tuple[Built, ...] = (), t
     if not built:
         packages = dict.fromkeys(path.split("/")[0] for path in files)
         built = tuple(_built(package, facts) for package in packages)
-    return Join(facts, lambda path: path.split("/")[0], built, ros, table)
+    return Join(facts, lambda path: path.split("/")[0], built, ros, table, defined)
 
 
 def _built(package: str, facts) -> Built:

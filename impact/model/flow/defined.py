@@ -1,0 +1,36 @@
+"""Which messages, services and actions a package defines: as the workspace has it, or as it was ever released."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from functools import cache
+
+from ...targets.fields import default_fields
+
+# Messages that ROS 1 makes of an action.
+_OF_ACTIONS = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback")
+
+
+class Defined:
+    """Asks whether an interface is there. own: package of the workspace to the names of its interfaces; ros: the
+    generation of released packages, which are not asked when it is 0."""
+
+    def __init__(self, own: Mapping[str, Collection[str]] | None = None, ros: int = 0):
+        self.own, self.ros = own or {}, ros
+
+    def has(self, interface: str) -> bool | None:
+        """Whether `package/Name` is defined; None for a package that is not known."""
+        package, _, name = interface.partition("/")
+        names = self.own.get(package)
+        if names is None and self.ros:
+            names = released(package, self.ros) or None
+        if names is None:
+            return None
+        return name in names or any(name.endswith(part) and name.removesuffix(part) in names for part in _OF_ACTIONS)
+
+
+@cache
+def released(package: str, ros: int) -> frozenset[str]:
+    """The interfaces that a released package ever had, none when it is not known."""
+    history = default_fields().history(package, ros)
+    return frozenset(name.rpartition("/")[2] for name in history.interfaces) if history is not None else frozenset()

@@ -1,0 +1,107 @@
+"""Nodes in Python whose classes, functions and types come from other modules."""
+
+import pytest
+from joining import ends, graph, graph_on_disk, manifest
+from rosimpact.impact.model.flow.defined import Defined
+
+NODE = """
+    import rclpy
+    from rclpy.node import Node
+    from std_msgs.msg import Bool
+
+    class Lamp(Node):
+        def __init__(self):
+            super().__init__("lamp")
+            self.pub = self.create_publisher(Bool, "{topic}", 1)
+
+    def main():
+        rclpy.spin(Lamp())
+"""
+
+
+def test_an_entry_point_may_name_a_package_that_has_the_function_from_a_module(tmp_path):
+    """Two packages that are alike: each one's entry point leads to its own module."""
+    files = {}
+    for name in ("desk", "hall"):
+        files |= {
+            f"{name}/package.xml": manifest(name, "ament_python"),
+            f"{name}/setup.py": f"""
+                from setuptools import setup
+                programs = ["run_{name} = {name}:main"]
+                setup(name="{name}", packages=["{name}"], entry_points={{"console_scripts": programs}})
+            """,
+            f"{name}/{name}/__init__.py": "from .node import *\n" if name == "desk" else "from .node import main\n",
+            f"{name}/{name}/node.py": NODE.format(topic=name),
+        }
+    found = graph_on_disk(tmp_path, files)
+    assert ends(found, "publisher") == {
+        ("desk/run_desk", "/desk", "std_msgs/Bool"), ("hall/run_hall", "/hall", "std_msgs/Bool"),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "imported",
+    [
+        "from lights import Lamp",
+        "from lights import Lamp as Lamp",
+        "from lights.inner import Lamp",
+        "from lights import *",
+    ],
+)
+def test_classes_that_a_package_has_from_its_modules(imported):
+    program = (
+        f"{imported}\nimport rclpy\n\ndef main():\n    rclpy.spin(Lamp())\n\nif __name__ == '__main__':\n    main()\n"
+    )
+    found = graph({
+        "lights/lights/__init__.py": "from .inner import Lamp\n",
+        "lights/lights/inner/__init__.py": "from .node import Lamp\n",
+        "lights/lights/inner/node.py": NODE.format(topic="lit"),
+        "app/run.py": program,
+    })  # fmt: skip
+    assert ("app/run.py", "/lit", "std_msgs/Bool") in ends(found, "publisher")
+
+
+TALKER = """
+    import rospy
+    from {first}.msg import *
+    from {last}.msg import *
+    rospy.init_node("talker")
+    rospy.Publisher("out", {name}, queue_size=1)
+"""
+
+
+@pytest.mark.parametrize(
+    "first, last, name, expected",
+    [
+        ("std_msgs", "geometry_msgs", "Pose", "geometry_msgs/Pose"),
+        ("geometry_msgs", "std_msgs", "Pose", "geometry_msgs/Pose"),
+        ("own_msgs", "std_msgs", "String", "std_msgs/String"),
+        ("std_msgs", "own_msgs", "String", "own_msgs/String"),  # both have it: the last holds
+        ("own_msgs", "std_msgs", "MoveAction", "own_msgs/MoveAction"),
+        ("std_msgs", "unknown_msgs", "Thing", "unknown_msgs/Thing"),
+        ("std_msgs", "unknown_msgs", "String", ""),  # the second may have one too
+        ("other_msgs", "unknown_msgs", "Thing", ""),
+    ],
+)
+def test_types_of_modules_that_are_imported_whole(first, last, name, expected):
+    files = {"p/talker.py": TALKER.format(first=first, last=last, name=name)}
+    found = graph(files, 1, defined=Defined({"own_msgs": {"String", "Move"}}, 1))
+    assert ends(found, "publisher") == {("p/talker.py", "/out", expected)}
+
+
+@pytest.mark.parametrize(
+    "first, last, expected",
+    [("std_msgs", "geometry_msgs", "geometry_msgs/Pose"), ("other_msgs", "unknown_msgs", "")],
+)
+def test_types_of_namespaces_that_are_used_whole(first, last, expected):
+    main = f"""
+        using namespace {first};
+        using namespace {last};
+        int main(int c, char** v) {{
+          ros::init(c, v, "talker");
+          ros::NodeHandle n;
+          ros::Publisher pub = n.advertise<Pose>("out", 1);
+        }}
+    """
+    found = graph({"p/talker.cpp": main}, 1, defined=Defined({}, 1))
+    assert ends(found, "publisher") == {("p/talker", "/out", expected)}
