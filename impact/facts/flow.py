@@ -32,11 +32,14 @@ class Expr(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | keyword | name of the argument; `*` and `**` for what Python unpacks | its value |
     | other | the source, its white space as single blanks, at most 120 characters | of a comprehension, what each
       element is |
+
+    receiver: of a call in C++ that is made on what another call or a made object gives (`QoS(1).reliable()`), that one.
     """
 
     kind: str
     text: str = ""
     parts: tuple[Expr, ...] = ()
+    receiver: Expr | None = None
 
 
 class Guard(msgspec.Struct, frozen=True, array_like=True, gc=False):

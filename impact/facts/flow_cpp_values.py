@@ -116,6 +116,8 @@ class Values:
         self.name = ""
         self.owner = ""
         self.begin(set())
+        # What the receiver of the call that is read is, where it is a call too or is made there.
+        self.received: Expr | None = None
 
     def begin(self, known: set[str]) -> None:
         """Starts an empty function that knows some variables."""
@@ -291,9 +293,9 @@ class Values:
                 arguments = listed_in(children[-1])
                 if len(arguments) == 1 and self.called(node) in THROUGH:
                     return self.path(arguments[0], guard)
-            self.call(node, guard, ESCAPE, "")
+            self.received = self.call(node, guard, ESCAPE, "")
             return self.called(node) + "()", False
-        self.value(node, guard, ESCAPE)
+        self.received = self.value(node, guard, ESCAPE)
         return "()", False
 
     def plain(self, node: Node) -> tuple[str, bool] | None:
@@ -372,6 +374,7 @@ class Values:
         method = ""
         local = False
         receiver = ""
+        received: Expr | None = None
         if number == IDENTIFIER:
             callee = text[start : function.end_byte]
         elif number == FIELD:
@@ -394,6 +397,8 @@ class Values:
                 else:
                     method = self.member(member)
                 receiver, local = self.path(parts[0], guard)
+                if receiver.endswith("()"):
+                    received = self.received
                 callee = f"{receiver}.{method}"
         elif number == QUALIFIED:
             callee = text[start : function.end_byte]
@@ -463,7 +468,7 @@ class Values:
             return self.other(node)
         if callee in MAKES:
             return Expr("make", types, arguments)
-        return Expr("call", callee, arguments)
+        return Expr("call", callee, arguments, received)
 
     def arguments(self, listed: Node, guard: int, callee: str) -> tuple[Expr, ...]:
         """The arguments in a list, passed to a callee; without one they are merely read."""

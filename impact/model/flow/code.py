@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
-from ...facts.flow import Alias, Assignment, Call, Class, Expr, FlowFile, Function, Parameter
+from ...facts.flow import Alias, Assignment, Call, Class, Expr, FlowFile, Function, Member, Parameter
 from .types import UNKNOWN, Type, parsed
 
 
@@ -96,6 +96,8 @@ class Code:
         self.aliases: dict[str, dict[str, list[Alias]]] = {}
         self.shared_aliases: dict[tuple[str, str], list[Alias]] = {}
         self._qualified: dict[str, list[tuple[str, Alias]]] = {}
+        # Names in C++ that stand for others.
+        self._renamed: set[str] = set()
         # Packages of Python by the names of their folders.
         self._packages: dict[str, list[Source]] = {}
         for source in self.sources:
@@ -106,6 +108,7 @@ class Code:
                 known.setdefault(alias.name, []).append(alias)
                 if source.facts.language == "cpp" and alias.name != "*":
                     self.shared_aliases.setdefault((source.package, alias.name), []).append(alias)
+                    self._renamed.add(alias.name)
                     if alias.scope:
                         self._qualified.setdefault(alias.name, []).append((source.package, alias))
             for cls in source.facts.classes:
@@ -436,6 +439,28 @@ class Code:
                     return constant.type, fn.source, ""
         return "", fn.source, fn.scope
 
+    def declared_values(self, variable: Variable, fn: Fn) -> Iterator[tuple[Expr, Fn]]:
+        """What a member or a constant is declared with, and a function of the file in which to read it."""
+        if variable.kind == "member":
+            rows = [
+                (member, cls.source)
+                for cls in self.classes.get(tail(variable.owner), ())
+                if cls.name == variable.owner
+                for member in cls.facts.members
+                if member.name == variable.name
+            ]
+        elif variable.kind == "global":
+            beside = (s for s in self.sources if s.package == fn.source.package and s is not fn.source)
+            rows = next(
+                (found for source in (fn.source, *beside) if (found := _constants(source, tail(variable.name)))), []
+            )  # fmt: skip
+        else:
+            return
+        for member, source in rows:
+            holder = next((f for f in self.functions if f.source is source), fn)
+            if member.value is not None:
+                yield member.value, holder
+
     def type_of_variable(self, variable: Variable, fn: Fn, depth: int = 0) -> Type:
         """The type of a variable, also where `auto` or Python leave it to what it is made from."""
         if variable.kind == "this":
@@ -641,7 +666,8 @@ class Code:
         found: dict[str, list[tuple[Fn, tuple[Expr, ...], int]]] = {}
         for fn in self.functions:
             for name, arguments, line in made_in(fn, self):
-                if tail(name) in self.classes:
+                last = tail(name)
+                if last in self.classes or last in self._renamed:
                     cls = self.class_of(name, fn.source, fn.scope)
                     if cls is not None:
                         found.setdefault(cls.name, []).append((fn, arguments, line))
@@ -709,6 +735,10 @@ def _module_of(path: str, module: Sequence[str]) -> bool:
         parts = parts[:-1]
     names = [name for name in module if name]
     return bool(names) and parts[-len(names) :] == names
+
+
+def _constants(source: Source, name: str) -> list[tuple[Member, Source]]:
+    return [(constant, source) for constant in source.facts.constants if tail(constant.name) == name]
 
 
 def _absolute(target: str, path: str) -> tuple[str, ...]:

@@ -101,6 +101,10 @@ def _of(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos:
             for writer, each in calls.code.writes.get(variable, ())
             if each.operator == "="
         ]
+        found += [
+            (_of(given, holder, calls, values, depth + 1), holder)
+            for given, holder in calls.code.declared_values(variable, fn)
+        ]
         if found:
             return _set_later(_common([qos for qos, _ in found]), value.text, found[0][1], values)
         text = values.of(value, fn)[0].text
@@ -123,8 +127,8 @@ def _common(found: list[Qos]) -> Qos:
 
 def _built(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos:
     """Profiles with settings behind them: `rclcpp::QoS(1).transient_local().reliable()`, `QoSProfile(depth=1, ...)`."""
-    links = value.text.split("().")
-    names = [tail(part) for part in links]
+    links = _links(value, fn)
+    names = [name for name, _ in links]
     base = next((_PROFILES[name] for name in names if name in _PROFILES), None)
     fields = _fields(base) if base is not None else _fields(Qos())
     if names[-1] == "from_rmw" and value.parts:
@@ -135,17 +139,24 @@ def _built(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos
             _of(each.value, writer, calls, values, depth + 1)
             for writer, each in calls.code.writes.get(calls.code.identity(variable, fn), ())
         ]
+        if not found and len(links) == 1:
+            found = [
+                _of(each.value, target, calls, values, depth + 1)
+                for target in calls.code.targets(value.text, fn)
+                for each in target.facts.assignments
+                if each.operator == "return"
+            ]
         fields = _fields(_common(found)) if found else fields
-    made = _arguments_of(value, links, 0, fn)
-    positional = [part for part in made or () if part.kind != "keyword"]
+    positional = [part for part in links[0][1] or () if part.kind != "keyword"]
     if positional and names[0] in ("QoS", "KeepLast", "keep_last", "QoSProfile", "SensorDataQoS"):
         _made(positional[0], fields, fn, calls, values, depth)
-    for place, name in enumerate(names):
+    for place, (name, given) in enumerate(links):
         if name in _SETTINGS:
             field, setting = _SETTINGS[name]
             fields[field] = setting
+            if place and name == "keep_last":
+                fields["depth"] = _number(given[0], fn, values) if given else -1
         elif place and name in _TAKING:
-            given = _arguments_of(value, links, place, fn)
             _set(_TAKING[name], given[0] if given else None, fields, fn, values)
     for part in value.parts:
         if part.kind == "keyword" and part.parts:
@@ -170,6 +181,14 @@ def _made(first: Expr, fields: dict, fn: Fn, calls: Calls, values: Values, depth
         fields.update(_fields(Qos()))  # of what is not known
     else:
         fields["depth"] = _number(first, fn, values)
+
+
+def _links(value: Expr, fn: Fn) -> list[tuple[str, tuple[Expr, ...] | None]]:
+    """The calls of a chain, the first one first, with their arguments; None for those that are not known."""
+    if value.receiver is not None:
+        return [*_links(value.receiver, fn), (tail(value.text), value.parts)]
+    names = value.text.split("().")
+    return [(tail(name), _arguments_of(value, names, place, fn)) for place, name in enumerate(names)]
 
 
 def _arguments_of(value: Expr, links: list[str], place: int, fn: Fn) -> tuple[Expr, ...] | None:

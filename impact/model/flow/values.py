@@ -322,7 +322,9 @@ class Values:
             yield Value(NAMESPACE)
             return
         if last in _SAME and head:
-            if head.endswith("()"):
+            if value.receiver is not None and value.receiver.kind == "call":
+                yield from self._of(value.receiver, fn, line, seen)
+            elif head.endswith("()"):
                 yield from self._inner(head.removesuffix("()"), fn, line, seen)
             else:
                 yield from self._name(head, fn, line, seen)
