@@ -377,7 +377,7 @@ class Join:
         if not isinstance(owner, Running) or owner.values is self.values or site.implied:
             return site
         use, values = site.use, owner.values
-        names = tuple(values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line))
+        names = self.sites.names(use, site.prefix, values)
         return site._replace(names=names, type=site.type or self.sites.type_of(use, values))
 
     def _endpoint(self, site: Site, value: Value, owner: Owner) -> Endpoint:

@@ -170,8 +170,7 @@ def _names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
         if id(site.use.fn) in one.functions:
             values = site.names
             if not site.implied:
-                named = join.calls.argument(site.use, site.use.row.topic)
-                values = one.values.of(named, site.use.fn, site.use.call.line)
+                values = join.sites.names(site.use, site.prefix, one.values)
             for value in values:
                 yield join.name(site, value, bare)[0]
 

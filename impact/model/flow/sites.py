@@ -20,6 +20,8 @@ from .types import interface_of, interface_of_header, parsed, split
 from .values import Value, Values, beside
 
 _HANDLES = frozenset(("handle", "image_transport"))
+LOST = "?"
+"""Begins the namespace of a node handle that is not known."""
 _ROLES: dict[str, Role] = {
     "publisher": "publisher",
     "subscriber": "subscriber",
@@ -97,7 +99,8 @@ def shown(value: Expr | None) -> str:
     if value.kind == "text":
         return f'"{value.text}"'
     if value.kind in ("call", "make"):
-        return f"{value.text}({', '.join(parts)})"
+        name = f"{shown(value.receiver)}.{tail(value.text)}" if value.receiver is not None else value.text
+        return f"{name}({', '.join(parts)})"
     if value.kind == "join":
         return " + ".join(parts)
     if value.kind == "choice":
@@ -172,9 +175,9 @@ class Sites:
         calls, row = self.calls, use.row
         named = calls.argument(use, row.topic)
         fixed = bool(row.topic) and isinstance(row.topic[0], str) and row.topic[0].startswith("=")
-        names = tuple(self.values.of(named, use.fn, use.call.line))
-        callbacks, reason = self._callbacks(use)
         prefix = "" if fixed else self.prefix(use)
+        names = self.names(use, prefix, self.values)
+        callbacks, reason = self._callbacks(use)
         site = Site(
             _ROLES[row.does], use, names, shown(named), prefix, self.type_of(use), callbacks,
             self._variable(use), reason, fixed,
@@ -185,6 +188,20 @@ class Sites:
             infos = tuple(v if v.text is None else v._replace(text=beside(v.text, "camera_info")) for v in names)
             yield site._replace(names=infos, type="sensor_msgs/CameraInfo", implied=True)
         yield from self._further(site)
+
+    def names(self, use: Use, prefix: str, values: Values) -> tuple[Value, ...]:
+        """What the name of an endpoint may be, before the node's own. prefix: of its node handle; values: what
+        expressions are worth where it runs."""
+        found = tuple(values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line))
+        if not prefix.startswith(LOST):
+            return found
+        lost = "the namespace of its node handle is not known"
+        return tuple(
+            Value(None, "unresolved", f"`{prefix}/{value.text}`: {lost}", value.parameter)
+            if value.text is not None and value.text[:1] not in ("/", "~")
+            else value
+            for value in found
+        )
 
     @staticmethod
     def _further(site: Site) -> Iterator[Site]:
@@ -599,23 +616,24 @@ class Sites:
         return ""
 
     def handle(self, value: Expr, fn: Fn, depth: int = 0) -> str:
-        """The namespace of a node handle, or of a transport that was made with one."""
+        """The namespace of a node handle, or of a transport that was made with one; it begins with LOST where that is
+        not known."""
         if depth > 6:
-            return ""
+            return LOST
         last = tail(value.text)
         if value.kind == "call":
             if "PrivateNodeHandle" in last or last in ("getPrivateNodeHandle", "private_node_handle"):
                 return "~"
             if self.calls.kinds_of(self.code.meant_type(value.text, fn.source, fn.scope), fn) & _HANDLES:
                 return self._made_handle(value.parts, fn, depth)
-            for target in self.code.targets(value.text, fn):
-                for each in target.facts.assignments:
-                    if each.operator == "return":
-                        return self.handle(each.value, target, depth + 1)
-            return ""
-        if value.kind == "make":
-            return self._made_handle(value.parts, fn, depth)
-        if value.kind == "list":
+            found = [
+                self.handle(each.value, target, depth + 1)
+                for target in self.code.targets(value.text, fn)
+                for each in target.facts.assignments
+                if each.operator == "return"
+            ]
+            return self._one(found) if found else self._unless_handle(value, fn)
+        if value.kind in ("make", "list"):
             return self._made_handle(value.parts, fn, depth)
         if value.kind != "name":
             return ""
@@ -630,19 +648,37 @@ class Sites:
                 return self._made_handle(call.arguments, caller, depth)
         for other in self._resets.get(variable, ()):
             return self.handle(other[1], other[0], depth + 1)
+        named = "priv" in value.text.lower() or tail(value.text).strip("_") in ("pnh", "nh_p")
+        private = "~" if named else ""
         if variable.kind == "local":
-            place = parameter_of(fn, variable.name)
-            if place is not None:
-                owner = self.code.owner_of(fn)
-                makers = self.code.constructions.get(owner.name, ()) if owner is not None else ()
-                for caller, arguments, _ in [
-                    *((c, call.arguments, 0) for c, call in self.code.callers.get(id(fn), ())), *makers,
-                ]:  # fmt: skip
-                    if place[0] < len(arguments):
-                        return self.handle(arguments[place[0]], caller, depth + 1)
-        if "priv" in value.text.lower() or tail(value.text).strip("_") in ("pnh", "nh_p"):
-            return "~"
-        return ""
+            for one in self.code.chain(fn):
+                place = parameter_of(one, variable.name)
+                if place is not None:
+                    given = list(self._given_handles(one, place[0], depth))
+                    return self._one(given) if given else private or self._unless_handle(value, fn)
+        return private
+
+    def _given_handles(self, fn: Fn, place: int, depth: int) -> Iterator[str]:
+        """The namespaces of the handles that are passed for a parameter."""
+        owner = self.code.owner_of(fn)
+        makers = [(caller, call.arguments, 0) for caller, call in self.code.callers.get(id(fn), ())]
+        if owner is not None and tail(fn.name) == tail(owner.name):
+            makers += self.code.constructions.get(owner.name, ())
+            makers += self.values.bases_made.get(owner.name, ())
+        for caller, arguments, _ in makers:
+            if place < len(arguments):
+                yield self.handle(arguments[place], caller, depth + 1)
+
+    @staticmethod
+    def _one(found: list[str]) -> str:
+        """The namespace where all ways lead to the same."""
+        return found[0] if len(set(found)) == 1 else LOST
+
+    def _unless_handle(self, value: Expr, fn: Fn) -> str:
+        """The node's own namespace for what only stands for a node; that of a handle from elsewhere is not known."""
+        own = value.kind == "call" and tail(value.text).endswith("NodeHandle")
+        known = self.calls.kinds_of(self.code.type_of(value, fn), fn)
+        return LOST if "handle" in known and not own else ""
 
     @cached_property
     def _resets(self) -> dict[Variable, list[tuple[Fn, Expr]]]:
@@ -659,17 +695,20 @@ class Sites:
             return ""
         first = arguments[0]
         if first.kind in ("text", "join"):
-            return self.values.of(first, fn)[0].text or ""
+            return self._namespace(first, fn)
+        if first.kind == "name" and not self.calls.is_node(first, fn) and self.calls.textual(first, fn):
+            return self._namespace(first, fn)
         base = self.handle(first, fn, depth + 1)
         if len(arguments) > 1 and (self.calls.textual(arguments[1], fn)):
-            below = self.values.of(arguments[1], fn)[0].text
+            below = self._namespace(arguments[1], fn)
             if below:
                 return f"{base}/{below}" if base and base != "~" else f"~{below}" if base == "~" else below
-        if first.kind == "name" and not self.calls.is_node(first, fn):
-            named = self.values.of(first, fn)[0].text
-            if named is not None and self.calls.textual(first, fn):
-                return named
         return base
+
+    def _namespace(self, value: Expr, fn: Fn) -> str:
+        """What a namespace is that is given to a handle."""
+        text = self.values.of(value, fn)[0].text
+        return LOST if text is None else text
 
     # Publish statements
 

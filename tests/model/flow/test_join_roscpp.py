@@ -325,3 +325,58 @@ def test_calls_of_other_classes_that_are_named_alike_are_none():
     """}, 1)  # fmt: skip
     assert found.endpoints == ()
     assert found.coverage.calls == 0
+
+
+CONTROLLER = """
+    namespace wheels {
+    class Drive : public Base {
+     public:
+      bool init(Hardware* hardware, ros::NodeHandle& root, ros::NodeHandle& own) {
+        pub_ = own.advertise<std_msgs::Bool>("moving", 1);
+        sub_ = root.subscribe("/stop", 1, &Drive::stop, this);
+        ros::NodeHandle below(own, "deep");
+        more_ = below.advertise<std_msgs::Bool>("more", 1);
+        return true;
+      }
+      void stop(const std_msgs::Bool& message) { pub_.publish(message); }
+      ros::Publisher pub_, more_;
+      ros::Subscriber sub_;
+    };
+    }
+    PLUGINLIB_EXPORT_CLASS(wheels::Drive, Base)
+"""
+
+
+def test_what_a_handle_from_elsewhere_names_is_not_known():
+    """A global name is known whatever the handle is; a relative one is not at the root."""
+    found = graph({"wheels/src/drive.cpp": CONTROLLER}, 1)
+    told = {(e.written, e.topic, e.reason.partition(":")[0]) for e in found.endpoints if not e.implied}
+    assert told == {
+        ('"moving"', "", "`?/moving`"), ('"more"', "", "`?/deep/more`"), ('"/stop"', "/stop", ""),
+    }  # fmt: skip
+    assert [(publish.topic, publish.reason[:11]) for publish in found.publishes] == [("", "`?/moving`:")]
+    assert {one.what for one in found.coverage.unresolved} == {"publisher name", "publish"}
+
+
+@pytest.mark.parametrize(
+    "handles, topic",
+    [
+        ("ros::NodeHandle n; Lamp lamp(n);", "/lit"),
+        ('ros::NodeHandle n("~"); Lamp lamp(n);', "/node/lit"),
+        ('ros::NodeHandle n("room"); Light lamp(n);', "/room/lit"),
+        ('ros::NodeHandle n, own("~"); Lamp lamp(n); Lamp other(own);', ""),  # one of two
+        ('std::string where; ros::param::get("where", where); ros::NodeHandle n(where); Lamp lamp(n);', ""),
+    ],
+)
+def test_handles_that_are_passed_on(handles, topic):
+    """Through constructors, also of a class by another name."""
+    main = """
+        struct Lamp {
+          explicit Lamp(ros::NodeHandle n) { pub_ = n.advertise<std_msgs::Bool>("lit", 1); }
+          ros::Publisher pub_;
+        };
+        namespace shop { typedef Lamp Light; }
+        int main(int argc, char** argv) { ros::init(argc, argv, "node"); %s ros::spin(); }
+    """
+    found = graph({"p/node.cpp": main % handles.replace("Light", "shop::Light")}, 1)
+    assert {topic for _, topic, _ in ends(found, "publisher")} == {topic or "?"}
