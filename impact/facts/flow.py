@@ -135,7 +135,7 @@ class Function(msgspec.Struct, frozen=True, array_like=True, gc=False):
     called as what it stands in, followed by `lambda@line:column`. owner: the class it belongs to, as far as the file
     says (`ns::Class` for `void Class::f()` inside `namespace ns`), empty for none. decorators: as paths. returns: the
     type as written. virtual: C++ `virtual` or `override` is written. outside: names that Python declares `global` or
-    `nonlocal`.
+    `nonlocal`. types: parameters of the C++ template that it is written as, empty for those that are no types.
 
     The body of a Python class is a Function of the class's name, in which the names it binds are `this.name`."""
 
@@ -152,6 +152,7 @@ class Function(msgspec.Struct, frozen=True, array_like=True, gc=False):
     returns: str = ""
     virtual: bool = False
     outside: tuple[str, ...] = ()
+    types: tuple[str, ...] = ()
 
 
 class Member(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -165,7 +166,7 @@ class Member(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class Class(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A class or struct. name: with its scopes. bases: as written, template arguments kept. methods: names of those it
-    declares, bodies or not."""
+    declares, bodies or not. types: parameters of a template, empty for those that are no types."""
 
     name: str
     bases: tuple[str, ...]
@@ -173,6 +174,7 @@ class Class(msgspec.Struct, frozen=True, array_like=True, gc=False):
     methods: tuple[str, ...]
     line: int
     end: int
+    types: tuple[str, ...] = ()
 
 
 class Alias(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -156,6 +156,21 @@ class _File(Statements):
     def descend(self, node: Node, name: str, owner: str, conditions) -> None:
         self.scope(node.children, name, owner, conditions)
 
+    def template(self, node: Node, name: str, owner: str, conditions) -> None:
+        before, parameters = self.types, node.child_by_field_name("parameters")
+        self.types = tuple(map(self.type_parameter, parameters.named_children)) if parameters is not None else ()
+        self.scope(node.children, name, owner, conditions)
+        self.types = before
+
+    def type_parameter(self, node: Node) -> str:
+        """The name of a template's parameter that is a type, empty for others."""
+        if "type_parameter" not in node.type:
+            return ""
+        named = node.child_by_field_name("name") or next(
+            (child for child in node.named_children if child.type == "type_identifier"), None
+        )
+        return self.said(named) if named is not None else ""
+
     def unparsed(self, node: Node, name: str, owner: str, conditions) -> None:
         """What did not parse: whatever is a whole piece in it is read."""
         for child in node.children:
@@ -328,7 +343,9 @@ class _File(Statements):
         kept = getattr(self, "members", None), getattr(self, "methods", None)
         self.members, self.methods = [], []
         before = self.state()
+        types, self.types = self.types, ()
         self.scope(body.children, inner, inner or "", conditions)
+        self.types = types
         self.restore(before)
         members, methods = self.members, self.methods
         if kept[0] is not None and kept[1] is not None:
@@ -341,6 +358,7 @@ class _File(Statements):
                 tuple(dict.fromkeys(methods)),
                 self.line(node),
                 self.line_of_end(node),
+                types,
             )
         )
 
@@ -490,7 +508,7 @@ SCOPED = {
     kind("namespace_definition"): _File.namespace,
     kind("linkage_specification"): _File.descend,
     kind("declaration_list"): _File.descend,
-    kind("template_declaration"): _File.descend,
+    kind("template_declaration"): _File.template,
     kind("template_instantiation"): _File.descend,
     kind("friend_declaration"): _File.descend,
     kind("function_definition"): _File.function,

@@ -336,6 +336,7 @@ class Declarations(Values):
                 (),
                 returns,
                 virtual,
+                types=self.types,
             )
         )
 

@@ -118,6 +118,8 @@ class Values:
         self.begin(set())
         # What the receiver of the call that is read is, where it is a call too or is made there.
         self.received: Expr | None = None
+        # Parameters of the template that is read.
+        self.types: tuple[str, ...] = ()
 
     def begin(self, known: set[str]) -> None:
         """Starts an empty function that knows some variables."""

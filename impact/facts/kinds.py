@@ -49,8 +49,8 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "setup_cfg": ("setup", "SetupFile", 3),
     "pyproject": ("setup", "SetupFile", 3),
     "script": ("", "", 1),
-    "flow_cpp": ("flow_cpp", "FlowFile", 3),
-    "flow_python": ("flow_python", "FlowFile", 3),
+    "flow_cpp": ("flow_cpp", "FlowFile", 4),
+    "flow_python": ("flow_python", "FlowFile", 4),
     "flow_script": ("", "", 1),
 }
 """kind: (module, struct, version). Raise the version with every change of what an extractor says: it is part of the key

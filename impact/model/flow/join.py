@@ -309,7 +309,8 @@ class Join:
                     used.add(node.id)
                 here = self._site_of(site, owner)
                 for value in here.names:
-                    endpoints.append(self._endpoint(here, value, owner))
+                    for type_ in _types(here, owner):
+                        endpoints.append(self._endpoint(here, value, type_, owner))
         for statement in self.sites.statements:
             those = owners(statement.use)
             if launch is not None and not those:
@@ -366,8 +367,10 @@ class Join:
         known = [value for value in site.names if value.text is not None]
         if not known:
             return f"{site.role} name", site.names[0].reason if site.names else "no name is given"
-        if not site.type:
-            return f"{site.role} type", "the type is not told where it is made"
+        if not site.type and not site.types:
+            name = self.sites.template_parameter(site.use)
+            reason = f"nothing here fixes the parameter `{name}` of the template" if name else ""
+            return f"{site.role} type", reason or "the type is not told where it is made"
         if site.reason:
             return f"{site.role} callback", site.reason
         return None
@@ -380,7 +383,7 @@ class Join:
         names = self.sites.names(use, site.prefix, values)
         return site._replace(names=names, type=site.type or self.sites.type_of(use, values))
 
-    def _endpoint(self, site: Site, value: Value, owner: Owner) -> Endpoint:
+    def _endpoint(self, site: Site, value: Value, type_: str, owner: Owner) -> Endpoint:
         use = site.use
         node = _node_of(owner)
         topic, how, reason = self.name(site, value, owner)
@@ -388,7 +391,7 @@ class Join:
             self._qos[id(use)] = qos_of(self.calls, self.values, use)
         qos = self._qos[id(use)]
         return Endpoint(
-            site.role, node.id if node else "", topic, site.type, *_place(use), site.written, how, qos,
+            site.role, node.id if node else "", topic, type_, *_place(use), site.written, how, qos,
             _callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
             use.row.framework,
         )  # fmt: skip
@@ -453,7 +456,8 @@ class Join:
             here = self._site_of(site, owner)
             for value in here.names:
                 topic, _, reason = self.name(here, value, owner)
-                yield Publish(topic=topic, type=here.type, reason=reason, **common)
+                for type_ in _types(here, owner):
+                    yield Publish(topic=topic, type=type_, reason=reason, **common)
 
     def _parameters(self, use: Use, owners: list[Owner]) -> Iterator[ParameterUse]:
         if not owners:
@@ -466,6 +470,16 @@ class Join:
             if value.text:
                 for node in nodes:
                     yield ParameterUse(node, value.text, kind, *_place(use), default)
+
+
+def _types(site: Site, owner: Owner) -> tuple[str, ...]:
+    """The types that a site has for whoever runs it: several where a template is used with several."""
+    if site.type or not site.types:
+        return (site.type,)
+    here = site.types
+    if isinstance(owner, Running):
+        here = [one for one in here if one.cls in owner.classes or one.fn in owner.functions]
+    return tuple(dict.fromkeys(one.type for one in here)) or ("",)
 
 
 def _node_of(owner: Owner) -> Node | None:

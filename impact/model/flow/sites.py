@@ -16,6 +16,7 @@ from .calls import Calls, Use
 from .code import Code, Fn, Variable, around, parameter_of, tail
 from .defined import Defined
 from .graph import Role
+from .templates import Templates
 from .types import interface_of, interface_of_header, parsed, split
 from .values import Value, Values, beside
 
@@ -32,10 +33,19 @@ _ROLES: dict[str, Role] = {
 }
 
 
+class Typed(NamedTuple):
+    """A type that an endpoint in a template is of: where a class is made, or a function (by its id()) runs; always for
+    neither."""
+
+    type: str
+    cls: str = ""
+    fn: int = 0
+
+
 class Site(NamedTuple):
     """Where code makes an endpoint. names: what its name may be, before the node's own; prefix: the namespace of the
     node handle (`~` for private ones). callbacks: the bodies that may be called; reason: why there are none though one
-    is given. implied: the framework fixes the name."""
+    is given. implied: the framework fixes the name. types: instead of one type those that a template has."""
 
     role: Role
     use: Use
@@ -47,6 +57,7 @@ class Site(NamedTuple):
     variable: Variable | None = None
     reason: str = ""
     implied: bool = False
+    types: tuple[Typed, ...] = ()
 
 
 class Statement(NamedTuple):
@@ -121,6 +132,7 @@ class Sites:
 
     def __init__(self, code: Code, calls: Calls, values: Values, defined: Defined):
         self.code, self.calls, self.values, self.defined = code, calls, values, defined
+        self.templates = Templates(code)
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -182,6 +194,8 @@ class Sites:
             _ROLES[row.does], use, names, shown(named), prefix, self.type_of(use), callbacks,
             self._variable(use), reason, fixed,
         )  # fmt: skip
+        if not site.type:
+            site = site._replace(types=tuple(dict.fromkeys(self._types_of_template(use))))
         yield site
         if row.camera_info:
             # https://docs.ros.org/en/api/image_transport: camera_info stands beside the image's topic.
@@ -232,6 +246,28 @@ class Sites:
                         return self.code.identity(call.callee.rpartition(".")[0], use.fn)
         return None
 
+    def template_parameter(self, use: Use) -> str:
+        """The parameter of a template that tells an endpoint's type, empty for none."""
+        for spot in use.row.type:
+            text = ""
+            if isinstance(spot, str) and spot.startswith("<"):
+                text = self.calls.template_argument(use, int(spot.strip("<>")))
+            elif spot == "of receiver":
+                kind = self.code.type_of(Expr("name", self.calls.receiver_of(use)), use.fn)
+                text = kind.arguments[0] if kind.arguments else ""
+            name = self.code.meant_type(text, use.fn.source, use.fn.scope).name if text else ""
+            if name and self.templates.has(name, use.fn):
+                return name
+        return ""
+
+    def _types_of_template(self, use: Use) -> Iterator[Typed]:
+        name = self.template_parameter(use)
+        for one in self.templates.given(name, use.fn) if name else ():
+            kind = self.code.meant_type(one.text, one.source, one.scope)
+            known = interface_of(kind.name)
+            if known:
+                yield Typed(known, one.cls, one.fn)
+
     def type_of(self, use: Use, values: Values | None = None) -> str:
         """The interface an endpoint is of, as `package/Name`; `*` for any, empty when it is not known. values: what
         expressions are worth where it runs."""
@@ -266,6 +302,8 @@ class Sites:
                             return text
             if text:
                 kind = code.meant_type(text, fn.source, fn.scope)
+                if self.templates.has(kind.name, fn):
+                    continue
                 if tail(kind.name) in ("ShapeShifter", "AnyMsg", "SerializedMessage"):
                     return "*"
                 known = interface_of(f"{kind.name}<{', '.join(kind.arguments)}>" if kind.arguments else kind.name)
