@@ -61,6 +61,24 @@ def quay(crane: str, ship: str, launch: str = "", config: str = "") -> dict[str,
     return files
 
 
+def hold(header: str, source: str) -> dict[str, str]:
+    """A package of one component in C++, in a header and a source, which a launch file starts."""
+    return {
+        "quay/package.xml": MANIFEST.replace("ament_python", "ament_cmake").replace("rclpy", "rclcpp_components"),
+        "quay/CMakeLists.txt": "cmake_minimum_required(VERSION 3.8)\nproject(quay)\nfind_package(ament_cmake REQUIRED)\n"
+        "find_package(rclcpp REQUIRED)\nfind_package(rclcpp_components REQUIRED)\nfind_package(std_msgs REQUIRED)\n"
+        "include_directories(include)\nadd_library(hold SHARED src/hold.cpp)\n"
+        "ament_target_dependencies(hold rclcpp rclcpp_components std_msgs)\n"
+        'rclcpp_components_register_nodes(hold "quay::Hold")\nament_package()\n',
+        "quay/include/quay/hold.hpp": f"#include <rclcpp/rclcpp.hpp>\n#include <std_msgs/msg/empty.hpp>\n{header}",
+        "quay/src/hold.cpp": f'#include "quay/hold.hpp"\n#include <rclcpp_components/register_node_macro.hpp>\n{source}'
+        "RCLCPP_COMPONENTS_REGISTER_NODE(quay::Hold)\n",
+        "quay/launch/quay.launch.xml": '<launch>\n  <node_container pkg="rclcpp_components" exec="component_container" '
+        'name="all" namespace="">\n    <composable_node pkg="quay" plugin="quay::Hold" name="hold">\n'
+        '      <remap from="weight" to="/mass"/>\n    </composable_node>\n  </node_container>\n</launch>\n',
+    }
+
+
 def with_inner(start: str, inner: str) -> str:
     """STARTED with something within the first node."""
     return STARTED.replace('exec="crane"/>', f'exec="crane" name="crane">{inner}</node>').replace("\n", start + "\n", 1)
@@ -129,6 +147,16 @@ ROWS = {
         "dead-remap",
         quay("import far\nfar.Tool(self)\n" + TALKS, LISTENS, REMAP),
         ("quay/crane.py", "import far\n        far.Tool(self)\n        ", ""),
+    ),
+    "a class whose members of elsewhere are given the node": Row(
+        "dead-remap",
+        hold('#include "far/tool.hpp"\nnamespace quay {\nclass Hold : public rclcpp::Node {\n public:\n'
+             "  explicit Hold(const rclcpp::NodeOptions & options);\n private:\n"
+             '  far::Tool<std_msgs::msg::Empty> tool_{this, "weight"};\n'
+             "  rclcpp::Publisher<std_msgs::msg::Empty>::SharedPtr full_;\n};\n}\n",
+             "namespace quay {\nHold::Hold(const rclcpp::NodeOptions & options) : Node(\"hold\", options) {\n"
+             '  full_ = create_publisher<std_msgs::msg::Empty>("full", 1);\n}\n}\n'),
+        ("include/quay/hold.hpp", '#include "far/tool.hpp"', ""),
     ),
     "a name that is put together": Row(
         "dead-remap",

@@ -86,7 +86,9 @@ class Seeing:
         functions = [fn for fn in self.join.code.functions if id(fn) in one.functions]
         if not one.program.roots or not functions:
             return Sight("its code is not in the workspace", "its code is not in the workspace")
+        classes = self.join.code.classes
         paths = {fn.source.path for fn in functions}
+        paths.update(cls.source.path for name in one.classes for cls in classes.get(tail(name), ()) if cls.name == name)
         steps = (self._outside(paths), self._bases(one), self._given(functions), self._unreached(one))
         both = next(chain(*steps), "")
         names = both or next(self._unnamed(functions), "")

@@ -93,6 +93,12 @@ def _holds(value: Expr, made: set[tuple[str, tuple[Expr, ...]]]) -> bool:
     )
 
 
+def _serves(fn: Fn) -> bool:
+    """Whether a function is for a service: its parameters are a request and a response."""
+    types = [parameter.type for parameter in fn.facts.parameters]
+    return any("::Request" in each or "::Response" in each for each in types)
+
+
 def _place_in_row(value: Expr) -> tuple[Expr, int] | None:
     """What is walked through, and the place in each of its rows, of `rows[each][1]`."""
     if value.kind == "index" and len(value.parts) == 2 and value.parts[0].kind == "index":
@@ -618,7 +624,11 @@ class Sites:
         return code.method(owner, name) if owner is not None else []
 
     def _fitting(self, found: list[Fn], use: Use | None) -> list[Fn]:
-        """Of overloads those whose first parameter is of the message's type."""
+        """Of overloads those that fit: a service's callback has its request, and a subscriber's first parameter is of
+        the message's type."""
+        if use is not None and len(found) > 1 and use.row.does in ("subscriber", "server"):
+            serving = use.row.does == "server"
+            found = [fn for fn in found if _serves(fn) == serving] or found
         if use is None or len(found) < 2 or not use.call.types:
             return found
         wanted = interface_of(

@@ -216,6 +216,25 @@ def test_callbacks_that_options_hold():
     ]
 
 
+def test_a_name_served_and_listened_to_has_a_callback_for_each():
+    found = graph({"p/a.cpp": """
+        struct A {
+          A() {
+            server_ = nh_.advertiseService("path", &A::on, this);
+            sub_ = nh_.subscribe("path", 1, &A::on, this);
+          }
+          bool on(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) { return true; }
+          void on(const std_msgs::StringConstPtr& msg) {}
+          ros::NodeHandle nh_;
+          ros::ServiceServer server_;
+          ros::Subscriber sub_;
+        };
+        int main(int c, char** v) { ros::init(c, v, "a"); A a; ros::spin(); }
+    """}, 1)  # fmt: skip
+    ended = {e.role: (e.type, e.callback and e.callback.line) for e in found.endpoints if not e.implied}
+    assert ended == {"server": ("std_srvs/SetBool", 7), "subscriber": ("std_msgs/String", 8)}
+
+
 @pytest.mark.parametrize(
     "filters",
     [
