@@ -61,12 +61,29 @@ def quay(crane: str, ship: str, launch: str = "", config: str = "") -> dict[str,
     return files
 
 
+def chandler(source: str, launch: str) -> dict[str, str]:
+    """A package of one ROS 1 program in C++, which a launch file starts."""
+    return {
+        "quay/package.xml": MANIFEST.replace("<export><build_type>ament_python</build_type></export>", "")
+        .replace('format="3"', 'format="2"')
+        .replace(
+            "<exec_depend>rclpy</exec_depend>", "<buildtool_depend>catkin</buildtool_depend><depend>roscpp</depend>"
+        ),
+        "quay/CMakeLists.txt": "cmake_minimum_required(VERSION 3.8)\nproject(quay)\n"
+        "find_package(catkin REQUIRED COMPONENTS roscpp)\ncatkin_package()\n"
+        "add_executable(chandler src/chandler.cpp)\ntarget_link_libraries(chandler ${catkin_LIBRARIES})\n",
+        "quay/src/chandler.cpp": f"#include <ros/ros.h>\n{source}",
+        "quay/launch/quay.launch": launch,
+    }
+
+
 def hold(header: str, source: str) -> dict[str, str]:
     """A package of one component in C++, in a header and a source, which a launch file starts."""
     return {
         "quay/package.xml": MANIFEST.replace("ament_python", "ament_cmake").replace("rclpy", "rclcpp_components"),
-        "quay/CMakeLists.txt": "cmake_minimum_required(VERSION 3.8)\nproject(quay)\nfind_package(ament_cmake REQUIRED)\n"
-        "find_package(rclcpp REQUIRED)\nfind_package(rclcpp_components REQUIRED)\nfind_package(std_msgs REQUIRED)\n"
+        "quay/CMakeLists.txt": "cmake_minimum_required(VERSION 3.8)\nproject(quay)\n"
+        "find_package(ament_cmake REQUIRED)\nfind_package(rclcpp REQUIRED)\n"
+        "find_package(rclcpp_components REQUIRED)\nfind_package(std_msgs REQUIRED)\n"
         "include_directories(include)\nadd_library(hold SHARED src/hold.cpp)\n"
         "ament_target_dependencies(hold rclcpp rclcpp_components std_msgs)\n"
         'rclcpp_components_register_nodes(hold "quay::Hold")\nament_package()\n',
@@ -157,6 +174,17 @@ ROWS = {
              "namespace quay {\nHold::Hold(const rclcpp::NodeOptions & options) : Node(\"hold\", options) {\n"
              '  full_ = create_publisher<std_msgs::msg::Empty>("full", 1);\n}\n}\n'),
         ("include/quay/hold.hpp", '#include "far/tool.hpp"', ""),
+    ),
+    "a program that loads a nodelet": Row(
+        "unknown-parameter",
+        chandler("#include <nodelet/loader.h>\nint main(int c, char** v) {\n  ros::init(c, v, \"chandler\");\n"
+                 '  ros::NodeHandle pnh("~");\n  int rope;\n  pnh.param("rope", rope, 3);\n'
+                 "  nodelet::Loader loader;\n  nodelet::M_string remap;\n  nodelet::V_string nargv;\n"
+                 '  loader.load(ros::this_node::getName(), "far/Store", remap, nargv);\n  ros::spin();\n}\n',
+                 '<launch>\n  <node pkg="quay" type="chandler" name="chandler">\n    <param name="sail" value="2"/>\n'
+                 "  </node>\n</launch>\n"),
+        ("src/chandler.cpp", '  loader.load(ros::this_node::getName(), "far/Store", remap, nargv);\n', ""),
+        "note",
     ),
     "a name that is put together": Row(
         "dead-remap",

@@ -11,7 +11,8 @@ from .defined import released
 from .graph import Endpoint, Graph, Node
 from .launches import Launch
 
-# Of these the workspace says what runs; plugins and libraries get their names from whoever loads them.
+# Of these the workspace says what runs; plugins and libraries get their names from whoever loads them, but for names
+# that begin with a slash.
 _RUNNING = frozenset(("executable", "script", "component", "nodelet"))
 # A type of a package outside of the workspace may be a class that stands for a message.
 _INTERFACES = ("_msgs", "_interfaces", "_srvs", "_actions", "turtlesim", "dynamic_reconfigure")
@@ -81,6 +82,8 @@ class Flow:
         """Whether an endpoint has one certain name, and belongs to something that surely runs by itself."""
         node = self.nodes.get(one.node)
         runs = node is not None and node.kind in _RUNNING and (node.line or node.kind != "executable")
+        if node is not None and node.kind == "plugin":
+            runs = one.written.startswith("/") and one.how == "literal"
         alone = (one.node, one.role, one.path, one.line, one.written) in self._alone
         return bool(runs and one.topic and one.how in _SURE and alone)
 

@@ -136,13 +136,14 @@ class Seeing:
                 last = tail(call.callee)
                 if python and self._is_lost(call.callee, fn):
                     yield f"`{call.callee}` is not followed"
-                if last in _LOADERS:
+                use = calls.use_of(fn, call)
+                if last in _LOADERS or (use is not None and use.row.does == "load"):
                     yield f"`{last}` loads code by name"
                     continue
                 known = last in _RUNS or (python and last[:1].isupper())
                 if known or not any(self._is_node(argument, fn) for argument in call.arguments):
                     continue
-                if not code.targets(call.callee, fn) and calls.use_of(fn, call) is None:
+                if not code.targets(call.callee, fn) and use is None:
                     yield f"`{last}` is given the node"
             for name, arguments, _ in made_in(fn, code):
                 if (
