@@ -19,21 +19,22 @@ from .join import Join, Running
 
 _LOADERS = frozenset(
     ("createInstance", "createSharedInstance", "createUniqueInstance", "createUnmanagedInstance", "loadLibraryForClass",
-     "load_component", "registerFromPlugin", "import_module", "__import__", "eval", "exec")
+     "load_component", "registerFromPlugin")
 )  # fmt: skip
+_PYTHON_LOADERS = frozenset(("import_module", "__import__", "eval", "exec"))
 # Functions that take a node and name nothing with it.
 _RUNS = frozenset(
     ("spin", "spin_some", "spin_once", "spin_until_future_complete", "add_node", "remove_node", "bind", "move",
      "shared_from_this", "get_node_base_interface", "__init__", "partial", "callback_group", "ref", "cref",
      "isinstance", "reset", "make_shared", "make_unique", "push_back", "emplace_back", "append", "static_pointer_cast",
      "dynamic_pointer_cast", "hasattr", "print", "str", "super", "async", "thread", "get",
-     "create_timer", "create_wall_timer", "Bond")
+     "create_timer", "create_wall_timer", "Bond", "TransportHints")
 )  # fmt: skip
 # Functions that ask for parameters whose names the code does not say one by one.
 _WHOLE = frozenset(
     ("get_parameters_by_prefix", "list_parameters", "get_parameters", "declare_parameters", "getParamNames",
      "get_param_names", "searchParam", "search_param", "get_parameter_overrides", "allow_undeclared_parameters",
-     "automatically_declare_parameters_from_overrides", "ParamListener", "set_parameters_from_yaml")
+     "automatically_declare_parameters_from_overrides", "ParamListener", "set_parameters_from_yaml", "TransportHints")
 )  # fmt: skip
 _OPTIONS = ("automatically_declare_parameters_from_overrides", "allow_undeclared_parameters")
 # Frameworks that read parameters of the node they are given.
@@ -65,7 +66,9 @@ _BASES = frozenset(("object", "Node", "LifecycleNode", "Nodelet", "enable_shared
 
 
 # Where the classes of the frameworks themselves stand.
-_OWN = frozenset(("std", "rclcpp", "rclpy", "ros", "rospy", "rclcpp_lifecycle", "message_filters"))
+_OWN = frozenset(
+    ("std", "rclcpp", "rclpy", "ros", "rospy", "rclcpp_lifecycle", "message_filters", "tf", "tf2_ros", "XmlRpc")
+)
 
 
 class Sight(NamedTuple):
@@ -137,27 +140,41 @@ class Seeing:
                 if python and self._is_lost(call.callee, fn):
                     yield f"`{call.callee}` is not followed"
                 use = calls.use_of(fn, call)
-                if last in _LOADERS or (use is not None and use.row.does == "load"):
+                loads = last in _LOADERS or (python and last in _PYTHON_LOADERS)
+                if loads or (use is not None and use.row.does == "load"):
                     yield f"`{last}` loads code by name"
                     continue
                 known = last in _RUNS or (python and last[:1].isupper())
+                # `updater.add("state", this, &A::diagnose)`
+                known = known or (last == "add" and any(argument.kind == "function" for argument in call.arguments))
                 if known or not any(self._is_node(argument, fn) for argument in call.arguments):
                     continue
                 if not code.targets(call.callee, fn) and use is None:
                     yield f"`{last}` is given the node"
             for name, arguments, _ in made_in(fn, code):
-                if (
-                    not python
-                    and parts_of(name)[0] in self._namespaces
-                    and not code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope)
-                ):
+                if not python and self._is_unknown(name, fn):
                     yield f"`{tail(name)}` is not followed"
                 if any(self._is_node(argument, fn) for argument in arguments):
                     kind = code.meant_type(name, fn.source, fn.scope).name if not python else name
                     known = code.class_of(kind, fn.source, fn.scope) if kind else None
                     own = parts_of(kind or name)[0] in _OWN or tail(name) in _RUNS
-                    if known is None and not own and not calls.table.objects_of(kind or name, python):
+                    table = calls.table.objects_of(kind or name, python) or calls.table.kind_of(kind or name)
+                    if known is None and not own and not table:
                         yield f"`{tail(kind or name)}` is given the node"
+
+    def _is_unknown(self, name: str, fn: Fn) -> bool:
+        """Whether a class in C++ would be the workspace's own by its namespace, and is not among its classes."""
+        code, (head, *inner) = self.join.code, parts_of(name)
+        if head not in self._namespaces or tail(name) in self._aliased:
+            return False
+        if not self.workspace.interface_names.get(head, set()).isdisjoint(inner):
+            return False
+        return code.class_of(code.meant_type(name, fn.source, fn.scope).name, fn.source, fn.scope) is None
+
+    @cached_property
+    def _aliased(self) -> set[str]:
+        """The names that stand for another type somewhere."""
+        return {tail(name) for aliases in self.join.code.aliases.values() for name in aliases}
 
     def _is_lost(self, callee: str, fn: Fn) -> bool:
         """Whether a call in Python goes to a module of the workspace that has no such function or class there."""

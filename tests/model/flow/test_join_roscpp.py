@@ -2,6 +2,7 @@
 
 import pytest
 from joining import ends, graph
+from rosimpact.impact.model.flow.nodes import Built
 
 TALKER = """
     #include <ros/ros.h>
@@ -214,6 +215,33 @@ def test_callbacks_that_options_hold():
         "first",
         "second",
     ]
+
+
+def test_a_class_made_by_an_alias_that_is_spelt_with_its_namespace():
+    found = graph(
+        {
+            "p/types.h": """
+            namespace p {
+            template<class T> class Filter {
+             public:
+              Filter() { pub_ = nh_.advertise<std_msgs::String>("state", 1); }
+              ros::NodeHandle nh_;
+              ros::Publisher pub_;
+            };
+            typedef Filter<Kalman> KalmanFilter;
+            }
+        """,
+            "p/a.cpp": """
+            int main(int c, char** v) { ros::init(c, v, "a"); p::KalmanFilter filter; ros::spin(); }
+        """,
+            "p/b.cpp": """
+            int main(int c, char** v) { ros::init(c, v, "b"); ros::NodeHandle nh; ros::spin(); }
+        """,
+        },
+        1,
+        built=(Built("p", {"a": ("p/types.h", "p/a.cpp"), "b": ("p/types.h", "p/b.cpp")}, {}, {}, {}, {}),),
+    )
+    assert ends(found, "publisher") == {("p/a", "/state", "std_msgs/String")}
 
 
 def test_a_name_served_and_listened_to_has_a_callback_for_each():
