@@ -10,8 +10,9 @@ setup(
     package_data={f"rosimpact.{room}": ["py.typed"] for room in ROOMS}
     | {
         "rosimpact.impact.targets": ["data/*"],
-        "rosimpact.impact.report": ["*.html", "*.json"],
+        "rosimpact.impact.report": ["*.css", "*.html", "*.js", "*.json"],
         "rosimpact.impact.model.flow": ["*.toml"],
+        "rosimpact.impact.flow": ["*.html"],
         "rosimpact.impact.flow.drawing": ["assets/*"],
         "rosimpact.corpus": ["py.typed", "labels.jsonl", "GUIDE.md"],
         "rosimpact.classifier": ["py.typed", "data/*"],

@@ -1,40 +1,24 @@
-"""Changes of the logic of publishing as one self-contained page: a timeline that can be searched and filtered.
-
-As the report of `check`, it works from a file, loads nothing, and runs no code but its own.
-"""
+"""Changes of the logic of publishing as one self-contained page: a timeline that can be searched and filtered."""
 
 from __future__ import annotations
 
-import html
-import json
-import re
 from pathlib import Path
+from typing import Any
 
-from ..findings import printable
-from ..report import html as page
-from ..report.report import safe
+from ..report.page import page
 from .logic import Logic
 from .logic_changes import KINDS
 from .logic_report import apart, summary
 
-_PLACEHOLDER = re.compile(r"\{\{(policy|title|style|data)\}\}")
-
 
 def render(logic: Logic, version: str) -> str:
-    """The page. What comes from the repository stands only in a JSON block that cannot be left."""
-    folder = Path(page.__file__).parent
-    template = folder.joinpath("timeline.html").read_text(encoding="utf-8")
-    shared = re.search(r"<style>(.*?)</style>", folder.joinpath("page.html").read_text(encoding="utf-8"), re.DOTALL)
-    template = template.replace("{{style}}", shared[1] if shared else "")
-    values = {
-        "policy": page.policy_of(template),
-        "title": html.escape(safe(printable(f"rosimpact logic: {logic.repository}"))),
-        "data": _data(logic, version),
-    }
-    return _PLACEHOLDER.sub(lambda match: values[match[1]], template)
+    """The page as text."""
+    return page(
+        Path(__file__).with_name("timeline.html"), f"rosimpact logic: {logic.repository}", _data(logic, version)
+    )
 
 
-def _data(logic: Logic, version: str) -> str:
+def _data(logic: Logic, version: str) -> dict[str, Any]:
     commits: dict[str, int] = {}
     heads: list[list[str]] = []
     rows: list[list] = []
@@ -50,7 +34,7 @@ def _data(logic: Logic, version: str) -> str:
             [commits[commit.id], change.kind, change.package, change.path, change.line, change.node, change.topic,
              old, new, change.why, reached]
         )  # fmt: skip
-    data = {
+    return {
         "version": version,
         "repository": logic.repository,
         "summary": summary(logic),
@@ -58,5 +42,3 @@ def _data(logic: Logic, version: str) -> str:
         "commits": heads,
         "changes": rows,
     }
-    text = printable(json.dumps(page.clean(data), ensure_ascii=False, separators=(",", ":")))
-    return re.sub("[<>&\u2028\u2029]", lambda match: f"\\u{ord(match[0]):04x}", text)

@@ -5,9 +5,7 @@ The page lays the graph out itself, so that what a filter leaves is laid out ane
 
 from __future__ import annotations
 
-import html
 import json
-import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -15,51 +13,29 @@ from typing import Any
 import msgspec
 
 from ....corpus import __version__
-from ...findings import printable
 from ...model.flow.graph import Endpoint, Graph, GuardAt, ParameterUse, Publish
-from ...report import html as page
-from ...report.report import safe
+from ...report.page import page
 from ..select import Selection
 from .edges import Edge, edges, names_of
 
-_PLACEHOLDER = re.compile(r"\{\{(policy|title|data)\}\}")
-_PART = re.compile(r"\{\{(shared\.css|graph\.css|layout\.js|graph\.js)\}\}")
 _WAYS = 12
 _LONGEST = 2000
 
 
 def render(selection: Selection, base: Graph | None) -> str:
-    """The page as text. What comes from the workspace stands only in a JSON block that cannot be left, and the page's
-    script puts it into text nodes; the content security policy allows that script and style alone, by their hashes."""
-    template = _template()
-    values = {
-        "policy": page.policy_of(template),
-        "title": html.escape(safe(printable(f"rosimpact graph: {selection.graph.root}"))),
-        "data": _data(selection, base),
-    }
-    return _PLACEHOLDER.sub(lambda match: values[match[1]], template)
+    """The page as text."""
+    template = Path(__file__).with_name("assets") / "graph.html"
+    return page(template, f"rosimpact graph: {selection.graph.root}", _data(selection, base))
 
 
-def _template() -> str:
-    """The page without its data. Colours and controls are those of the report of `check`."""
-    assets = Path(__file__).with_name("assets")
-    report = Path(page.__file__).with_name("page.html").read_text(encoding="utf-8")
-    shared = re.search(r"<style>(.*?)</style>", report, re.DOTALL)
-    parts = {"shared.css": shared[1].strip() if shared else ""}
-    for name in ("graph.css", "layout.js", "graph.js"):
-        parts[name] = assets.joinpath(name).read_text(encoding="utf-8").strip()
-    return _PART.sub(lambda match: parts[match[1]], assets.joinpath("graph.html").read_text(encoding="utf-8"))
-
-
-def _data(selection: Selection, base: Graph | None) -> str:
-    """The graph as JSON in which no character can end the block: < > & and line separators are escaped."""
+def _data(selection: Selection, base: Graph | None) -> dict[str, Any]:
     graph = selection.graph
     found = edges(graph, base)
     nodes = _nodes(graph, base, {edge.node for edge in found})
     places = {node["id"]: place for place, node in enumerate(nodes)}
     names = _names(found)
     named = {(name["kind"], name["name"]): place for place, name in enumerate(names)}
-    data = {
+    return {
         "version": __version__,
         "root": graph.root,
         "rev": graph.rev,
@@ -73,8 +49,6 @@ def _data(selection: Selection, base: Graph | None) -> str:
         ],
         "coverage": msgspec.to_builtins(graph.coverage),
     }
-    text = printable(json.dumps(page.clean(data), ensure_ascii=False, separators=(",", ":")))
-    return re.sub("[<>&\u2028\u2029]", lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def _nodes(graph: Graph, base: Graph | None, used: set[str]) -> list[dict[str, Any]]:

@@ -1,30 +1,15 @@
 (() => {
-  const graph = JSON.parse(document.getElementById("data").textContent);
-  const at = (id) => document.getElementById(id);
+  const graph = data;
   const KINDS = ["topic", "service", "action"];
   const MARKS = ["added", "removed", "changed"];
   const WIDEST = 300, BATCH = 100;
   const [NAME, DEFAULT, USES, PATH, LINE, MORE] = Array(6).keys();
-  const number = (value) => value.toLocaleString("en");
-  const counted = (value, noun) => `${number(value)} ${noun}${value === 1 ? "" : "s"}`;
 
-  // Everything is a text node or an attribute that holds no address, so nothing in it is ever read as markup.
-  function make(tag, attributes, ...children) {
-    const node = document.createElement(tag);
-    for (const [name, value] of Object.entries(attributes || {})) node.setAttribute(name, value);
-    node.append(...children.flat().filter((child) => child !== null && child !== ""));
-    return node;
-  }
   function draw(tag, attributes, ...children) {
     const node = document.createElementNS("http:" + "//www.w3.org/2000/svg", tag);
     for (const [name, value] of Object.entries(attributes || {})) node.setAttribute(name, value);
     node.append(...children);
     return node;
-  }
-
-  // Backticks become code.
-  function withCode(text) {
-    return text.split(/(`[^`]+`)/).filter(Boolean).map((part) => (part.length > 2 && part[0] === "`" ? make("code", null, part.slice(1, -1)) : part));
   }
 
   // The package stands below a node's name: it need not stand in it too.
@@ -448,12 +433,6 @@
     chosen = !wanted ? null : boxes.find((box) => box.key === wanted) || edges.find((edge) => edge.nodeBox && `${edge.nodeBox.key} ${edge.role} ${edge.nameBox.key}` === wanted) || null;
   }
 
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const theme = (name) => { document.documentElement.dataset.theme = name; };
-  theme(dark.matches ? "dark" : "light");
-  dark.addEventListener("change", () => theme(dark.matches ? "dark" : "light"));
-  at("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
-
   at("root").textContent = graph.root === "." ? "" : graph.root.split("/").filter(Boolean).slice(-2).join("/");
   at("root").title = graph.root;
   at("facts").textContent = [counted(nodes.length, "node"), ...KINDS.map((kind) => [kind, names.filter((box) => box.kind === kind).length]).filter(([, count]) => count).map(([kind, count]) => counted(count, kind)),
@@ -498,7 +477,6 @@
       return;
     }
     if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(document.activeElement.tagName)) return;
-    if (event.key === "/") { event.preventDefault(); at("search").focus(); }
     if (event.key === "+" || event.key === "=") zoom(1.3);
     if (event.key === "-") zoom(1 / 1.3);
     if (event.key === "0") fit(whole());

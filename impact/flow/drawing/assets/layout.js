@@ -1,4 +1,3 @@
-"use strict";
 // A layered drawing, left to right: boxes of side 0 (nodes) and side 1 (names) stand in columns by turns, since every
 // edge goes from one side to the other. After Sugiyama: break cycles, give columns, order them, place them.
 const layered = (() => {

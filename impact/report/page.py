@@ -1,0 +1,69 @@
+"""What every page has in common: head, colours and controls, a security policy, and data that cannot leave its block.
+
+A page is one file: it works from a disk, loads nothing and runs no code but its own.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..findings import printable
+from .report import safe
+
+_PART = re.compile(r"\{\{([a-z]+\.(?:html|css|js))\}\}")
+_PLACEHOLDER = re.compile(r"\{\{(policy|title|data)\}\}")
+
+
+def page(template: Path, title: str, data: Mapping[str, Any]) -> str:
+    """A page as text, from a template whose parts lie beside it or here.
+
+    What comes from the workspace stands only in the title and in a JSON block that cannot be left, and the page's
+    script puts it into text nodes; the content security policy allows that script and the styles alone, by their hashes.
+    """
+    text = _whole(template)
+    values = {"policy": _policy(text), "title": html.escape(safe(printable(title))), "data": _block(data)}
+    return _PLACEHOLDER.sub(lambda match: values[match[1]], text)
+
+
+def _whole(template: Path) -> str:
+    """The template with its parts in it."""
+
+    def part(match: re.Match[str]) -> str:
+        beside = template.with_name(match[1])
+        return _whole(beside if beside.exists() else Path(__file__).with_name(match[1])).strip()
+
+    return _PART.sub(part, template.read_text(encoding="utf-8"))
+
+
+def _policy(text: str) -> str:
+    """The content security policy of a page: its own scripts and styles by their hashes, and nothing else."""
+    sources = []
+    for tag in ("script", "style"):
+        found = re.findall(rf"<{tag}>(.*?)</{tag}>", text, re.DOTALL)
+        hashes = [base64.b64encode(hashlib.sha256(each.encode()).digest()).decode() for each in found]
+        sources.append(" ".join([f"{tag}-src", *(f"'sha256-{each}'" for each in hashes)]))
+    return "; ".join(["default-src 'none'", *sources, "base-uri 'none'", "form-action 'none'"])
+
+
+def _block(data: Mapping[str, Any]) -> str:
+    """JSON in which no character can end the block: < > & and line separators are escaped."""
+    text = printable(json.dumps(_clean(data), ensure_ascii=False, separators=(",", ":")))
+    return re.sub("[<>&\u2028\u2029]", lambda match: f"\\u{ord(match[0]):04x}", text)
+
+
+def _clean(value: Any) -> Any:
+    """The value with control and direction characters in its texts replaced."""
+    if isinstance(value, str):
+        return safe(value)
+    if isinstance(value, Mapping):
+        return {safe(key): _clean(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_clean(item) for item in value]
+    return value
