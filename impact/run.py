@@ -335,7 +335,10 @@ def logic(
                     raise Failed(f"--since: {error}") from None
                 for note in store.notes:
                     say(f"rosimpact: {note}")
-            found = history.chosen(found, packages, topics, everything)
+            all_of_it, found = found, history.chosen(found, packages, topics, everything)
+            missed = logic_report.missed(all_of_it, found, packages, topics)
+            if missed:
+                say(f"rosimpact: {missed}")
             if format == "html":
                 text = timeline.render(found, __version__)
             elif format == "json":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -21,6 +22,40 @@ class Said(NamedTuple):
     @property
     def text(self) -> str:
         return self.out + self.err
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """A real Chromium, for pages. Skips where there is none."""
+    selenium = pytest.importorskip("selenium.webdriver", reason="selenium is not installed, see the `test` extra")
+    chromium = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    driver = shutil.which("chromedriver")
+    if not chromium or not driver:
+        pytest.skip("no browser: install chromium and chromium-driver to test pages")
+    options = selenium.ChromeOptions()
+    options.binary_location = chromium
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1400,900"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    chrome = selenium.Chrome(options=options, service=selenium.ChromeService(driver))
+    yield chrome
+    chrome.quit()
+
+
+@pytest.fixture
+def opened(browser, tmp_path):
+    """Opens a page given as text, and gives the browser; fragment: what follows the `#` of its address."""
+
+    def show(text: str, fragment: str = ""):
+        file = tmp_path / "page of ours.html"
+        file.write_text(text, encoding="utf-8")
+        browser.get("about:blank")
+        browser.get_log("browser")
+        browser.get_log("performance")
+        browser.get(file.as_uri() + fragment)
+        return browser
+
+    return show
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
@@ -22,6 +22,7 @@ SCHEMA = 1
 _ROLES = {"tightened": "error", "gone": "error", "trigger changed": "warning", "changed": "warning", "widened": "note",
           "new": "good", "equivalent": "dim"}  # fmt: skip
 _MOST_READERS = 6
+_MOST_NAMES = 8
 _TITLE, _TOPIC = 24, 19
 _LONG = 200
 _PARTS = re.compile(r"(?<= && )|(?<= \|\| )|(?<= and )|(?<= or )|(?<=[:;] )")
@@ -81,6 +82,21 @@ def apart(old: str, new: str) -> tuple[str, str]:
         return "… " * (first > 0) + "".join(parts[first : len(parts) - last]) + "…" * (last > 0)
 
     return middle(before), middle(after)
+
+
+def missed(logic: Logic, chosen: Logic, packages: Sequence[str], topics: Sequence[str]) -> str:
+    """Where nothing of what was asked for changed, and something else did: what that is of, for a name written wrongly
+    to be seen. Empty otherwise."""
+    if chosen.changes or not logic.changes:
+        return ""
+    asked = [(f"--package {', '.join(packages)}", lambda change: change.package)] if packages else []
+    asked += [(f"--topic {', '.join(topics)}", lambda change: change.topic)] if topics else []
+    clauses = []
+    for option, name_of in asked:
+        names = sorted({name_of(change) or "?" for _, change in logic.changes})
+        rest = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+        clauses.append(f"{option}: nothing of it changed; what did is of {', '.join(names[:_MOST_NAMES])}{rest}")
+    return "; ".join(map(one_line, clauses))
 
 
 def summary(logic: Logic) -> str:

@@ -25,7 +25,8 @@ def page(template: Path, title: str, data: Mapping[str, Any]) -> str:
     """A page as text, from a template whose parts lie beside it or here.
 
     What comes from the workspace stands only in the title and in a JSON block that cannot be left, and the page's
-    script puts it into text nodes; the content security policy allows that script and the styles alone, by their hashes.
+    script puts it into text nodes; the content security policy allows that script and the styles by their hashes, and
+    nothing else.
     """
     text = _whole(template)
     values = {"policy": _policy(text), "title": html.escape(safe(printable(title))), "data": _block(data)}

@@ -2,7 +2,10 @@
 
 import json
 import re
+import shutil
+import subprocess
 from pathlib import Path
+from xml.etree import ElementTree
 
 import jsonschema
 import networkx
@@ -231,6 +234,30 @@ def test_what_is_hidden_is_not_said_to_be_gone():
 def test_qos_differs_by_what_it_says(old, new, why):
     before, now = (robot(driver=DRIVER.replace("rclcpp::SensorDataQoS()", qos)) for qos in (old, new))
     assert [change["why"] for change in json.loads(draw(now, "json", before))["changes"]] == ([why] if why else [])
+
+
+ODD = ("\\", "\\N", '\\"', '"]', "&amp;", "<b>x</b>", "#35;", "%%{init: {}}%%", "--> x", "{node}|[]();`", "漢字🤖")
+
+
+def test_graphviz_reads_names_as_they_are():
+    program = shutil.which("dot")
+    if program is None:
+        pytest.skip("no `dot`: install graphviz to test what it reads")
+    first, *_ = NOW.endpoints
+    names = [f"/{odd}" for odd in ODD]
+    graph = structs.replace(NOW, endpoints=tuple(structs.replace(first, topic=name, type="") for name in names))
+    read = subprocess.run([program, "-Tplain"], input=draw(graph, "dot"), capture_output=True, text=True, check=True)
+    assert read.stderr == ""
+    svg = subprocess.run([program, "-Tsvg"], input=draw(graph, "dot"), capture_output=True, text=True, check=True)
+    shown = {text.text for text in ElementTree.fromstring(svg.stdout).iter("{http://www.w3.org/2000/svg}text")}
+    assert set(names) <= shown
+
+
+def test_mermaid_names_hold_nothing_that_it_would_read():
+    for odd in (*ODD, "\x1b", "\u202e", "\udcff"):
+        text = escaped(odd)
+        assert not re.search(r"""["'`<>{}()\[\]|;%&\\#]""", re.sub(r"#\d+;", "", text))
+        assert "#27;" not in text and "#8238;" not in text
 
 
 @pytest.mark.parametrize("odd", ["\\", "\x1b[2J\x07", "\udcff", "\uffff", "\u202e", '</script>"\n', "\x00"])

@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 from itertools import pairwise
 
 import pytest
@@ -24,9 +23,6 @@ from rosimpact.impact.model.flow.graph import (
     Unresolved,
     Way,
 )
-
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-DRIVER_PROGRAM = shutil.which("chromedriver")
 
 NOW = robot()
 OTHER = DRIVER.replace("if (ready_) ", "").replace("rclcpp::SensorDataQoS()", "10").replace('"calibrate"', '"tune"')
@@ -72,33 +68,9 @@ def large() -> Graph:
     return Graph(nodes, tuple(ends), (), (), (), Coverage(len(ends), len(ends), 0, 300), root="large")
 
 
-@pytest.fixture(scope="module")
-def browser():
-    selenium = pytest.importorskip("selenium.webdriver", reason="selenium is not installed, see the `test` extra")
-    if not CHROMIUM or not DRIVER_PROGRAM:
-        pytest.skip("no browser: install chromium and chromium-driver to test the page")
-    options = selenium.ChromeOptions()
-    options.binary_location = CHROMIUM
-    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1400,900"):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = selenium.Chrome(options=options, service=selenium.ChromeService(DRIVER_PROGRAM))
-    yield driver
-    driver.quit()
-
-
 @pytest.fixture
-def page(browser, tmp_path):
-    def show(graph, base=None, fragment="", **asked):
-        file = tmp_path / "graph of ours.html"
-        file.write_text(draw(graph, "html", base, **asked), encoding="utf-8")
-        browser.get("about:blank")
-        browser.get_log("browser")
-        browser.get_log("performance")
-        browser.get(file.as_uri() + fragment)
-        return browser
-
-    yield show
+def page(browser, opened):
+    yield lambda graph, base=None, fragment="", **asked: opened(draw(graph, "html", base, **asked), fragment)
     assert browser.get_log("browser") == []
 
 
@@ -326,6 +298,17 @@ def test_the_layout_is_the_same_every_time(page):
         )
 
     assert places(page(large())) == places(page(large()))
+
+
+def test_paper_shows_the_whole_graph(page):
+    browser = page(large())
+    browser.execute_script("dispatchEvent(new Event('beforeprint'))")
+    room = browser.execute_script("return document.getElementById('drawing').viewBox.baseVal.width")
+    widest = browser.execute_script("return document.getElementById('world').getBBox().width")
+    assert room >= widest
+    assert browser.execute_script("return document.getElementById('world').getAttribute('transform')") is None
+    browser.execute_script("dispatchEvent(new Event('afterprint'))")
+    assert browser.execute_script("return document.getElementById('drawing').getAttribute('viewBox')") is None
 
 
 def test_an_empty_graph(page):

@@ -66,6 +66,22 @@ def typed(tmp_path, monkeypatch):
     return lambda *arguments: CliRunner().invoke(app, ["logic", *map(str, arguments), "--quiet"])
 
 
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (("--package", "bep"), "--package bep: nothing of it changed; what did is of beep"),
+        (("--topic", "beps"), "--topic beps: nothing of it changed; what did is of beeps"),
+        (("--topic", "beeps"), ""),
+    ],
+)
+def test_a_name_that_nothing_changed_of_is_said(tmp_path, typed, asked, said) -> None:
+    repository = history(tmp_path / "repo", beep(), beep(("True)", "True) and ready()")))
+    shown = typed(repository, *asked)
+    assert shown.exit_code == 0
+    assert said in shown.stderr
+    assert bool(said) == ("nothing of it changed" in shown.stderr)
+
+
 def test_formats(tmp_path, typed) -> None:
     repository = history(tmp_path / "repo", beep(), beep(("True)", "True) and ready()")))
     shown = typed(repository)

@@ -2,42 +2,14 @@
 
 import json
 import re
-import shutil
 
 import pytest
 from rosimpact.impact.report import html
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-DRIVER = shutil.which("chromedriver")
-
-
-@pytest.fixture(scope="module")
-def browser():
-    selenium = pytest.importorskip("selenium.webdriver", reason="selenium is not installed, see the `test` extra")
-    if not CHROMIUM or not DRIVER:
-        pytest.skip("no browser: install chromium and chromium-driver to test the page")
-    options = selenium.ChromeOptions()
-    options.binary_location = CHROMIUM
-    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1200,900"):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = selenium.Chrome(options=options, service=selenium.ChromeService(DRIVER))
-    yield driver
-    driver.quit()
-
 
 @pytest.fixture
-def page(browser, tmp_path):
-    def show(report, fragment=""):
-        file = tmp_path / "report of ours.html"
-        file.write_text(html.render(report), encoding="utf-8")
-        browser.get("about:blank")
-        browser.get_log("browser")
-        browser.get_log("performance")
-        browser.get(file.as_uri() + fragment)
-        return browser
-
-    return show
+def page(opened):
+    return lambda report, fragment="": opened(html.render(report), fragment)
 
 
 def texts(browser, selector):

@@ -18,11 +18,11 @@ def render(selection: Selection, base: Graph | None) -> str:
     found = [edge for edge in edges(graph, base) if edge.node in names]
     lines = ["digraph message_flow {", "  rankdir=LR;", "  node [fontname=Helvetica, fontsize=10];"]
     for node in sorted({edge.node for edge in found} | {node.id for node in graph.nodes}):
-        lines.append(f"  {quoted('n ' + node)} [shape=ellipse, label={quoted(names[node])}];")
+        lines.append(f"  {quoted('n ' + node)} [shape=ellipse, label={_label(names[node])}];")
     for kind, name in sorted({(edge.kind, edge.name) for edge in found}):
         types = sorted({t for edge in found if (edge.kind, edge.name) == (kind, name) for t in edge.types})
         label = "\n".join([name, *types])
-        lines.append(f"  {quoted(f'{kind} {name}')} [shape={_SHAPES[kind]}, style=rounded, label={quoted(label)}];")
+        lines.append(f"  {quoted(f'{kind} {name}')} [shape={_SHAPES[kind]}, style=rounded, label={_label(label)}];")
     lines.extend(_edge(edge) for edge in found)
     return "\n".join([*lines, "}"]) + "\n"
 
@@ -36,6 +36,11 @@ def _edge(edge: Edge) -> str:
         style += [f'color="{COLOURS[edge.mark]}"', "penwidth=2", f"tooltip={quoted(edge.mark + ' ' + edge.why)}"]
     tail = f" [{', '.join(style)}]" if style else ""
     return f"  {' -> '.join(ends if edge.outward else reversed(ends))}{tail};"
+
+
+def _label(text: str) -> str:
+    """A label: as a string, in which `&amp;` and the like would be one character."""
+    return quoted(text.replace("&", "&amp;"))
 
 
 def quoted(text: str) -> str:

@@ -466,6 +466,13 @@
   at("in").addEventListener("click", () => zoom(1.3));
   at("out").addEventListener("click", () => zoom(1 / 1.3));
   at("fit").addEventListener("click", () => fit(whole()));
+  // On paper the whole is shown, as large as the sheet allows.
+  addEventListener("beforeprint", () => {
+    stage.setAttribute("viewBox", `-10 -10 ${size.width + 20} ${size.height + 20}`);
+    stage.classList.remove("far", "farther");
+    world.removeAttribute("transform");
+  });
+  addEventListener("afterprint", () => { stage.removeAttribute("viewBox"); move(); });
   addEventListener("hashchange", () => { recall(); update(); });
   addEventListener("resize", () => { if (!chosen && !hits.length) start(); });
   addEventListener("keydown", (event) => {
