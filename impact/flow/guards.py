@@ -11,7 +11,7 @@ guards would then contradict each other: nothing but what stands in both is then
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from ..model.flow.graph import GuardAt
 from .guard_reading import Language, language_of, pieces_of, this_left_out
@@ -26,51 +26,41 @@ _Side = tuple[tuple[Piece, ...], ...]
 
 MILLISECONDS = 100
 _NOTHING: Mapping[str, str] = {}
-_NO_MEANINGS = (_NOTHING, _NOTHING)
 
 
-def compare(
-    old: Guards,
-    new: Guards,
-    renames: Mapping[str, str] = _NOTHING,
-    language: Language | None = None,
-    types: Mapping[str, str] = _NOTHING,
-    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
-    milliseconds: int = MILLISECONDS,
-) -> Kind:
-    """What happened to the guards of one statement, outermost first.
+class Reading(NamedTuple):
+    """How the names in two conditions are to be understood.
 
     renames: identifiers of the old revision that are called otherwise in the new one. language: as the guards' paths
     tell it when it is not given. types: of names as the new revision has them, as they are declared; they decide
     whether `n > 0` is `n >= 1` and `n != 0`. meanings: local variables of the old and of the new revision that are
     assigned once, with the expression they are assigned: `if (n)` after `n = v.size()` is `if (v.size())`; namespaces
     with what they are short for.
-    milliseconds: what each of the few questions to z3 may take, on any machine the same work; `changed` when that is
-    not enough.
+    milliseconds: what each of the few questions to z3 may take, on any machine the same work.
     """
-    return compare_ways((old,), (new,), renames, language, types, meanings, milliseconds)
+
+    renames: Mapping[str, str] = _NOTHING
+    language: Language | None = None
+    types: Mapping[str, str] = _NOTHING
+    meanings: tuple[Mapping[str, str], Mapping[str, str]] = (_NOTHING, _NOTHING)
+    milliseconds: int = MILLISECONDS
 
 
-def compare_ways(
-    old: Ways,
-    new: Ways,
-    renames: Mapping[str, str] = _NOTHING,
-    language: Language | None = None,
-    types: Mapping[str, str] = _NOTHING,
-    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
-    milliseconds: int = MILLISECONDS,
-) -> Kind:
+AS_WRITTEN = Reading()
+
+
+def compare(old: Guards, new: Guards, reading: Reading = AS_WRITTEN) -> Kind:
+    """What happened to the guards of one statement, outermost first; `changed` when the time was not enough."""
+    return compare_ways((old,), (new,), reading)
+
+
+def compare_ways(old: Ways, new: Ways, reading: Reading = AS_WRITTEN) -> Kind:
     """As compare(), for a statement that several ways lead to: it runs when all guards of one of them hold."""
-    if not renames and meanings[0] == meanings[1] and _written(old) == _written(new):
+    if not reading.renames and reading.meanings[0] == reading.meanings[1] and _written(old) == _written(new):
         return "equivalent"
-    language = language or language_of((*old, *new))
-    before, after = _sides(old, new, renames, language, meanings)
+    before, after, solver = _sides(old, new, reading)
     if _said(before) == _said(after):
         return "equivalent"
-
-    def solver() -> Solver:
-        return Solver(language, types, milliseconds)
-
     try:
         forward, backward, possible = solver().relation(_any_way(before), _any_way(after))
         if not possible and not all(_is_settled(side, solver) for side in (before, after)):
@@ -84,38 +74,21 @@ def compare_ways(
     return "widened" if backward and forward is False else "changed"
 
 
-def explain(
-    old: Guards,
-    new: Guards,
-    renames: Mapping[str, str] = _NOTHING,
-    language: Language | None = None,
-    types: Mapping[str, str] = _NOTHING,
-    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
-    milliseconds: int = MILLISECONDS,
-) -> str:
+def explain(old: Guards, new: Guards, reading: Reading = AS_WRITTEN) -> str:
     """One clause that tells people what was added or removed, with code in backticks: "only when `a` too", "no longer
-    asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same. Arguments as of compare()."""
-    return explain_ways((old,), (new,), renames, language, types, meanings, milliseconds)
+    asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same."""
+    return explain_ways((old,), (new,), reading)
 
 
-def explain_ways(
-    old: Ways,
-    new: Ways,
-    renames: Mapping[str, str] = _NOTHING,
-    language: Language | None = None,
-    types: Mapping[str, str] = _NOTHING,
-    meanings: tuple[Mapping[str, str], Mapping[str, str]] = _NO_MEANINGS,
-    milliseconds: int = MILLISECONDS,
-) -> str:
+def explain_ways(old: Ways, new: Ways, reading: Reading = AS_WRITTEN) -> str:
     """As explain(), for a statement that several ways lead to."""
-    if compare_ways(old, new, renames, language, types, meanings, milliseconds) == "equivalent":
+    if compare_ways(old, new, reading) == "equivalent":
         return ""
-    language = language or language_of((*old, *new))
-    before, after = _sides(old, new, renames, language, meanings)
+    before, after, solver = _sides(old, new, reading)
 
     def asked(pieces: Sequence[Piece], piece: Piece) -> bool:
         try:
-            forward, _, possible = Solver(language, types, milliseconds).relation(piece.term, _all_of(pieces))
+            forward, _, possible = solver().relation(piece.term, _all_of(pieces))
         except Undecided:
             return False
         return forward is True and possible
@@ -138,18 +111,14 @@ def _written(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
     return frozenset(tuple((guard.kind, guard.text) for guard in way) for way in ways)
 
 
-def _sides(
-    old: Ways,
-    new: Ways,
-    renames: Mapping[str, str],
-    language: Language,
-    meanings: tuple[Mapping[str, str], Mapping[str, str]],
-) -> tuple[_Side, _Side]:
-    before = tuple(pieces_of(way, language, renames, meanings[0]) for way in old)
-    after = tuple(pieces_of(way, language, _NOTHING, meanings[1]) for way in new)
+def _sides(old: Ways, new: Ways, reading: Reading) -> tuple[_Side, _Side, Callable[[], Solver]]:
+    """Both sides as terms, and what makes a solver for them."""
+    language = reading.language or language_of((*old, *new))
+    before = tuple(pieces_of(way, language, reading.renames, reading.meanings[0]) for way in old)
+    after = tuple(pieces_of(way, language, _NOTHING, reading.meanings[1]) for way in new)
     if language == "cpp":
         before, after = this_left_out((before, after))
-    return before, after
+    return before, after, lambda: Solver(language, reading.types, reading.milliseconds)
 
 
 def _said(side: _Side) -> frozenset[frozenset[Term]]:

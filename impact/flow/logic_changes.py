@@ -257,16 +257,17 @@ def _verdict(old: Sequence[Path], new: Sequence[Path], names: Names, language: s
     speech: guards.Language = "python" if language == "python" else "cpp"
     meant_old, meant_new = _guards(old, meant=True), _guards(new, meant=True)
     written_old, written_new = _guards(old), _guards(new)
-    kind = guards.compare_ways(meant_old, meant_new, names.words, speech)
+    reading = guards.Reading(names.words, speech)
+    kind = guards.compare_ways(meant_old, meant_new, reading)
     told = (meant_old, meant_new)
     if (meant_old, meant_new) != (written_old, written_new) and kind != "equivalent":
-        written = guards.compare_ways(written_old, written_new, names.words, speech)
+        written = guards.compare_ways(written_old, written_new, reading)
         if written == "equivalent" and kind == "changed" and _about(meant_old, names) == _about(meant_new, SAME):
             return "equivalent", ""  # what is asked is called otherwise, of the same things
         if written != "equivalent":
             told = (written_old, written_new)
             kind = written if kind == "changed" else kind
-    return kind, guards.explain_ways(*told, names.words, speech) if kind != "equivalent" else ""
+    return kind, guards.explain_ways(*told, reading) if kind != "equivalent" else ""
 
 
 def _guards(ways: Iterable[Path], meant: bool = False) -> Ways:

@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import pytest
-from rosimpact.impact.flow.guards import compare, compare_ways, explain, explain_ways, impossible
+from rosimpact.impact.flow.guards import Reading, compare, compare_ways, explain, explain_ways, impossible
 from rosimpact.impact.model.flow.graph import GuardAt
 
 
@@ -167,22 +167,22 @@ def test_python(old, new, kind):
     ],
 )
 def test_types_decide(old, new, type_, kind):
-    assert compare(cpp(f"if: {old}"), cpp(f"if: {new}"), types={"x": type_}) == kind
+    assert compare(cpp(f"if: {old}"), cpp(f"if: {new}"), Reading(types={"x": type_})) == kind
 
 
 def test_renamed_variables():
     old, new = cpp("if: state_.ok_ && ns::Kind::A == kind"), cpp("if: state_.fine_ && kind == ns::Sort::A")
     assert compare(old, new) == "changed"
-    assert compare(old, new, {"ok_": "fine_", "Kind": "Sort"}) == "equivalent"
-    assert compare(cpp("if: a && !b"), cpp("if: b && !a"), {"a": "b", "b": "a"}) == "equivalent"
+    assert compare(old, new, Reading({"ok_": "fine_", "Kind": "Sort"})) == "equivalent"
+    assert compare(cpp("if: a && !b"), cpp("if: b && !a"), Reading({"a": "b", "b": "a"})) == "equivalent"
 
 
 def test_local_variables_and_namespaces_mean_something():
     old, new = cpp("if: n > 0"), cpp("if: !cloud.points.empty()")
-    assert compare(old, new, meanings=({"n": "cloud.points.size()"}, {})) == "equivalent"
+    assert compare(old, new, Reading(meanings=({"n": "cloud.points.size()"}, {}))) == "equivalent"
     old, new = cpp("if: e == enc::MONO8"), cpp("if: e == sensor_msgs::image_encodings::MONO8")
-    assert compare(old, new, meanings=({"enc": "sensor_msgs::image_encodings"}, {})) == "equivalent"
-    assert compare(old, old, meanings=({"e": "a.encoding"}, {"e": "b.encoding"})) == "changed"
+    assert compare(old, new, Reading(meanings=({"enc": "sensor_msgs::image_encodings"}, {}))) == "equivalent"
+    assert compare(old, old, Reading(meanings=({"e": "a.encoding"}, {"e": "b.encoding"}))) == "changed"
 
 
 def test_ways():
@@ -213,7 +213,7 @@ def test_too_much_work_is_changed():
     alone = [f"!p{i}_{hole} || !p{j}_{hole}" for hole in holes for j in birds for i in range(j)]
     pigeons = cpp(*(f"if: {text}" for text in sit + alone))
     assert (
-        compare(cpp("if: a", *(f"{guard.kind}: {guard.text}" for guard in pigeons)), pigeons, milliseconds=5)
+        compare(cpp("if: a", *(f"{guard.kind}: {guard.text}" for guard in pigeons)), pigeons, Reading(milliseconds=5))
         == "changed"
     )
 
