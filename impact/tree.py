@@ -894,6 +894,8 @@ def _open_repository(place: str):
     try:
         found = pygit2.discover_repository(place)
         if found is None:
+            if not os.path.exists(place):
+                raise TreeError(f"`{shown(place)}` does not exist; give a git repository, or a folder in one")
             raise TreeError(f"`{shown(place)}` is not in a git repository; give one, or leave the revision out")
         return pygit2.Repository(found)
     except (pygit2.GitError, KeyError, ValueError, OSError) as error:

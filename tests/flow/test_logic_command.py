@@ -114,6 +114,7 @@ def test_where_there_is_no_repository(tmp_path, typed) -> None:
     shown = typed(tmp_path)
     assert shown.exit_code == 2
     assert "not in a git repository" in shown.output
+    assert "does not exist" in typed(tmp_path / "nowhere").output
 
 
 def test_a_folder_of_a_repository(tmp_path) -> None:
