@@ -7,8 +7,9 @@ import contextlib
 import io
 import re
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 
-from ...facts.flow import Expr
+from ...facts.flow import Call, Expr
 from .code import Code, Fn, Variable, around, tail
 
 # Functions that give argv without what is ROS's; those of C++ put it into their third argument or return it.
@@ -49,15 +50,24 @@ class CommandLine:
         if fn.name == "main" and [parameter.name for parameter in fn.facts.parameters[1:2]] == [value.text]:
             return 0
         variable = self.code.identity(value.text, fn)
-        for call in fn.facts.calls:
-            if tail(call.callee) in _COPIES and len(call.arguments) == 3 and call.arguments[2] == value:
-                return 0
+        if any(call.arguments[2] == value for call in self._copies.get(id(fn), ())):
+            return 0
         for writer, each in self.code.writes.get(variable, ()):
             if each.value != value and each.operator == "=":
                 begun = self.start(each.value, writer, depth + 1)
                 if begun is not None:
                     return begun
         return None
+
+    @cached_property
+    def _copies(self) -> dict[int, list[Call]]:
+        """Calls that put a copy of argv into their third argument, by the id() of the function they stand in."""
+        found: dict[int, list[Call]] = {}
+        for fn in self.code.functions:
+            for call in fn.facts.calls:
+                if len(call.arguments) == 3 and tail(call.callee) in _COPIES:
+                    found.setdefault(id(fn), []).append(call)
+        return found
 
     def places(self, container: Expr, index: Expr, fn: Fn) -> range | None:
         """The places of argv that an element may be of, None for what is no element of it; open ended where the index

@@ -19,13 +19,23 @@ class Source(NamedTuple):
 
 
 class Fn:
-    """A function with the file it stands in."""
+    """A function with the file it stands in. place: tells it from all others. heads, identities, targets and made are
+    what Code found out about it: variables by the head of a path and by the whole path, functions by a callee, and the
+    objects that it makes."""
 
-    __slots__ = ("assigned", "facts", "is_lambda", "locals", "name", "owner", "scope", "source")
+    __slots__ = (
+        "assigned", "facts", "heads", "identities", "is_lambda", "locals", "made", "name", "owner", "place", "scope",
+        "source", "targets",
+    )  # fmt: skip
 
     def __init__(self, source: Source, facts: Function):
         self.source, self.facts = source, facts
         self.name = facts.name
+        self.place = f"{source.path}:{facts.line}:{facts.name}"
+        self.heads: dict[str | tuple[str, ...], Variable] = {}
+        self.identities: dict[str, Variable] = {}
+        self.targets: dict[str, list[Fn]] = {}
+        self.made: list[tuple[str, tuple[Expr, ...], int]] | None = None
         # Namespaces and class around the function, joined as its language does.
         self.scope = around(facts.name)
         self.owner = parts_of(facts.owner)
@@ -74,6 +84,12 @@ def parts_of(name: str) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=100_000)
+def _pieces(path: str) -> tuple[str, ...]:
+    """The parts of a path, elements left out."""
+    return tuple(part for part in path.replace("[]", "").split(".") if part)
+
+
+@lru_cache(maxsize=100_000)
 def tail(name: str) -> str:
     """The last part of a path or qualified name."""
     return parts_of(name)[-1] if name else ""
@@ -90,6 +106,7 @@ class Code:
     def __init__(self, sources: Iterable[Source]):
         self.sources = list(sources)
         self.functions: list[Fn] = []
+        self._first_in: dict[str, Fn] = {}
         self.by_tail: dict[str, list[Fn]] = {}
         self.by_name: dict[tuple[str, str], Fn] = {}
         self.classes: dict[str, list[Cls]] = {}
@@ -116,6 +133,7 @@ class Code:
             for facts in source.facts.functions:
                 fn = Fn(source, facts)
                 self.functions.append(fn)
+                self._first_in.setdefault(source.path, fn)
                 self.by_tail.setdefault(tail(facts.name), []).append(fn)
                 self.by_name.setdefault((source.path, facts.name), fn)
         self._bases: dict[str, list[Cls]] = {}
@@ -123,13 +141,23 @@ class Code:
         self._owner_of: dict[int, Cls | None] = {}
         self._methods_of: dict[tuple[str, str, str], list[Fn]] = {}
         self._overrides: dict[tuple[str, str], list[Fn]] = {}
-        self._targets: dict[tuple[str, int], list[Fn]] = {}
-        self._identities: dict[tuple[str, int], Variable] = {}
+        self._functions_of: dict[int, list[Fn]] = {}
+        self._members: dict[int, frozenset[str]] = {}
+        self._member_types: dict[tuple[str, str], tuple[str, Source, str] | None] = {}
+        self._meant: dict[tuple[str, str, str], str] = {}
+        self._meant_types: dict[tuple[str, str, str], Type] = {}
 
     # Names
 
     def meant(self, name: str, source: Source, scope: str = "") -> str:
         """A name with aliases of its file (and, in C++, its package's headers) resolved, at most five times over."""
+        key = (name, source.path, scope)
+        known = self._meant.get(key)
+        if known is None:
+            known = self._meant[key] = self._find_meant(name, source, scope)
+        return known
+
+    def _find_meant(self, name: str, source: Source, scope: str) -> str:
         for _ in range(5):
             head, separator, rest = _first(name)
             alias = self._alias(head, source, scope)
@@ -147,6 +175,13 @@ class Code:
 
     def meant_type(self, text: str, source: Source, scope: str = "") -> Type:
         """A type as written, aliases resolved; those that stand for types with template arguments too."""
+        key = (text, source.path, scope)
+        known = self._meant_types.get(key)
+        if known is None:
+            known = self._meant_types[key] = self._find_meant_type(text, source, scope)
+        return known
+
+    def _find_meant_type(self, text: str, source: Source, scope: str) -> Type:
         kind = parsed(text)
         for _ in range(5):
             head, _, rest = _first(kind.name)
@@ -286,14 +321,26 @@ class Code:
         if known is None:
             known = []
             for one in self.bases(cls):
-                known = [fn for fn in self.by_tail[name] if self._is_of(fn, one)]
+                known = self._bodies(one, name)
                 if known:
                     break
             self._methods_of[key] = known
         return known
 
-    def _is_of(self, fn: Fn, cls: Cls) -> bool:
-        return bool(fn.owner) and not fn.is_lambda and self._owned(fn, cls, parts_of(cls.name))
+    def _bodies(self, cls: Cls, name: str) -> list[Fn]:
+        """Bodies of a method of one class."""
+        wanted = parts_of(cls.name)
+        candidates = self._methods.get((wanted[-1], name), ()) if wanted else ()
+        return [fn for fn in candidates if self._owned(fn, cls, wanted)]
+
+    @cached_property
+    def _methods(self) -> dict[tuple[str, str], list[Fn]]:
+        """Methods by the last parts of the names of their class and of themselves."""
+        found: dict[tuple[str, str], list[Fn]] = {}
+        for fn in self.functions:
+            if fn.owner and not fn.is_lambda:
+                found.setdefault((fn.owner[-1], tail(fn.name)), []).append(fn)
+        return found
 
     def overrides(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method in classes that derive from a class."""
@@ -303,7 +350,7 @@ class Code:
         key = (cls.name, name)
         known = self._overrides.get(key)
         if known is None:
-            known = [fn for one in derived for fn in self.by_tail[name] if self._is_of(fn, one)]
+            known = [fn for one in derived for fn in self._bodies(one, name)]
             self._overrides[key] = known
         return known
 
@@ -326,51 +373,66 @@ class Code:
 
     # Variables
 
-    def variable(self, path: str, fn: Fn) -> tuple[Variable, list[str]]:
+    def variable(self, path: str, fn: Fn) -> tuple[Variable, tuple[str, ...]]:
         """What the head of a path means in a function, and the parts that follow it."""
-        parts = [part for part in path.replace("[]", "").split(".") if part]
+        parts = _pieces(path)
         if not parts:
-            return Variable("local", _place(fn), path), []
-        head, rest = parts[0], parts[1:]
+            return Variable("local", fn.place, path), ()
+        head = parts[0]
         if head == "this":
-            if not rest:
-                return Variable("this", fn.facts.owner, "this"), []
-            return self.member(fn, rest[0]), rest[1:]
+            if len(parts) == 1:
+                return Variable("this", fn.facts.owner, "this"), ()
+            known = fn.heads.get(parts[:2])
+            if known is None:
+                known = fn.heads[parts[:2]] = self.member(fn, parts[1])
+            return known, parts[2:]
+        known = fn.heads.get(head)
+        if known is None:
+            known = fn.heads[head] = self._head(head, fn)
+        return known, parts[1:]
+
+    def _head(self, head: str, fn: Fn) -> Variable:
         for one in self.chain(fn):
             if head in one.locals:
-                return Variable("local", _place(one), head), rest
+                return Variable("local", one.place, head)
         if fn.source.facts.language == "cpp" and fn.facts.owner and "::" not in head:
             owner = self.owner_of(fn)
             if owner is not None:
                 for cls in self.bases(owner):
-                    if any(member.name == head for member in cls.facts.members):
-                        return Variable("member", cls.name, head), rest
+                    if head in self.members(cls):
+                        return Variable("member", cls.name, head)
             elif head.endswith("_"):
-                return Variable("member", fn.facts.owner, head), rest
-        return Variable("global", fn.source.path, head), rest
+                return Variable("member", fn.facts.owner, head)
+        return Variable("global", fn.source.path, head)
+
+    def members(self, cls: Cls) -> frozenset[str]:
+        """Names of the members that a class declares."""
+        known = self._members.get(id(cls.facts))
+        if known is None:
+            known = self._members[id(cls.facts)] = frozenset(member.name for member in cls.facts.members)
+        return known
 
     def member(self, fn: Fn, name: str) -> Variable:
         """The member of a function's class, under the name of the class that declares it."""
         owner = self.owner_of(fn)
         if owner is None:
             return Variable("member", fn.facts.owner, name)
-        declaring = [cls for cls in self.bases(owner) if any(member.name == name for member in cls.facts.members)]
+        declaring = [cls for cls in self.bases(owner) if name in self.members(cls)]
         return Variable("member", (declaring[-1] if declaring else owner).name, name)
 
     def identity(self, path: str, fn: Fn, depth: int = 0) -> Variable:
         """The variable that a whole path means: that of its last part, in the class of what stands before it.
 
         depth: how far types are followed already; from 5 on only declared ones count."""
-        key = (path, id(fn))
-        if depth == 0 and key in self._identities:
-            return self._identities[key]
+        if depth == 0 and path in fn.identities:
+            return fn.identities[path]
         found, rest = self.variable(path, fn)
         for part in rest:
             kind = self.type_of_variable(found, fn, depth)
             cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
             found = Variable("member", cls.name if cls else f"{found.owner}.{found.name}", part)
         if depth == 0:
-            self._identities[key] = found
+            fn.identities[path] = found
         return found
 
     def functions_of_class(self, name: str) -> list[Fn]:
@@ -379,8 +441,12 @@ class Code:
 
     def functions_of(self, cls: Cls) -> list[Fn]:
         """The functions of one class, lambdas in them included."""
-        wanted = parts_of(cls.name)
-        return [fn for fn in self._by_owner.get(wanted[-1], ()) if self._owned(fn, cls, wanted)]
+        known = self._functions_of.get(id(cls.facts))
+        if known is None:
+            wanted = parts_of(cls.name)
+            known = [fn for fn in self._by_owner.get(wanted[-1], ()) if self._owned(fn, cls, wanted)]
+            self._functions_of[id(cls.facts)] = known
+        return known
 
     def _owned(self, fn: Fn, cls: Cls, wanted: tuple[str, ...]) -> bool:
         own = fn.owner
@@ -419,14 +485,13 @@ class Code:
     def declared_type(self, variable: Variable, fn: Fn) -> tuple[str, Source, str]:
         """The type a variable is declared with, as written, and the file and scope in which to read it."""
         if variable.kind == "member":
-            for cls in self.classes.get(tail(variable.owner), ()):
-                if cls.name == variable.owner:
-                    for member in cls.facts.members:
-                        if member.name == variable.name and member.type:
-                            return member.type, cls.source, cls.name
-        elif variable.kind == "local":
+            key = (variable.owner, variable.name)
+            if key not in self._member_types:
+                self._member_types[key] = self._member_type(*key)
+            return self._member_types[key] or ("", fn.source, fn.scope)
+        if variable.kind == "local":
             for one in self.chain(fn):
-                if _place(one) == variable.owner:
+                if one.place == variable.owner:
                     for parameter in one.facts.parameters:
                         if parameter.name == variable.name and parameter.type:
                             return parameter.type, one.source, one.name
@@ -457,9 +522,17 @@ class Code:
         else:
             return
         for member, source in rows:
-            holder = next((f for f in self.functions if f.source is source), fn)
+            holder = self._first_in.get(source.path, fn)
             if member.value is not None:
                 yield member.value, holder
+
+    def _member_type(self, owner: str, name: str) -> tuple[str, Source, str] | None:
+        for cls in self.classes.get(tail(owner), ()):
+            if cls.name == owner:
+                for member in cls.facts.members:
+                    if member.name == name and member.type:
+                        return member.type, cls.source, cls.name
+        return None
 
     def type_of_variable(self, variable: Variable, fn: Fn, depth: int = 0) -> Type:
         """The type of a variable, also where `auto` or Python leave it to what it is made from."""
@@ -512,12 +585,11 @@ class Code:
 
     def targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
         """The functions of the code that a call may reach; none when it leaves the code or cannot be told."""
-        key = (callee, id(fn))
-        known = self._targets.get(key)
+        known = fn.targets.get(callee)
         if known is None:
             known = self._find_targets(callee, fn, depth)
             if depth == 0:
-                self._targets[key] = known
+                fn.targets[callee] = known
         return known
 
     def _find_targets(self, callee: str, fn: Fn, depth: int) -> list[Fn]:
@@ -527,7 +599,7 @@ class Code:
             return []
         head = callee.rpartition(".")[0] if "." in callee else ""
         if "." in callee:
-            return self._methods(head, last, fn, depth)
+            return self._called_methods(head, last, fn, depth)
         if "::" in callee:
             meant = self.meant(callee, fn.source, fn.scope)
             cls = self.class_of(around(meant), fn.source, fn.scope)
@@ -552,7 +624,7 @@ class Code:
             return self.imported(self.meant(last, fn.source), fn.source)
         return self._nearest([f for f in candidates or () if not f.facts.owner and f.name], fn)
 
-    def _methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
+    def _called_methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
         if receiver in ("this", "super()", "super"):
             owner = self.owner_of(fn)
             if owner is None:
@@ -674,8 +746,14 @@ class Code:
         return found
 
 
-def made_in(fn: Fn, code: Code) -> Iterator[tuple[str, tuple[Expr, ...], int]]:
+def made_in(fn: Fn, code: Code) -> list[tuple[str, tuple[Expr, ...], int]]:
     """Objects that a function makes: type as meant (template arguments kept), arguments, line."""
+    if fn.made is None:
+        fn.made = list(_made_in(fn, code))
+    return fn.made
+
+
+def _made_in(fn: Fn, code: Code) -> Iterator[tuple[str, tuple[Expr, ...], int]]:
     for call in fn.facts.calls:
         last = tail(call.callee)
         if last in ("make_shared", "make_unique", "allocate_shared") and call.types:
@@ -708,10 +786,6 @@ def parameter_of(fn: Fn, name: str) -> tuple[int, Parameter] | None:
         if parameter.name == name:
             return place - offset, parameter
     return None
-
-
-def _place(fn: Fn) -> str:
-    return f"{fn.source.path}:{fn.facts.line}:{fn.name}"
 
 
 def _first(name: str) -> tuple[str, str, str]:

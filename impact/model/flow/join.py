@@ -278,8 +278,13 @@ class Join:
         libraries: dict[str, Node] = {}
         used: set[str] = set()
 
+        running_of: dict[int, list[Running]] = {}
+        for one in running:
+            for each in one.functions:
+                running_of.setdefault(each, []).append(one)
+
         def owners(use: Use) -> list[Owner]:
-            found: list[Owner] = [one for one in running if id(use.fn) in one.functions]
+            found: list[Owner] = [*running_of.get(id(use.fn), ())]
             if launch is not None:
                 return found
             if not found:

@@ -47,6 +47,7 @@ class Reach:
     def __init__(self, sites: Sites):
         self.sites, self.code = sites, sites.code
         self._edges: dict[int, tuple[list[Fn], list[Cls]]] = {}
+        self._held: dict[int, list[Cls]] = {}
         # Owners, as functions name them, of classes that are loaded by name, to the name of the class.
         self._loaded: dict[str, str] = {}
         for source in self.code.sources:
@@ -74,13 +75,7 @@ class Reach:
                         continue
                     names.add(one.name)
                     queue.extend(self.code.functions_of(one))
-                    for member in one.facts.members:
-                        if not member.type or _points(member.type):
-                            continue  # made elsewhere, or by this class with code that is followed
-                        kind = self.code.meant_type(member.type, one.source, one.name)
-                        inner = self.code.class_of(kind.name, one.source, one.name) if kind.name else None
-                        if inner is not None:
-                            made.append(inner)
+                    made.extend(self.held(one))
             if not queue:
                 break
             fn = queue.pop()
@@ -94,6 +89,20 @@ class Reach:
             queue.extend(further)
             made.extend(cls for cls in objects if cls.name not in names)
         return functions, names
+
+    def held(self, cls: Cls) -> list[Cls]:
+        """Classes of the members that objects of a class hold."""
+        known = self._held.get(id(cls.facts))
+        if known is None:
+            known = self._held[id(cls.facts)] = []
+            for member in cls.facts.members:
+                if not member.type or _points(member.type):
+                    continue  # made elsewhere, or by this class with code that is followed
+                kind = self.code.meant_type(member.type, cls.source, cls.name)
+                inner = self.code.class_of(kind.name, cls.source, cls.name) if kind.name else None
+                if inner is not None:
+                    known.append(inner)
+        return known
 
     def edges(self, fn: Fn) -> tuple[list[Fn], list[Cls]]:
         """Functions that a function may lead to, and classes of objects that it makes."""

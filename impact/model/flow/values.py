@@ -164,7 +164,8 @@ class Values:
                 if each.value.kind == "list":
                     yield from self._elements(each.value, writer, each.line, (*seen, variable))
                     return
-            pushed = [call for call in fn.facts.calls if call.callee in (f"{value.text}.{put}" for put in _PUT)]
+            puts = {f"{value.text}.{put}" for put in _PUT}
+            pushed = [call for call in fn.facts.calls if call.callee in puts]
             if pushed and variable not in seen:
                 for call in pushed:
                     for argument in call.arguments[:1]:

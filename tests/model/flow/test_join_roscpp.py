@@ -427,3 +427,12 @@ def test_handles_that_are_passed_on(handles, topic):
     """
     found = graph({"p/node.cpp": main % handles.replace("Light", "shop::Light")}, 1)
     assert {topic for _, topic, _ in ends(found, "publisher")} == {topic or "?"}
+
+
+def test_a_class_without_a_name_may_derive_from_another():
+    found = graph({"p/a.cpp": """
+        struct Base { virtual void go(); ros::Publisher p; };
+        struct : Base { void go() override { p.publish(1); } } one;
+        int main() { ros::NodeHandle n; Base b; b.p = n.advertise<std_msgs::String>("a", 1); b.go(); }
+    """}, 1)  # fmt: skip
+    assert [(one.path, one.line) for one in found.publishes] == [("p/a.cpp", 3)]
