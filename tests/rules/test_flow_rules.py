@@ -154,6 +154,11 @@ ROWS = {
              "self.client = self.create_client(GetMap, 'chart')"),
         ("quay/crane.py", "input()", "'far_away'"),
     ),
+    "a server that whoever starts it may put into the client's namespace": Row(
+        "unmatched-client",
+        quay("self.create_service(GetMap, 'chart', print)", "self.client = self.create_client(GetMap, '/port/chart')"),
+        ("quay/crane.py", "'chart'", "'/chart'"),
+    ),
     "services whose type says nothing": Row(
         "unmatched-client",
         quay("self.create_service(Trigger, 'port/start', print)\nself.client = self.create_client(Trigger, 'start')",
@@ -174,6 +179,11 @@ ROWS = {
              "namespace quay {\nHold::Hold(const rclcpp::NodeOptions & options) : Node(\"hold\", options) {\n"
              '  full_ = create_publisher<std_msgs::msg::Empty>("full", 1);\n}\n}\n'),
         ("include/quay/hold.hpp", '#include "far/tool.hpp"', ""),
+    ),
+    "a name that goes by another": Row(
+        "dead-remap",
+        quay(TALKS, LISTENS, REMAP.replace("heading", "course/compressed")),
+        ("launch/quay.launch.xml", "course/compressed", "course/far"),
     ),
     "a program that loads a nodelet": Row(
         "unknown-parameter",
@@ -237,6 +247,21 @@ def test_what_is_left_alone(row: Row, tmp_path: Path):
     spoilt = {**row.files, f"quay/{path}": row.files[f"quay/{path}"].replace(old, new)}
     assert spoilt != row.files
     assert said(written(tmp_path / "b", spoilt), row.rule, tmp_path / "cache") == {row.told}
+
+
+def test_parameters_that_one_line_loads_are_told_together(tmp_path: Path):
+    source = (
+        'int main(int c, char** v) {\n  ros::init(c, v, "chandler");\n  ros::NodeHandle pnh("~");\n  ros::spin();\n}\n'
+    )
+    launch = (
+        '<launch>\n  <node pkg="quay" type="chandler" name="chandler">\n'
+        '    <rosparam file="$(find quay)/config/quay.yaml"/>\n  </node>\n</launch>\n'
+    )
+    files = {**chandler(source, launch), "quay/config/quay.yaml": "rope: 3\nsail: 2\nstore: {tar: 1}\n"}
+    report = check(written(tmp_path / "ws", files), OPTIONS._replace(cache=tmp_path / "cache"))
+    told = [(f.line, f.message) for f in report.findings if f.rule == "unknown-parameter"]
+    assert [line for line, _ in told] == [3]
+    assert told[0][1].endswith("and 2 more that this line loads")
 
 
 RENAMED = {

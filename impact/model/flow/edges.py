@@ -83,7 +83,7 @@ class Flow:
         node = self.nodes.get(one.node)
         runs = node is not None and node.kind in _RUNNING and (node.line or node.kind != "executable")
         if node is not None and node.kind == "plugin":
-            runs = one.written.startswith("/") and one.how == "literal"
+            runs = begins(one, "/") and one.how == "literal"
         alone = (one.node, one.role, one.path, one.line, one.written) in self._alone
         return bool(runs and one.topic and one.how in _SURE and alone)
 
@@ -219,6 +219,11 @@ def _kind(role: str) -> str:
 
 def _place(endpoint: Endpoint) -> tuple[str, int]:
     return endpoint.path, endpoint.line
+
+
+def begins(endpoint: Endpoint, with_: str) -> bool:
+    """Whether the code writes an endpoint's name out, and begins it with this: `/` or `~`."""
+    return endpoint.written.startswith(f'"{with_}')
 
 
 def said(node: Node) -> str:

@@ -124,6 +124,13 @@ def interface_of(name: str, packages=None) -> str:
     """
     kind = parsed(name)
     parts = [part for part in _SUFFIXES.sub("", kind.name).replace("::", ".").split(".") if part]
+    if len(parts) > 3 and parts[-2] == "Impl":
+        # What an action sends by itself: https://design.ros2.org/articles/actions.html, "Topics".
+        if parts[-1] == "GoalStatusMessage":
+            return "action_msgs/GoalStatusArray"
+        if parts[-1] == "FeedbackMessage":
+            action = interface_of("::".join(parts[:-2]), packages)
+            return action and f"{action}_FeedbackMessage"
     if parts and parts[-1] in ("Request", "Response", "Goal", "Result", "Feedback", "Impl", *_INNER) and len(parts) > 2:
         parts = parts[:-1]
     if parts and parts[-1] not in _MESSAGE_ENDINGS:

@@ -2,7 +2,8 @@
 
 What it does
     Reports remappings of launch files whose old name is none that the node's code uses: no topic, service, action or,
-    in ROS 1, parameter, and no namespace of them. All names of the node have to be known.
+    in ROS 1, parameter, no namespace of them, and nothing that goes by one of them (`image/compressed`, `move/goal`).
+    All names of the node have to be known.
 
 Why it breaks
     The remapping does nothing, and nothing says so: the node goes on under the name that was to be changed.
@@ -32,6 +33,13 @@ from .given import given
 
 _COMMON = frozenset(("/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/diagnostics"))
 
+# What stands below a name and goes by it: transports, calibrations, the topics of an action, reconfiguration.
+_BELOW = frozenset(
+    ("compressed", "compressedDepth", "theora", "zstd", "ffmpeg", "raw", "draco", "zlib", "cloudini", "camera_info",
+     "goal", "cancel", "status", "feedback", "result", "_action", "set_parameters", "parameter_updates",
+     "parameter_descriptions")
+)  # fmt: skip
+
 
 @rule(severity="warning", preview=True, flow=True)
 def dead_remap(workspace: Workspace):
@@ -58,7 +66,12 @@ def _lives(start: Start, renamed: Renamed, ros: int) -> bool:
     if ros == 1 and (start.hidden_parameters or renamed.old.rpartition("/")[2] in _last_parts(start.parameters)):
         return True
     old = renamed.old.rstrip("/")
-    return any(name == old or name.startswith(f"{old}/") or old.startswith(f"{name}/") for name in start.names)
+    return any(name == old or name.startswith(f"{old}/") or _is_below(old, name) for name in start.names)
+
+
+def _is_below(old: str, name: str) -> bool:
+    """Whether a name is one that goes by another: `image/compressed`, `move/goal`."""
+    return old.startswith(f"{name}/") and old[len(name) + 1 :].partition("/")[0] in _BELOW
 
 
 def _last_parts(names: tuple[str, ...]) -> set[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...model.flow.edges import Sure, whole_flow
+from ...model.flow.edges import Sure, begins, whole_flow
 from ...model.workspace import Workspace
 
 _SIDES = {"publisher": "subscriber", "subscriber": "publisher"}
@@ -30,7 +30,7 @@ def one_sided(workspace: Workspace, role: str) -> Iterator[Sure]:
         type_ = flow.type_of(endpoint)
         if type_.partition("/")[0] not in workspace.interface_names or not met.isdisjoint((type_, "", "*")):
             continue
-        private = endpoint.written.startswith("~") or endpoint.topic.startswith(f"{one.node.name}/")
+        private = begins(endpoint, "~") or endpoint.topic.startswith(f"{one.node.name}/")
         place = (endpoint.path, endpoint.line)
         if endpoint.implied or private or not told.isdisjoint((endpoint.topic, place)):
             continue

@@ -40,19 +40,26 @@ _COMMON_HEADS = ("qos_overrides", "bond", "diagnostic_updater", "actionlib", "li
 
 @rule(severity="note", preview=True, flow=True)
 def unknown_parameter(workspace: Workspace):
+    useless: dict[tuple[str, int], list[tuple[str, Start]]] = {}
     for (path, line, name), rows in given(workspace, lambda start: start.given, lambda each: each.name):
         if any(_asks(start, name) for start, _ in rows):
             continue
         start, _ = rows[0]
         near = [known for known in start.parameters if is_slip(_last(known), _last(name))]
-        yield Hit(
-            At(path, line),
-            name,
-            f"`{start.program.partition('/')[2]}` neither declares nor reads the parameter `{name}`",
-            f"write `{near[0]}`" if near else "remove it, or read it in the node",
-            start.package,
-            severity="warning" if near else "note",
-        )
+        if near:
+            cure = f"write `{near[0]}`"
+            yield Hit(At(path, line), name, _said(start, name), cure, start.package, severity="warning")
+        else:
+            useless.setdefault((path, line), []).append((name, start))
+    for (path, line), found in useless.items():
+        (name, start), others = found[0], len(found) - 1
+        more = f" and {others} more that this line loads" if others else ""
+        cure = "remove them, or read them in the node" if others else "remove it, or read it in the node"
+        yield Hit(At(path, line), name, _said(start, name) + more, cure, start.package)
+
+
+def _said(start: Start, name: str) -> str:
+    return f"`{start.program.partition('/')[2]}` neither declares nor reads the parameter `{name}`"
 
 
 def _asks(start: Start, name: str) -> bool:

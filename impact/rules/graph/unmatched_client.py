@@ -19,11 +19,11 @@ Use instead
 
 Not reported
     Clients of what nobody in the workspace serves under any name; services that every node of ROS has; servers whose
-    name is not known, or is that of a node which a launch file may rename.
+    name is not known, is that of a node which a launch file may rename, or may get the client's namespace when started.
 """
 
 from ...model.build import At
-from ...model.flow.edges import Flow, Sure, flows, said, unstarted
+from ...model.flow.edges import Flow, Sure, begins, flows, said, unstarted
 from ...model.flow.slips import is_in_namespace, is_slip
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
@@ -73,9 +73,17 @@ def _unmatched(flow: Flow):
         found: dict[str, Sure] = {}
         for giver in flow.sure(role):
             other = giver.endpoint
-            if other.type != one.type or (other.written.startswith("~") and not giver.node.started):
+            if other.type != one.type or (begins(other, "~") and not giver.node.started):
                 continue
-            if is_slip(one.topic, other.topic) or is_in_namespace(one.topic, other.topic):
+            if is_slip(one.topic, other.topic) or _lacks_namespace(taker, giver):
                 found.setdefault(other.topic, giver)
         if len(found) == 1:
             yield taker, next(iter(found.values()))
+
+
+def _lacks_namespace(taker: Sure, giver: Sure) -> bool:
+    """Whether one name is the other within a namespace that no one gives it who starts the server."""
+    one, other = taker.endpoint, giver.endpoint
+    if not is_in_namespace(one.topic, other.topic):
+        return False
+    return len(one.topic) < len(other.topic) or giver.node.started != "" or begins(other, "/")

@@ -221,3 +221,22 @@ def test_actions():
     assert ends(found, "action server") == {("demo/deliver", "/deliver", "nav2_msgs/NavigateToPose")}
     assert ends(found, "action client") == {("demo/deliver", "/wait", "nav2_msgs/Wait")}
     assert found.coverage.resolved == found.coverage.calls
+
+
+def test_what_an_action_sends_by_itself_has_types_of_its_own():
+    found = graph({"p/a.cpp": """
+        using Dock = nav2_msgs::action::DockRobot;
+        class A : public rclcpp::Node {
+         public:
+          A() : Node("a") {
+            one_ = create_subscription<Dock::Impl::FeedbackMessage>("dock/_action/feedback", 1, [](auto msg) {});
+            two_ = create_subscription<nav2_msgs::action::DockRobot::Impl::GoalStatusMessage>(
+              "dock/_action/status", 1, [](auto msg) {});
+          }
+        };
+        int main(int c, char** v) { rclcpp::init(c, v); rclcpp::spin(std::make_shared<A>()); }
+    """})  # fmt: skip
+    assert {(topic, type_) for _, topic, type_ in ends(found, "subscriber")} == {
+        ("/dock/_action/feedback", "nav2_msgs/DockRobot_FeedbackMessage"),
+        ("/dock/_action/status", "action_msgs/GoalStatusArray"),
+    }
