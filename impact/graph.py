@@ -10,12 +10,14 @@ from typing import NamedTuple
 from .check import CheckError, open_tree
 from .facts.store import Store
 from .model.flow.graph import Graph
+from .model.flow.started import launched
 from .model.flow.workspace import graph_of, linked
+from .model.workspace import Workspace
 from .tree import Tree, shown
 
 
 class Graphs(NamedTuple):
-    """The graph asked for, that of the base when there is one, and what to know about the base."""
+    """The graph asked for, that of the base when there is one, and what to know about both."""
 
     now: Graph
     before: Graph | None
@@ -36,28 +38,39 @@ def graphs(
     tree = open_tree(path, rev)
     with Store(cache) as store:
         file = _launch_file(path, tree, launch) if launch else ""
-        now = _graph(path, tree, store, rev, file, arguments, jobs, progress)
+        workspace = _linked(path, tree, store, jobs, progress)
+        now = graph_of(workspace, store, os.fspath(path), rev, file, arguments)
+        strangers = _undeclared(workspace, file, arguments) if file and arguments else ()
         if not base:
-            return Graphs(now, None, ())
+            return Graphs(now, None, strangers)
         from .base import base_tree
 
         old_tree, notes = base_tree(tree, tuple(base))
         had = not file or old_tree.exists(file)
-        before = _graph(path, old_tree, store, " ".join(base), file if had else "", arguments, jobs, None, empty=True)
-        return Graphs(now, before, tuple(notes))
+        old = linked(old_tree, store, jobs)
+        before = graph_of(old, store, os.fspath(path), " ".join(base), file if had else "", arguments)
+        return Graphs(now, before, (*strangers, *notes))
 
 
-def _graph(
-    path: Path, tree: Tree, store: Store, rev: str, launch: str, arguments: Mapping[str, str] | None, jobs: int | None,
-    progress: Callable[[int, int], None] | None, empty: bool = False,
-) -> Graph:  # fmt: skip
+def _linked(
+    path: Path, tree: Tree, store: Store, jobs: int | None, progress: Callable[[int, int], None] | None
+) -> Workspace:
     workspace = linked(tree, store, jobs, progress)
-    if not workspace.packages and not empty:
+    if not workspace.packages:
         raise CheckError(
             f"{shown(os.fspath(path))}: no package was found (no package.xml outside of ignored folders); give the "
             "folder of a workspace"
         )
-    return graph_of(workspace, store, os.fspath(path), rev, launch, arguments)
+    return workspace
+
+
+def _undeclared(workspace: Workspace, launch: str, arguments: Mapping[str, str]) -> tuple[str, ...]:
+    """A note for each argument that neither the launch file nor any that it includes declares."""
+    declared = sorted({argument.name for argument in launched(workspace, launch, arguments).arguments})
+    known = f"it declares {', '.join(f'`{name}`' for name in declared)}" if declared else "it declares none"
+    return tuple(
+        f"--set {name}: `{launch}` has no such argument; {known}" for name in arguments if name not in declared
+    )
 
 
 def _launch_file(path: Path, tree: Tree, launch: str) -> str:

@@ -896,7 +896,7 @@ def _open_repository(place: str):
         if found is None:
             if not os.path.exists(place):
                 raise TreeError(f"`{shown(place)}` does not exist; give a git repository, or a folder in one")
-            raise TreeError(f"`{shown(place)}` is not in a git repository; give one, or leave the revision out")
+            raise TreeError(f"`{shown(place)}` is not in a git repository; give a folder that is in one")
         return pygit2.Repository(found)
     except (pygit2.GitError, KeyError, ValueError, OSError) as error:
         raise TreeError(f"the git repository `{shown(place)}` cannot be opened: {error}") from None

@@ -127,6 +127,13 @@ def test_a_launch_file_gives_names_parameters_and_remappings(ws):
     assert ("/rear/speaker", "publisher", "/rear/speech") in edges(out)
 
 
+def test_an_argument_that_the_launch_file_does_not_declare_is_told(ws):
+    code, out, err = run(ws, "--launch", "talk.launch.xml", "--set", "wehre:=rear", "-f", "json")
+    assert code == 0
+    assert "--set wehre: `src/talk/launch/talk.launch.xml` has no such argument; it declares `where`" in err
+    assert "no such argument" not in run(ws, "--launch", "talk.launch.xml", "--set", "where:=rear")[2]
+
+
 def test_beside_a_base(ws):
     def git(*arguments: str) -> None:
         settings = ["-c", "user.name=a", "-c", "user.email=a@b.org", "-c", "init.defaultBranch=main"]
