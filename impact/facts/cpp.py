@@ -340,7 +340,7 @@ def extract(data: bytes) -> CppFile:
     """
     scanned = scan(data)
     text, visible, place, segments = scanned.text, scanned.visible, scanned.place, scanned.segments
-    found, defined, problems = scanned.found, scanned.defined, scanned.problems
+    defined, problems = scanned.defined, scanned.problems
     words: set[str] = set()
     qualified: list[Name] = []
     seen: dict[tuple[Condition, ...], set[str]] = {}
@@ -385,7 +385,7 @@ def extract(data: bytes) -> CppFile:
                 qualified.append(Name(name, *place(name_at), conditions))
 
     return CppFile(
-        includes=_includes(found, segments, place),
+        includes=includes_of(scanned),
         qualified=tuple(qualified),
         words=" ".join(
             sorted(w for w in words if len(w) > 3 and ":" not in w and not w[0].isdigit() and w not in KEYWORDS)
@@ -409,12 +409,13 @@ def _spaces(match: re.Match[str]) -> str:
     return " " * (match.end() - match.start())
 
 
-def _includes(found, segments, place) -> tuple[Include, ...]:
+def includes_of(scanned: Scan) -> tuple[Include, ...]:
+    """The #include lines of a file, in its order."""
     includes: list[Include] = []
-    begins = [start for start, _, _ in segments]
-    for offset, angled, path in found:
-        conditions = segments[bisect_right(begins, offset) - 1][2]
-        line, column = place(offset)
+    begins = [start for start, _, _ in scanned.segments]
+    for offset, angled, path in scanned.found:
+        conditions = scanned.segments[bisect_right(begins, offset) - 1][2]
+        line, column = scanned.place(offset)
         includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, conditions))
     return tuple(includes)
 

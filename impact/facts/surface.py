@@ -1,0 +1,125 @@
+"""What one C or C++ header offers to those who include it: its entities with all that a caller can depend on.
+
+Nothing is resolved: types are as written, brought into one form, so that reformatting a header changes nothing here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+
+import msgspec
+
+from .condition import Condition
+from .cpp import Include
+from .place import Problem
+
+
+class Argument(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A parameter of a function. type: normalised, without a `const` that callers do not see. default: as written,
+    white space as single blanks, None for none. pack: `T... name`."""
+
+    type: str
+    name: str = ""
+    default: str | None = None
+    pack: bool = False
+
+
+class TemplateParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A parameter of a template. kind: `type`, `value`, `template` or `concept`; type: of a value, the concept of a
+    constrained type, else empty."""
+
+    kind: str
+    name: str
+    type: str = ""
+    default: str | None = None
+    pack: bool = False
+
+
+class Base(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A base class, as written. access: public, protected or private."""
+
+    type: str
+    access: str
+    virtual: bool = False
+
+
+class Entity(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """One thing that a header declares.
+
+    name: qualified by namespaces and classes, inline ones included (see `plain`), template arguments left out. Members
+    of an unnamed union are named as members of what is around it. `operator()`, `operator bool`, `~Foo` and `Foo::Foo`
+    are names too. An enumerator of an unscoped enum stands in the scope of its enum, as users write it.
+
+    | kind | type | value | others |
+    |---|---|---|---|
+    | class, struct, union | | | template, arguments (of a specialisation), bases |
+    | enum | underlying type as written | | `scoped` in traits |
+    | enumerator | qualified name of its enum | its number where that can be told, else the expression | |
+    | function, method, constructor, destructor, conversion | result (`auto` where it is deduced) | | parameters |
+    | variable, field | type | of a constant: what it is | |
+    | alias | what it stands for | | template |
+    | macro | | of an object-like macro, when it is one literal: that | parameters, None for an object-like one |
+    | concept | | | template |
+    | namespace alias | the namespace | | |
+    | using | what is taken over: `ns::name` (name is then as it can be called here) | | |
+    | using namespace | the namespace; name is the scope where it is written | | |
+
+    access: empty outside classes. traits, sorted: const, constexpr, consteval, static, virtual, pure, override, final,
+    noexcept, explicit, deleted, defaulted, friend, inline, extern, mutable, volatile, scoped, nodiscard, variadic, `&`,
+    `&&`. deprecated: None, or the message, which may be empty. internal: stands in a namespace that is called detail,
+    internal, impl or the like. macro: the macro that declares it, where it is not spelt out. A private entity is only
+    there when it is virtual or a deleted constructor or assignment."""
+
+    kind: str
+    name: str
+    line: int
+    type: str = ""
+    parameters: tuple[Argument, ...] | None = None
+    template: tuple[TemplateParameter, ...] | None = None
+    traits: tuple[str, ...] = ()
+    access: str = ""
+    value: str = ""
+    deprecated: str | None = None
+    bases: tuple[Base, ...] = ()
+    arguments: str = ""
+    internal: bool = False
+    macro: str = ""
+    conditions: tuple[Condition, ...] = ()
+
+
+class HeaderSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """entities in the order of the file; includes as in CppFile; inline: qualified names of inline namespaces;
+    deprecated: the message with which the whole header warns whoever includes it, None for no warning; instead: the
+    header that it then takes in, empty when that cannot be told; lost: characters of declarations that were not
+    understood; problems: what could not be read."""
+
+    entities: tuple[Entity, ...]
+    includes: tuple[Include, ...] = ()
+    inline: tuple[str, ...] = ()
+    deprecated: str | None = None
+    instead: str = ""
+    lost: int = 0
+    problems: tuple[Problem, ...] = ()
+
+
+FUNCTIONS = frozenset(("function", "method", "constructor", "destructor", "conversion"))
+CLASSES = frozenset(("class", "struct", "union"))
+
+
+def plain(name: str, inline: Collection[str]) -> str:
+    """A qualified name without the inline namespaces in it: as users write it."""
+    if not inline:
+        return name
+    parts = name.split("::")
+    kept = [part for index, part in enumerate(parts) if "::".join(parts[: index + 1]) not in inline]
+    return "::".join(kept)
+
+
+def offered(surfaces: Iterable[HeaderSurface]) -> Iterator[Entity]:
+    """The entities of some headers, named as users write them."""
+    surfaces = list(surfaces)
+    inline = {name for surface in surfaces for name in surface.inline}
+    for surface in surfaces:
+        for entity in surface.entities:
+            name = plain(entity.name, inline)
+            yield entity if name == entity.name else msgspec.structs.replace(entity, name=name)

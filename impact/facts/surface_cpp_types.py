@@ -1,0 +1,382 @@
+"""Tokens of C++ declarations, and types in one form: how they are spaced and ordered is the author's taste."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+
+from .surface import Argument
+
+TOKEN = re.compile(
+    r"[^\W\d]\w*|\.?\d(?:[eEpP][+-]|[\w.'])*"
+    r"|\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'"
+    r"|::|->\*?|\.\.\.|&&|\|\||<<=|<<|<=>|<=|>=(?!=)|[-=!+*/%^&|]=|\+\+|--|\S"
+)
+_OPENING = {"(": ")", "[": "]", "{": "}"}
+_CLOSING = frozenset(")]}")
+_WORD = re.compile(r"\w")
+_BUILTIN_WORDS = frozenset(("unsigned", "signed", "long", "short", "int", "char", "double", "__int64"))
+BUILTIN = _BUILTIN_WORDS | frozenset((
+    "void", "bool", "float", "auto", "wchar_t", "char8_t", "char16_t", "char32_t",
+))  # fmt: skip
+"""Words that are types, or parts of one, by themselves."""
+_DROPPED = frozenset(("class", "struct", "typename", "enum", "union", "template", "__extension__"))
+_QUALIFIERS = ("const", "volatile")
+_POINTERS = frozenset(("*", "&", "&&", "..."))
+RESTRICT = frozenset(("restrict", "__restrict", "__restrict__"))
+ATTRIBUTE_WORDS = frozenset(("__attribute__", "__attribute", "__declspec", "alignas", "_Alignas"))
+_NO_UNITS = frozenset((*_DROPPED, *_QUALIFIERS, *RESTRICT, "register", "in", "mutable")) - {"in"}
+IDENTIFIER = re.compile(r"[^\W\d]")
+CAPITALS = re.compile(r"_*[A-Z][A-Z0-9_]+\Z")
+"""How macros are written, and some types."""
+
+
+def tokens_of(text: str) -> list[str]:
+    """The tokens of a piece of C++ without comments. Two `>` are two tokens."""
+    return TOKEN.findall(text)
+
+
+def closed(tokens: Sequence[str], at: int) -> int:
+    """The place behind the bracket that closes the one at a place; the end when none does."""
+    depth = 0
+    for place in range(at, len(tokens)):
+        token = tokens[place]
+        if token in _OPENING:
+            depth += 1
+        elif token in _CLOSING:
+            depth -= 1
+            if depth <= 0:
+                return place + 1
+    return len(tokens)
+
+
+def closed_angle(tokens: Sequence[str], at: int) -> int:
+    """The place behind the `>` that closes the `<` at a place, 0 when it is no bracket."""
+    depth = 0
+    place = at
+    end = len(tokens)
+    while place < end:
+        token = tokens[place]
+        if token == "<":
+            depth += 1
+        elif token == ">":
+            depth -= 1
+            if depth == 0:
+                return place + 1
+        elif token == ">=" and depth == 1:
+            return 0
+        elif token in _OPENING:
+            place = closed(tokens, place)
+            continue
+        elif token in _CLOSING or token == ";":
+            return 0
+        place += 1
+    return 0
+
+
+def split(tokens: Sequence[str], mark: str = ",") -> list[list[str]]:
+    """Tokens cut at a mark that stands in no brackets; no tokens are no piece."""
+    if not tokens:
+        return []
+    pieces: list[list[str]] = []
+    current: list[str] = []
+    place = 0
+    end = len(tokens)
+    while place < end:
+        token = tokens[place]
+        if token == mark:
+            pieces.append(current)
+            current = []
+            place += 1
+            continue
+        behind = 0
+        if token in _OPENING:
+            behind = closed(tokens, place)
+        elif token == "<" and place and _WORD.match(tokens[place - 1]):
+            behind = closed_angle(tokens, place)
+        if behind:
+            current += tokens[place:behind]
+            place = behind
+        else:
+            current.append(token)
+            place += 1
+    pieces.append(current)
+    return pieces
+
+
+def joined(tokens: Sequence[str]) -> str:
+    """Tokens as text, words apart and operators between blanks; the same for however it was spaced."""
+    pieces: list[str] = []
+    before = ""
+    for token in tokens:
+        if (
+            (before and _WORD.match(before[-1]) and _WORD.match(token))
+            or before == ","
+            or (before == "..." and _WORD.match(token))
+        ):
+            pieces.append(" ")
+        pieces.append(token)
+        before = token
+    return "".join(pieces)
+
+
+def type_text(tokens: Sequence[str]) -> str:
+    """A type in one form: `const` first, builtin types in their shortest usual spelling, no elaborating keywords."""
+    if len(tokens) == 1 and tokens[0] not in _BUILTIN_WORDS:
+        return tokens[0]
+    return _type_text(tuple(tokens))
+
+
+@lru_cache(maxsize=65536)
+def _type_text(tokens: tuple[str, ...]) -> str:
+    base: list[str] = []
+    qualifiers: set[str] = set()
+    numbers: list[str] = []
+    tail: list[str] = []
+    place = 0
+    end = len(tokens)
+    while place < end:
+        token = tokens[place]
+        if token in _DROPPED or token in RESTRICT:
+            place += 1
+            continue
+        if token in _QUALIFIERS:
+            if tail:
+                tail.append(" " + token)
+            else:
+                qualifiers.add(token)
+        elif token in _BUILTIN_WORDS and not tail:
+            numbers.append(token)
+        elif token == "<" and base and not tail:
+            behind = closed_angle(tokens, place)
+            if behind == 0:
+                base.append(token)
+            else:
+                base.append("<" + ", ".join(map(_argument_text, split(tokens[place + 1 : behind - 1]))) + ">")
+                place = behind
+                continue
+        elif token in _POINTERS:
+            tail.append(token)
+        elif token == "[":
+            behind = closed(tokens, place)
+            tail.append("[" + joined(tokens[place + 1 : behind - 1]) + "]")
+            place = behind
+            continue
+        elif token == "(":
+            behind = closed(tokens, place)
+            inner = tokens[place + 1 : behind - 1]
+            if base[-1:] == ["decltype"] and not tail:
+                base.append("(" + joined(inner) + ")")
+            elif inner and (inner[0] in _POINTERS or ("::" in inner and inner[-1] == "*")):
+                tail.append("(" + joined(inner) + ")")
+            else:
+                tail.append(parameters_text(inner))
+            place = behind
+            continue
+        elif token == "::" and not base and not tail:
+            pass
+        elif tail:
+            tail.append(token)
+        else:
+            if base and _WORD.match(base[-1][-1]) and _WORD.match(token):
+                base.append(" ")
+            base.append(token)
+        place += 1
+    if numbers:
+        base.append((" " if base else "") + _number(numbers))
+    front = "".join(f"{word} " for word in _QUALIFIERS if word in qualifiers)
+    return front + "".join(base) + "".join(tail)
+
+
+def _argument_text(tokens: Sequence[str]) -> str:
+    return type_text(tokens) if tokens else ""
+
+
+def parameters_text(tokens: Sequence[str]) -> str:
+    """What stands in the parentheses of a function type, names of parameters left out."""
+    pieces = split(tokens)
+    if pieces == [["void"]]:
+        return "()"
+    return "(" + ", ".join("..." if piece == ["..."] else argument(piece).type for piece in pieces if piece) + ")"
+
+
+def arguments_of(tokens: Sequence[str]) -> tuple[tuple[Argument, ...], bool]:
+    """The parameters between two parentheses, and whether `...` ends them."""
+    if not tokens or (len(tokens) == 1 and tokens[0] == "void"):
+        return (), False
+    pieces = split(tokens)
+    variadic = False
+    last = pieces[-1]
+    if last and last[-1] == "..." and (len(last) == 1 or (last[-2] not in ("&", "&&", "*") and len(last) > 2)):
+        # `(int a, ...)` and `(int a ...)`
+        variadic = len(last) == 1 or _is_named(last[:-1])
+        if variadic:
+            pieces[-1] = last[:-1]
+    return tuple(argument(piece) for piece in pieces if piece), variadic
+
+
+def _is_named(tokens: Sequence[str]) -> bool:
+    return bool(named(tokens)[1])
+
+
+def argument(tokens: Sequence[str]) -> Argument:
+    """A parameter of a function."""
+    return _argument(tuple(tokens))
+
+
+@lru_cache(maxsize=65536)
+def _argument(tokens: tuple[str, ...]) -> Argument:
+    default = None
+    if "=" in tokens:
+        front = split(tokens, "=")[0]
+        if len(front) < len(tokens):
+            default = joined(tokens[len(front) + 1 :])
+            tokens = tuple(front)
+    type_, name = named(tokens)
+    return Argument(seen_by_callers(type_), name, default, "..." in tokens and "..." in type_)
+
+
+def seen_by_callers(type_: str) -> str:
+    """The type of a parameter without the `const` of the parameter itself."""
+    if type_.endswith(" const"):
+        return type_[:-6]
+    if type_.startswith("const ") and type_[-1] not in "*&])." and not type_.endswith((" volatile", ")")):
+        return type_[6:]
+    return type_
+
+
+def unit_end(tokens: Sequence[str], at: int) -> int:
+    """The place behind a qualified name with its template arguments that starts at a place."""
+    place = at
+    end = len(tokens)
+    if tokens[place] == "::":
+        place += 1
+    while place < end:
+        if tokens[place] in ("template", "~"):
+            place += 1
+            continue
+        if tokens[place] == "operator":
+            return place
+        place += 1
+        if place < end and tokens[place] == "<":
+            place = closed_angle(tokens, place) or place
+            if tokens[place - 1] != ">":
+                return place
+        if (
+            place + 1 < end
+            and tokens[place] == "::"
+            and (IDENTIFIER.match(tokens[place + 1]) or tokens[place + 1] == "~")
+        ):
+            place += 1
+            continue
+        return place
+    return place
+
+
+def named(tokens: Sequence[str]) -> tuple[str, str]:
+    """The type and the name (empty for none) of `type name`, as parameters and members of types have them."""
+    units: list[tuple[int, int]] = []
+    dropped: list[tuple[int, int]] = []
+    builtin = False
+    name_at = -1
+    place = 0
+    end = len(tokens)
+    while place < end:
+        token = tokens[place]
+        if token in BUILTIN:
+            builtin = True
+        elif token in _NO_UNITS:
+            pass
+        elif token in ("decltype", "typeof", "__typeof__") and place + 1 < end:
+            place = closed(tokens, place + 1)
+            builtin = True
+            continue
+        elif token in ATTRIBUTE_WORDS and place + 1 < end:
+            behind = closed(tokens, place + 1)
+            dropped.append((place, behind))
+            place = behind
+            continue
+        elif token == "[":
+            behind = closed(tokens, place)
+            if place + 1 < end and tokens[place + 1] == "[":
+                dropped.append((place, behind))
+            place = behind
+            continue
+        elif token == "(":
+            behind = closed(tokens, place)
+            group = tokens[place + 1 : behind - 1]
+            if (
+                (units or builtin)
+                and group
+                and (group[0] in _POINTERS or (len(group) > 2 and "::" in group and "*" in group))
+            ):
+                name, operators = _within_group(group)
+                front = type_text(_typed(tokens[:place], units, builtin, dropped))
+                rest = tokens[behind:]
+                if rest[:1] == ("(",) or rest[:1] == ["("]:
+                    inner_end = closed(rest, 0)
+                    return f"{front}({operators}){parameters_text(rest[1 : inner_end - 1])}", name
+                return f"{front}({operators}){joined(rest)}", name
+            if units and behind < end and IDENTIFIER.match(tokens[behind]):
+                dropped.append((units.pop()[0], behind))  # a macro with arguments
+            place = behind
+            continue
+        elif IDENTIFIER.match(token) or token == "::":
+            behind = unit_end(tokens, place)
+            if behind > place:
+                units.append((place, behind))
+                place = behind
+                continue
+        place += 1
+    if units and (len(units) > 1 or builtin):
+        start, behind = units[-1]
+        if behind == start + 1 and (behind == end or tokens[behind] in ("[", "(", ":")) and start:
+            name_at = start
+            units.pop()
+    if name_at < 0:
+        return type_text(_typed(tokens, units, builtin, dropped)), ""
+    rest = list(tokens[name_at + 1 :])
+    if rest[:1] == [":"]:
+        rest = []
+    typed = _typed(tokens[:name_at], units, builtin, dropped)
+    return type_text([*typed, *rest]) if rest else type_text(typed), tokens[name_at]
+
+
+def _typed(
+    tokens: Sequence[str], units: Sequence[tuple[int, int]], builtin: bool, dropped: Sequence[tuple[int, int]]
+) -> Sequence[str]:
+    """The tokens of a type without macros: a type has one name, or builtin words."""
+    gone = list(dropped)
+    if builtin:
+        gone += [unit for unit in units if unit[1] == unit[0] + 1 and CAPITALS.match(tokens[unit[0]])]
+    elif len(units) > 1:
+        gone += units[:-1]
+    if not gone:
+        return tokens
+    away = {place for start, behind in gone for place in range(start, behind)}
+    return [token for place, token in enumerate(tokens) if place not in away]
+
+
+def _within_group(group: Sequence[str]) -> tuple[str, str]:
+    """The name in `(*name)`, `(&name)[3]`, `(Class::*name)`, and what is left without it."""
+    place = max(index for index, token in enumerate(group) if token in _POINTERS) + 1
+    rest = [token for token in group[place:] if token not in _QUALIFIERS]
+    if rest and IDENTIFIER.match(rest[0]):
+        return rest[0], joined(group[:place])
+    return "", joined(group[:place])
+
+
+def _number(words: list[str]) -> str:
+    if "char" in words:
+        sign = "unsigned " if "unsigned" in words else "signed " if "signed" in words else ""
+        return sign + "char"
+    if "double" in words:
+        return "long double" if "long" in words else "double"
+    if "__int64" in words:
+        size = "long long"
+    elif "short" in words:
+        size = "short"
+    else:
+        size = " ".join(["long"] * words.count("long")) or "int"
+    return f"unsigned {size}" if "unsigned" in words else size
