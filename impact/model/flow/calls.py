@@ -35,6 +35,8 @@ class Calls:
         self.code, self.table = code, table
         self._kinds: dict[Type, frozenset[str]] = {}
         self._uses: dict[int, Use | None] = {}
+        self._objects_of: dict[tuple[str, str], list[Row]] = {}
+        self._makers: dict[int, tuple[Fn | None, list[Fn]]] = {}
 
     @cached_property
     def uses(self) -> list[Use]:
@@ -167,8 +169,8 @@ class Calls:
 
     def _objects(self, fn: Fn) -> Iterator[Use]:
         seen = set()
-        for name, call in self._made(fn):
-            for row in self.table.objects_of(name, fn.source.facts.language == "python") if name else ():
+        for rows, call in self._made(fn):
+            for row in rows:
                 if row.does == "node" and not call.arguments:
                     continue
                 if row.first and not self._first_fits(row.first, fn, call):
@@ -178,59 +180,80 @@ class Calls:
                     seen.add(key)
                     yield Use(fn, row, call)
 
-    def _made(self, fn: Fn) -> Iterator[tuple[str, Call]]:
-        """Objects with the call that makes them: declared, initialised as members or bases, or made by make_shared."""
+    def _rows(self, name: str, fn: Fn) -> list[Row]:
+        """The rows about objects of a class that a function makes; none for most classes."""
+        key = (name, fn.source.facts.language)
+        known = self._objects_of.get(key)
+        if known is None:
+            known = self._objects_of[key] = self.table.objects_of(name, key[1] == "python") if name else []
+        return known
+
+    def _made(self, fn: Fn) -> Iterator[tuple[list[Row], Call]]:
+        """Objects that rows tell of, with the call that makes them: declared, initialised as members or bases, or made
+        by make_shared."""
         code, source, scope = self.code, fn.source, fn.scope
+        cpp = source.facts.language == "cpp"
         for call in fn.facts.calls:
             last = tail(call.callee)
             if last in ("make_shared", "make_unique") and call.types:
                 kind = code.meant_type(call.types, source, scope)
-                yield kind.name, _with_types(call, kind)
+                if rows := self._rows(kind.name, fn):
+                    yield rows, _with_types(call, kind)
             elif last == "make_shared" and "::" in call.callee:
-                yield code.meant(around(call.callee), source, scope), call
-            for argument in call.arguments if source.facts.language == "cpp" else ():
-                for make in _nested(argument):
+                rows = self._rows(code.meant(around(call.callee), source, scope), fn)
+                if rows:
+                    yield rows, call
+            for argument in call.arguments if cpp else ():
+                for make in _nested(argument) if argument.parts or argument.kind == "make" else ():
                     kind = code.meant_type(make.text, source, scope)
-                    target = around(call.callee) if last == "reset" else ""
-                    arguments = ", ".join(kind.arguments)
-                    yield kind.name, Call(make.text, make.parts, call.line, call.column, call.guard, arguments, target)
-            if source.facts.language == "python" and last:
-                yield from self._made_in_python(fn, call, last)
-        yield from self._made_by_members(fn)
+                    if rows := self._rows(kind.name, fn):
+                        target = around(call.callee) if last == "reset" else ""
+                        arguments = ", ".join(kind.arguments)
+                        yield rows, Call(make.text, make.parts, call.line, call.column, call.guard, arguments, target)
+            if last and not cpp:
+                for name in self._made_in_python(fn, call, last):
+                    if rows := self._rows(name, fn):
+                        yield rows, call
+        for name, call in self._made_by_members(fn):
+            if rows := self._rows(name, fn):
+                yield rows, call
         for each in fn.facts.assignments:
             value = each.value
             base = code.base_made(fn, each)
             if base is not None:
-                yield base[0], Call(base[0], base[1], each.line, 0, each.guard)
+                if rows := self._rows(base[0], fn):
+                    yield rows, Call(base[0], base[1], each.line, 0, each.guard)
                 continue
-            for make in _nested(value):
+            for make in _nested(value) if value.parts or value.kind == "make" else ():
                 if not make.text:
                     continue
                 kind = code.meant_type(make.text, source, scope)
-                yield (
-                    kind.name,
-                    Call(make.text, make.parts, each.line, 0, each.guard, ", ".join(kind.arguments), each.target),
-                )
+                if rows := self._rows(kind.name, fn):
+                    types = ", ".join(kind.arguments)
+                    yield rows, Call(make.text, make.parts, each.line, 0, each.guard, types, each.target)
             if value.kind == "make" and value.text:
                 continue
             if value.kind in ("list", "make") or each.target.startswith("this."):
                 kind = self._initialised(fn, each.target)
-                if kind.name and value.kind in ("list", "make", "name", "text", "call"):
+                rows = self._rows(kind.name, fn)
+                if rows and value.kind in ("list", "make", "name", "text", "call"):
                     arguments = value.parts if value.kind in ("list", "make") else (value,)
-                    yield (
-                        kind.name,
-                        Call(kind.name, arguments, each.line, 0, each.guard, ", ".join(kind.arguments), each.target),
-                    )
+                    types = ", ".join(kind.arguments)
+                    yield rows, Call(kind.name, arguments, each.line, 0, each.guard, types, each.target)
 
     def _made_by_members(self, fn: Fn) -> Iterator[tuple[str, Call]]:
         """Members that a class has by value and that its constructors do not initialise, told once."""
         owner = self.code.owner_of(fn) if fn.source.facts.language == "cpp" and fn.facts.owner else None
         if owner is None:
             return
-        functions = self.code.functions_of(owner)
-        constructors = [one for one in functions if tail(one.name) == tail(owner.name)]
-        # A class without a constructor of its own has them made by whatever makes it.
-        if (constructors or functions)[:1] != [fn]:
+        known = self._makers.get(id(owner.facts))
+        if known is None:
+            functions = self.code.functions_of(owner)
+            constructors = [one for one in functions if tail(one.name) == tail(owner.name)]
+            # A class without a constructor of its own has them made by whatever makes it.
+            known = self._makers[id(owner.facts)] = next(iter(constructors or functions), None), constructors
+        maker, constructors = known
+        if maker is not fn:
             return
         begun = {each.target for one in constructors for each in one.facts.assignments}
         for member in owner.facts.members:
@@ -241,15 +264,14 @@ class Calls:
                     types = ", ".join(kind.arguments)
                     yield kind.name, Call(kind.name, (), fn.facts.line, 0, -1, types, target)
 
-    def _made_in_python(self, fn: Fn, call: Call, last: str) -> Iterator[tuple[str, Call]]:
+    def _made_in_python(self, fn: Fn, call: Call, last: str) -> Iterator[str]:
         if call.callee == "super().__init__":
             owner = self.code.owner_of(fn)
-            for base in self.code.base_names(owner) if owner else ():
-                yield base, call
+            yield from self.code.base_names(owner) if owner else ()
         elif last[:1].isupper():
-            yield self.code.meant(call.callee, fn.source), call
+            yield self.code.meant(call.callee, fn.source)
         elif last == "__init__":
-            yield self.code.meant(around(call.callee), fn.source), call
+            yield self.code.meant(around(call.callee), fn.source)
 
     def _initialised(self, fn: Fn, target: str) -> Type:
         variable = self.code.identity(target, fn)

@@ -41,17 +41,17 @@ class Fn:
         self.owner = parts_of(facts.owner)
         self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(tail(facts.name)))
         self.assigned: dict[str, list[Assignment]] = {}
-        for each in facts.assignments:
-            self.assigned.setdefault(each.target, []).append(each)
         # What is declared here hides members of the same name.
+        self.locals = {p.name for p in facts.parameters}
         python = source.facts.language == "python"
-        self.locals = {p.name for p in facts.parameters} | {
-            each.target
-            for each in facts.assignments
-            if "." not in each.target and (each.type or (python and each.operator == "="))
-        }
+        for each in facts.assignments:
+            target = each.target
+            self.assigned.setdefault(target, []).append(each)
+            if (each.type or (python and each.operator == "=")) and "." not in target:
+                self.locals.add(target)
         # What a module of Python assigns is everybody's in it.
-        self.locals = set() if python and not facts.name else self.locals - set(facts.outside)
+        if python:
+            self.locals = self.locals.difference(facts.outside) if facts.name else set()
 
     def __repr__(self) -> str:
         return f"Fn({self.source.path}:{self.facts.line} {self.facts.name})"
@@ -219,6 +219,8 @@ class Code:
         if source.facts.language != "cpp" or "::" not in name:
             return None
         wanted = parts_of(name)
+        if not wanted or wanted[-1] not in self._qualified:
+            return None
         found = [
             (package, alias)
             for package, alias in self._qualified.get(wanted[-1], ())
@@ -285,15 +287,17 @@ class Code:
 
     def base_made(self, fn: Fn, each: Assignment) -> tuple[str, tuple[Expr, ...]] | None:
         """The base class, as meant, and the arguments that a constructor's initialiser gives it; None for others."""
-        if fn.source.facts.language != "cpp" or not each.target.startswith("this."):
+        if not each.target.startswith("this.") or fn.source.facts.language != "cpp":
             return None
         owner = self.owner_of(fn)
-        name = each.target[5:]
-        for base in owner.facts.bases if owner is not None else ():
-            if tail(parsed(base).name) == tail(name):
-                kind = self.meant_type(base, owner.source, owner.name) if owner is not None else UNKNOWN
+        if owner is None or not owner.facts.bases:
+            return None
+        name = tail(each.target[5:])
+        for base in owner.facts.bases:
+            if tail(parsed(base).name) == name:
                 value = each.value
                 made = value.kind in ("make", "list") and not value.text
+                kind = self.meant_type(base, owner.source, owner.name)
                 return kind.name, value.parts if made else (value,)
         return None
 
@@ -392,6 +396,8 @@ class Code:
         return known, parts[1:]
 
     def _head(self, head: str, fn: Fn) -> Variable:
+        if head in fn.locals:
+            return Variable("local", fn.place, head)
         for one in self.chain(fn):
             if head in one.locals:
                 return Variable("local", one.place, head)
@@ -424,6 +430,9 @@ class Code:
         """The variable that a whole path means: that of its last part, in the class of what stands before it.
 
         depth: how far types are followed already; from 5 on only declared ones count."""
+        known = fn.heads.get(path)
+        if known is not None:
+            return known
         if depth == 0 and path in fn.identities:
             return fn.identities[path]
         found, rest = self.variable(path, fn)
@@ -727,9 +736,11 @@ class Code:
         for fn in self.functions:
             for call in fn.facts.calls:
                 for argument in call.arguments:
-                    walk(argument, fn, 0)
+                    if argument.parts:
+                        walk(argument, fn, 0)
             for each in fn.facts.assignments:
-                walk(each.value, fn, 0)
+                if each.value.parts:
+                    walk(each.value, fn, 0)
         return found
 
     @cached_property
@@ -763,11 +774,13 @@ def _made_in(fn: Fn, code: Code) -> Iterator[tuple[str, tuple[Expr, ...], int]]:
         elif fn.source.facts.language == "python" and last[:1].isupper():
             yield code.meant(call.callee, fn.source), call.arguments, call.line
         for argument in call.arguments:
-            for value in _makes(argument):
-                yield value.text, value.parts, call.line
+            if argument.parts or argument.kind == "make":
+                for value in _makes(argument):
+                    yield value.text, value.parts, call.line
     for each in fn.facts.assignments:
-        for value in _makes(each.value):
-            yield value.text, value.parts, each.line
+        if each.value.parts or each.value.kind == "make":
+            for value in _makes(each.value):
+                yield value.text, value.parts, each.line
 
 
 def _makes(value: Expr, depth: int = 0) -> Iterator[Expr]:
