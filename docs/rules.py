@@ -11,6 +11,7 @@ FAMILIES = {
     "general": "The run itself.",
     "graph": "Topics, services, actions and parameters: who uses them, and what meets nobody.",
     "interfaces": "Messages, services and actions compared with a base; they speak with `--base` alone.",
+    "logic": "When nodes publish, compared with a base; they speak with `--base` alone.",
     "packages": "What packages declare, find, build, install and export.",
     "qos": "Quality of service: publishers and subscribers that refuse each other.",
     "sources": "What source files include.",

@@ -213,7 +213,7 @@ def _never(said: Said) -> str:
     speech: guards.Language = "python" if said.language == "python" else "cpp"
     whys: list[str] = []
     for way in said.ways:
-        why = next((f"never runs: it stands {gate.text}" for gate in way.gates if gate.kind == "never"), "")
+        why = next((f"never runs, it stands {gate.text}" for gate in way.gates if gate.kind == "never"), "")
         if not why:
             sides = [[gate] for gate in way.gates if gate.kind in ("if", "unless")]
             functions = dict.fromkeys(gate.of for gate in way.gates)
@@ -225,7 +225,7 @@ def _never(said: Said) -> str:
                 fewer = [one for one in at_once if one is not gate]
                 at_once = fewer if fewer and _contradicts(fewer, speech) else at_once
             texts = " and ".join(dict.fromkeys(f"`{_condition(gate, speech == 'python')}`" for gate in at_once))
-            why = f"never runs: {texts} cannot hold"
+            why = f"never runs, {texts} cannot hold"
         whys.append(why)
     return "" if _cut_off(said) else "; ".join(dict.fromkeys(whys))
 

@@ -435,7 +435,7 @@ STEPS = (
     Step(
         "behind a return",
         put(CAM, ("      pub_->publish(frame);", "      return;\n      pub_->publish(frame);")),
-        (("tightened", "frames", "never runs: it stands after return"),),
+        (("tightened", "frames", "never runs, it stands after return"),),
     ),
     Step(
         "reached again",
@@ -449,7 +449,7 @@ STEPS = (
             (
                 "tightened",
                 "frames",
-                "never runs: `(mode_ == 1 || mode_ == 2 || mode_ == 3)` and `mode_ == 7` cannot hold",
+                "never runs, `(mode_ == 1 || mode_ == 2 || mode_ == 3)` and `mode_ == 7` cannot hold",
             ),
         ),
     ),
@@ -465,7 +465,7 @@ STEPS = (
     Step(
         "python: behind a raise",
         put(PY, ("            self.pub.publish", "            raise ValueError\n            self.pub.publish")),
-        (("tightened", "state", "never runs: it stands after raise"),),
+        (("tightened", "state", "never runs, it stands after raise"),),
     ),
     # rosbuild
     Step("a slower loop", put(BEEP, ("rate(5)", "rate(1)")), (("trigger changed", "beeps", "rate 1"),)),
