@@ -32,7 +32,8 @@ from .statements import hits, quoted
 @rule(severity="warning", preview=True, compares=True)
 def unreachable_publish(workspace: Workspace, base: Workspace) -> Iterator[Hit]:
     def says(change: Change) -> str:
-        return f"`{change.topic}` is published here no longer: the statement {change.why}; it ran under {quoted(change.old)}"
+        was = f"it ran under {quoted(change.old)}"
+        return f"`{change.topic}` is published here no longer: the statement {change.why}; {was}"
 
     yield from hits(
         workspace, base, lambda change: change.unreachable, says, "remove the statement, or what keeps it off"
