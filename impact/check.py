@@ -7,9 +7,10 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..corpus import __version__
+from ..corpus.told import unforeseen
 from . import findings as after
 from . import memo
 from .config import Config, PathSetting, load, parse
@@ -26,6 +27,9 @@ from .targets.providers import default_providers
 from .targets.resolve import Chosen, choose_targets
 from .targets.version import compare
 from .tree import GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
+
+if TYPE_CHECKING:
+    from .flow.impact import Impact
 
 
 class CheckError(Exception):
@@ -98,6 +102,7 @@ def run(
         settings = _settings(rules, config)
         sources = Sources(reader(tree))
         crashed: Crashes = {}
+        reached: Impact | None = None
         notes: list[str] = []
         if options.base or base_tree is not None:
             from . import base as bases
@@ -108,6 +113,7 @@ def run(
             old = judge(before, chosen, settings, Sources(reader(base_tree)), crashed, jobs=options.jobs)
             now = judge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
             found: Sequence[Finding] = after.marked_new(now.kept, old.kept)
+            reached = _reached(workspace, before.workspace, crashed)
         else:
             now = judge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
             found = now.kept
@@ -136,8 +142,20 @@ def run(
         root=os.fspath(path),
         base=" ".join(options.base) or (base_tree.label if base_tree is not None else ""),
         failure="; ".join(failures),
+        impact=reached,
     )
     return Checked(report, config, tree)
+
+
+def _reached(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
+    """What the changes since the base reach; None where that failed, which is noted as a rule's failure is."""
+    from .flow.impact import impact_of
+
+    try:
+        return impact_of(workspace, base)
+    except Exception as error:
+        crashed.setdefault(("impact", unforeseen(error)), [])
+        return None
 
 
 def check_workspace(

@@ -182,6 +182,56 @@ def graph(
     )  # fmt: skip
 
 
+def _print_impact_schema(value: bool) -> None:
+    if value:
+        from . import run
+
+        raise typer.Exit(run.impact_schema())
+
+
+@app.command()
+def impact(
+    path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
+    base: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="What changed since the merge base with this revision (PATH=REV for one repository, or a pinned "
+            ".repos file)."
+        ),
+    ] = None,
+    rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
+    package: Annotated[list[str] | None, typer.Option(help="Only changes in this package. May be repeated.")] = None,
+    topic: Annotated[
+        list[str] | None, typer.Option(help="Only what goes through this topic; `*` stands for any text.")
+    ] = None,
+    node: Annotated[
+        list[str] | None, typer.Option(help="Only changes in this node, or that reach it; `*` stands for any text.")
+    ] = None,
+    format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
+    all: Annotated[
+        bool, typer.Option("--all", help="List every node that is reached, and all unresolved calls.")
+    ] = False,
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema", callback=_print_impact_schema, is_eager=True, help="Print the JSON schema of --format json."
+        ),
+    ] = False,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+) -> None:
+    """Say which nodes the changes since a base reach: of messages, topics, publish conditions and callbacks."""
+    from . import run
+
+    raise typer.Exit(
+        run.impact(
+            path, base=tuple(base or ()), rev=rev, packages=_names(package), topics=_names(topic), nodes=_names(node),
+            format=format, output=output, everything=all, jobs=jobs, quiet=quiet,
+        )
+    )  # fmt: skip
+
+
 @app.command()
 def logic(
     repository: Annotated[Path, typer.Argument(help="Git repository, bare or not, or a folder in one.")] = Path("."),

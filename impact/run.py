@@ -312,6 +312,51 @@ def graph(
     return 0
 
 
+IMPACT_FORMATS = ("text", "json", "markdown")
+
+
+def impact_schema() -> int:
+    """Prints the JSON schema of the JSON of `impact`."""
+    from .flow.impact_report import schema as text
+
+    _write(text())
+    return 0
+
+
+def impact(
+    path: Path, *, base, rev, packages, topics, nodes, format, output, everything, jobs, quiet
+) -> int:  # fmt: skip
+    """Prints what the changes since a base reach. Returns the exit status: 0, or 2 (failed)."""
+    try:
+        with told(path):
+            if format not in IMPACT_FORMATS:
+                raise Failed(f"--format {format}: unknown; choose one of {', '.join(IMPACT_FORMATS)}")
+            if not base:
+                raise Failed("--base: needed, the revision that the change is compared with, such as origin/main")
+            from .flow import impact_report
+            from .flow.impact import chosen
+            from .impact import reached
+
+            found = reached(path, base, rev=rev, jobs=jobs, progress=None if quiet else _progress())
+            for note in found.notes:
+                say(f"rosimpact: {note}")
+            part = chosen(found.impact, packages, topics, nodes)
+            if format == "json":
+                said = impact_report.Told(__version__, found.root, found.rev, found.base)
+                text = impact_report.as_json(part, said)
+            elif format == "markdown":
+                text = impact_report.markdown(part)
+            else:
+                text = impact_report.text(part, everything, _style(output))
+            _deliver(text, output)
+    except Failed as error:
+        return failed(str(error))
+    except KeyboardInterrupt:
+        say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
+        return 130
+    return 0
+
+
 LOGIC_FORMATS = ("text", "json", "html")
 
 

@@ -380,7 +380,10 @@ def _outlet_changes(one: OutletAt, other: OutletAt, at: At) -> Iterator[Change]:
     before, after = dict(old.offers), dict(new.offers)
     clauses: list[str] = []
     for name in dict.fromkeys((*before, *after)):
-        was, is_now = before.get(name, ""), after.get(name, "")
+        # What the system chooses is not told either.
+        was, is_now = (
+            "" if setting == "system_default" else setting for setting in (before.get(name, ""), after.get(name, ""))
+        )
         # A latch that is not set is no latch; any other setting that is not told is not known.
         if was != is_now and ((was and is_now) or (name == "durability" and _of_ros1(old, new))):
             label = "queue" if name == "depth" else name

@@ -135,7 +135,7 @@ def asked(said: Said, names: Names = SAME) -> frozenset[tuple]:
 
 def _place(at: At, names: Names) -> tuple:
     said = at.said
-    return names.path(at.path), names.text(_bare(said.function)), names.text(tail(said.variable))
+    return names.path(at.path), names.text(bare(said.function)), names.text(tail(said.variable))
 
 
 def _exact(at: At, names: Names) -> tuple:
@@ -178,7 +178,7 @@ def _alike(one: At, other: At, names: Names) -> int:
     return score
 
 
-def _bare(function: str) -> str:
+def bare(function: str) -> str:
     """A function's name, lambdas by what they stand in: their places move."""
     return re.sub(r"lambda@[\d:]+", "lambda", function)
 
@@ -189,7 +189,7 @@ def _outlet(at: OutletAt, names: Names) -> tuple:
 
 def _outlet_place(at: OutletAt, names: Names) -> tuple:
     outlet = at.outlet
-    return names.path(at.path), names.text(_bare(outlet.function)), names.text(tail(outlet.variable)) or outlet.topic
+    return names.path(at.path), names.text(bare(outlet.function)), names.text(tail(outlet.variable)) or outlet.topic
 
 
 def _outlets_alike(one: OutletAt, other: OutletAt, names: Names) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path as FilePath
 from typing import Any
@@ -42,7 +42,7 @@ def compared(
 
 
 def renamed_words(
-    old: list[State], new: list[State], files: Mapping[str, str], read: Callable[[File], bytes]
+    old: Sequence[State], new: Sequence[State], files: Mapping[str, str], read: Callable[[File], bytes]
 ) -> dict[str, str]:
     """Identifiers that are called otherwise in the files that differ. files: those that are called otherwise."""
     was = {state.whole(file.path): file for state in old for file in state.files}

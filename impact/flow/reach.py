@@ -10,6 +10,7 @@ from ..model.flow.graph import Endpoint, Graph, Publish
 
 # Topics through which everything would reach everything.
 EVERYWHERE = frozenset(("/rosout", "/parameter_events", "/diagnostics", "/clock"))
+_ALL = 1_000_000
 _SENDS = {"publisher": "subscriber", "client": "server", "action client": "action server"}
 _KINDS = {"subscriber": "topic", "server": "service", "action server": "action"}
 
@@ -56,6 +57,25 @@ class Reach:
         """Nodes downstream of all that a node sends, nearest first; the node itself is left out."""
         first = [step for topic, role in self._sent(node, None) for step in self._next(topic, role)]
         return [reached for reached in self._walk(first, most) if reached.node != node]
+
+    def from_sent(self, sent: Iterable[tuple[str, str]], node: str = "") -> list[Reached]:
+        """Nodes downstream of some topics, services and actions (name, role of who sends), nearest first. node: who
+        sends them, which is left out."""
+        first = [step for topic, role in sent for step in self._next(topic, role)]
+        return [reached for reached in self._walk(first, _ALL) if reached.node != node]
+
+    def sent_on(self, node: str, path: str, line: int, stored: bool) -> list[tuple[str, str]]:
+        """What a node may send because of a subscriber, server or timer that is made at a place; as from_sent() takes
+        it. It is what the callback publishes; where that is nothing, and with stored, what timers and loops publish."""
+        own, others = [], []
+        for publish in self._publishes.get(node, ()):
+            if publish.topic:
+                mine = any((one.path, one.line) == (path, line) for one in publish.triggers)
+                if mine:
+                    own.append((publish.topic, "publisher"))
+                elif stored and self._may_follow(publish, Step("topic", "", node, path, line)):
+                    others.append((publish.topic, "publisher"))
+        return list(dict.fromkeys(own or others))
 
     def _walk(self, first: Iterable[Step], most: int) -> list[Reached]:
         found: dict[str, Reached] = {}

@@ -94,13 +94,14 @@ class _Reading:
 
 def _listed(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str], ...]:
     """Path in the package, content and kind of files that tell of the flow of messages, tests left out."""
-    gathered = workspace.gathered
+    main = workspace.gathered
+    sources = [main] if main.second is None else [main.second, main]
     start = len(package.path) + 1 if package.path else 0
     found: list[tuple[str, str, str]] = []
     for path in package.digest.files:
-        kind = _KINDS.get(gathered.kinds.get(path, ""))
-        if kind is not None and role_of_folder(path[start:]) != "test":
-            found.append((path[start:], gathered.ids.get(path, ""), kind))
+        gathered = next((each for each in sources if each.kinds.get(path) in _KINDS), None)
+        if gathered is not None and role_of_folder(path[start:]) != "test":
+            found.append((path[start:], gathered.ids.get(path, ""), _KINDS[gathered.kinds[path]]))
     return tuple(found)
 
 
@@ -161,19 +162,19 @@ def _digests(workspace: Workspace, states: Sequence[State]) -> list[Digest]:
     packed = {rows[row].key: pack(data) for row, data in store.memos("digest", rows).items()}
     missing = [state for state in rows.values() if state.key not in packed]
     if missing:
-        gathered = _flow_facts(workspace, missing)
+        gathered = flow_facts(workspace, missing)
         made = dict(_made(workspace, gathered, missing))
         store.remember("digest", [(digest_key(key), unpack(data)) for key, data in made.items()])
         packed.update(made)
     return [decoded(packed.get(state.key)) for state in states]
 
 
-def _flow_facts(workspace: Workspace, states: Sequence[State]) -> Gathered:
+def flow_facts(workspace: Workspace, states: Sequence[State]) -> Gathered:
     """The flow facts of some packages alone."""
     main = workspace.gathered
+    if main.second is not None or not states:
+        return main.second or main
     wanted = {state.whole(file.path): kind_of_facts(file) for state in states for file in state.files}
-    if any(kind in _CODE for kind in main.kinds.values()):
-        return main
     return gather(main.tree, main.store, kind_of=lambda path: wanted[path] if wanted.get(path) in _CODE else None)
 
 

@@ -26,6 +26,7 @@ from .discovery import Discovered, PackagePlace, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
 if TYPE_CHECKING:
+    from .flow.callers import Callers
     from .flow.graph import Graph
     from .flow.join import Join
     from .flow.launches import Launch
@@ -262,6 +263,13 @@ class Workspace:
         from .flow.workspace import joined
 
         return joined(self)
+
+    @cached_property
+    def callers(self) -> Callers:
+        """Who calls whom in its code, and what triggers it."""
+        from .flow.workspace import callers_of
+
+        return callers_of(self, self.gathered.store)
 
     @cached_property
     def launches(self) -> tuple[Launch, ...]:

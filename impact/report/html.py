@@ -12,6 +12,8 @@ from .page import page
 from .report import Report, count_by_severity, coverage_text, focus, fresh, matrix
 
 _LONGEST_LINE = 400
+_MOST_EFFECTS = 200
+_MOST_REACHED = 12
 
 
 def render(report: Report) -> str:
@@ -47,8 +49,25 @@ def _data(report: Report) -> dict[str, Any]:
             for rule in report.rules
             if rule.documentation
         },
+        "impact": _impact(report),
         "findings": [_finding(report, finding, names) for finding in report.findings],
     }
+
+
+def _impact(report: Report) -> dict[str, Any] | None:
+    """What the change reaches: a summary, and change, subject, place, why and reached nodes of each; None without."""
+    if report.impact is None or not report.impact.effects:
+        return None
+    from ..flow.impact_report import names_of, summary
+
+    names = names_of(report.impact)
+    rows = []
+    for effect in report.impact.effects[:_MOST_EFFECTS]:
+        near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in effect.reaches))
+        more = len(near) - _MOST_REACHED
+        told = ", ".join(near[:_MOST_REACHED]) + (f" and {more} more" if more > 0 else "")
+        rows.append([f"{effect.kind} {effect.change}", effect.subject, effect.path, effect.line, effect.why, told])
+    return {"summary": summary(report.impact), "rows": rows, "left": max(0, len(report.impact.effects) - len(rows))}
 
 
 def _finding(report: Report, finding: Finding, names: list[str]) -> list[Any]:

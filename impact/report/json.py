@@ -40,6 +40,10 @@ def render(report: Report) -> str:
     ):
         if value:
             data[key] = value
+    if report.impact is not None and report.impact.effects:
+        from ..flow.impact_report import compact
+
+        data["impact"] = compact(report.impact)
     return json.dumps(_printable(data), ensure_ascii=False, indent=1) + "\n"
 
 

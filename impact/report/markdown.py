@@ -19,7 +19,11 @@ def render(report: Report) -> str:
     tail = ["", f"<sub>{_tail(report, findings)}</sub>"]
     order = {"error": 0, "warning": 1}
     told = sorted((each for each in findings if each.severity in order), key=lambda each: order[each.severity])
-    room = _LINES - len(head) - len(tail)
+    if report.impact is not None and report.impact.effects:
+        from ..flow.impact_report import summary
+
+        tail.insert(0, f"\nMessage flow: {escaped(summary(report.impact))}")
+    room = _LINES - len(head) - len("\n".join(tail).split("\n"))
     rows = [_row(report, finding) for finding in told]
     if len(rows) > room:
         rest = count_by_severity(told[room - 1 :])

@@ -5,10 +5,13 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...corpus.told import counted
 from ..rules.rule import Finding, Rule
+
+if TYPE_CHECKING:
+    from ..flow.impact import Impact
 
 CONTEXT = 1
 _KEPT_FILES = 32
@@ -55,7 +58,8 @@ class Report(NamedTuple):
     version: of the tool. data: ISO day of the shipped data. suppressed: silenced by allow comments. known: in the
     baseline. rules: those that could speak, for help texts. excerpt(path, line): the lines `line - CONTEXT` (or 1)
     to `line + CONTEXT`, empty when unreadable. root: what to call the workspace. base: the revision compared with,
-    empty without one. failure: why the run failed, empty when it did not. seconds: wall time.
+    empty without one. failure: why the run failed, empty when it did not. impact: what the changes since
+    the base reach in the message flow, None without a base. seconds: wall time.
     """
 
     version: str
@@ -72,6 +76,7 @@ class Report(NamedTuple):
     root: str = "."
     base: str = ""
     failure: str = ""
+    impact: Impact | None = None
 
 
 class Sources:

@@ -67,6 +67,14 @@ def render(report: Report, style: Style = PLAIN) -> str:
     lines = _targets(report, style)
     shown = [finding for finding in fresh(report) if finding.severity in style.severities]
     lines += _packages(report, shown, style)
+    if report.impact is not None and report.impact.effects:
+        from ..flow.impact_report import short
+
+        lines += [
+            "",
+            painted(style, "bold", "what this change reaches"),
+            *short(report.impact, style, one_line(report.base)),
+        ]
     table = _matrix(report, style)
     if table:
         lines += ["", *table]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ....corpus.told import counted
-from ...model.flow.graph import Coverage, Endpoint, Graph, GuardAt, Publish, Trigger
+from ...model.flow.graph import Coverage, Endpoint, Graph, GuardAt, Publish, Trigger, Unresolved
 from ...report.columns import UNBROKEN, Piece, laid_out
 from ...report.report import one_line
 from ...report.text import PLAIN, Style
@@ -38,7 +38,11 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
     if alone:
         said = f"{counted(len(alone), 'node')} with none of these: {', '.join(alone)}"
         lines += [*_line([Piece(said)], style, 0, 2), ""]
-    lines += _coverage(selection, everything, style)
+    near = graph.coverage.unresolved
+    if selection.asked and not everything:
+        paths = {each.path for each in (*graph.endpoints, *graph.publishes)}
+        near = tuple(one for one in near if one.path in paths)
+    lines += coverage_lines(graph.coverage, near, everything, style)
     return "\n".join(lines) + "\n"
 
 
@@ -180,8 +184,11 @@ def _when(guards: Sequence[GuardAt], triggers: Sequence[Trigger]) -> str:
     return "; ".join(f"{word} {text}" for word, text in said.items() if text)
 
 
-def _coverage(selection: Selection, everything: bool, style: Style) -> Iterator[str]:
-    coverage: Coverage = selection.graph.coverage
+def coverage_lines(
+    coverage: Coverage, near: Sequence[Unresolved], everything: bool, style: Style
+) -> Iterator[str]:  # fmt: skip
+    """How much was resolved, and what was not. near: of that, what may be listed; everything: all of it, not the first
+    20 alone."""
     share = f", {coverage.by_default:,} by a parameter's default" if coverage.by_default else ""
     yield from _line(
         [Piece(f"{coverage.resolved:,} of {counted(coverage.calls, 'API call')} resolved{share}; "
@@ -191,10 +198,6 @@ def _coverage(selection: Selection, everything: bool, style: Style) -> Iterator[
         shown = coverage.unread if everything else coverage.unread[:5]
         rest = f" and {len(coverage.unread) - len(shown)} more" if len(shown) < len(coverage.unread) else ""
         yield from _line([Piece(f"{len(coverage.unread)} of them in part: {', '.join(shown)}{rest}")], style, 0, 2)
-    near = coverage.unresolved
-    if selection.asked and not everything:
-        paths = {each.path for each in (*selection.graph.endpoints, *selection.graph.publishes)}
-        near = tuple(one for one in near if one.path in paths)
     shown = near if everything else near[:_SHOWN]
     for one in shown:
         written = f" `{one.written}`" if one.written else ""

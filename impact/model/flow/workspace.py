@@ -13,6 +13,7 @@ from ...facts.kinds import kind_of
 from ...gather import Gathered, gather
 from ..package import Watched, role_of_folder
 from ..workspace import Package, Workspace, link
+from .callers import Callers, callers
 from .defined import Defined
 from .graph import Graph
 from .join import Join
@@ -165,7 +166,23 @@ def graph_of(
     graph = workspace.code.graph(unread=_unread(workspace.code))
     if store is not None:
         store.remember("graph", [(key, msgspec.msgpack.encode(graph))])
+        store.remember("callers", [(key, msgspec.msgpack.encode(callers(workspace.code)))])
     return msgspec.structs.replace(graph, root=root, rev=rev)
+
+
+def callers_of(workspace: Workspace, store) -> Callers:
+    """Who calls whom in a workspace. store: as for graph_of(), which remembers it too."""
+    key = _key(workspace)
+    known = store.memo("callers", key) if store is not None else None
+    if known is not None:
+        try:
+            return msgspec.msgpack.decode(known, type=Callers)
+        except msgspec.MsgspecError:
+            pass  # of another version: made anew
+    found = callers(workspace.code)
+    if store is not None:
+        store.remember("callers", [(key, msgspec.msgpack.encode(found))])
+    return found
 
 
 def _unread(join: Join) -> list[str]:

@@ -29,7 +29,7 @@ from ..rule import Hit, rule
 from .statements import hits, quoted
 
 
-@rule(severity="warning", preview=True, compares=True)
+@rule(severity="warning", compares=True)
 def unreachable_publish(workspace: Workspace, base: Workspace) -> Iterator[Hit]:
     def says(change: Change) -> str:
         was = f"it ran under {quoted(change.old)}"

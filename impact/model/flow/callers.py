@@ -1,0 +1,105 @@
+"""Who calls whom in the code of a workspace, and what triggers it: small enough to be kept beside the graph."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+import msgspec
+
+from .graph import Trigger
+
+_DEEPEST = 8
+
+
+class Called(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A function. name: as facts have it; callers: places in Callers.functions; triggers: what runs it by itself."""
+
+    path: str
+    name: str
+    line: int
+    callers: tuple[int, ...] = ()
+    triggers: tuple[Trigger, ...] = ()
+
+
+class Led(NamedTuple):
+    """What leads to a function. steps: calls between; callback: the function that is triggered."""
+
+    trigger: Trigger
+    steps: int
+    callback: Called
+
+
+class Callers(msgspec.Struct, frozen=True, array_like=True, dict=True):
+    """All functions that something is called or triggered by, or that call something."""
+
+    functions: tuple[Called, ...] = ()
+
+    @cached_property
+    def _places(self) -> dict[tuple[str, str, int], int]:
+        return {(one.path, one.name, one.line): place for place, one in enumerate(self.functions)}
+
+    @cached_property
+    def _callees(self) -> dict[int, list[int]]:
+        found: dict[int, list[int]] = {}
+        for place, one in enumerate(self.functions):
+            for caller in one.callers:
+                found.setdefault(caller, []).append(place)
+        return found
+
+    def leading_to(self, path: str, name: str, line: int) -> list[Led]:
+        """What triggers a function, itself or through its callers, nearest first."""
+        place = self._places.get((path, name, line))
+        if place is None:
+            return []
+        found: dict[Trigger, Led] = {}
+        for each, steps in self._walk(place, lambda at: self.functions[at].callers):
+            one = self.functions[each]
+            for trigger in one.triggers:
+                found.setdefault(trigger, Led(trigger, steps, one))
+        return list(found.values())
+
+    def called_from(self, path: str, name: str, line: int) -> list[Called]:
+        """A function and all that it calls, nearest first; empty where it is not known."""
+        place = self._places.get((path, name, line))
+        if place is None:
+            return []
+        return [self.functions[each] for each, _ in self._walk(place, lambda at: self._callees.get(at, ()))]
+
+    def _walk(self, start: int, following) -> Iterator[tuple[int, int]]:
+        seen = {start}
+        queue = deque([(start, 0)])
+        while queue:
+            place, steps = queue.popleft()
+            yield place, steps
+            if steps < _DEEPEST:
+                fresh: Iterable[int] = [each for each in following(place) if each not in seen]
+                seen.update(fresh)
+                queue.extend((each, steps + 1) for each in fresh)
+
+
+def callers(join) -> Callers:
+    """The callers of all functions of a Join."""
+    code, triggers = join.code, join.triggers
+    above: dict[int, list] = {}
+    for fn in code.functions:
+        calling = [caller for caller, _ in code.callers.get(id(fn), ())]
+        if not calling and not triggers.get(id(fn)):
+            # What is only defined there, a lambda or an inner function, runs because of what is around it.
+            around = code.enclosing(fn)
+            calling = [around] if around is not None else []
+        above[id(fn)] = list({id(caller): caller for caller in calling}.values())
+    calls = {id(caller) for calling in above.values() for caller in calling}
+    kept = [fn for fn in code.functions if above[id(fn)] or triggers.get(id(fn)) or id(fn) in calls]
+    places = {id(fn): place for place, fn in enumerate(kept)}
+    return Callers(
+        tuple(
+            Called(
+                fn.source.path, fn.name, fn.facts.line, tuple(places[id(caller)] for caller in above[id(fn)]),
+                tuple(dict.fromkeys(triggers.get(id(fn), ()))),
+            )
+            for fn in kept
+        )
+    )  # fmt: skip
