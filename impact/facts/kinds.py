@@ -53,6 +53,7 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "flow_python": ("flow_python", "FlowFile", 4),
     "flow_script": ("", "", 1),
     "surface_cpp": ("surface_cpp", "HeaderSurface", 1),
+    "surface_python": ("surface_python", "ModuleSurface", 1),
 }
 """kind: (module, struct, version). Raise the version with every change of what an extractor says: it is part of the key
 under which facts are stored."""
