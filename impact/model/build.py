@@ -67,7 +67,9 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     generate_dynamic_reconfigure_options ...), imported, alias, external (ExternalProject_Add, ament_vendor), fetched
     (FetchContent), unknown (something is given to it, but nothing that could be read makes it).
     sources: paths relative to the workspace root when they can be told, else as written. guarded: of those, each that
-    stands under conditions besides the target's own, with these.
+    stands under conditions besides the target's own, with these. export_name: what it is called where it is exported,
+    empty for its name. public_standard: the C++ standard that it asks of those who link it. installed_includes: folders
+    of the prefix that those search for headers, from $<INSTALL_INTERFACE:>.
     """
 
     name: str
@@ -81,12 +83,17 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     alias_of: str = ""
     conditions: tuple[Condition, ...] = ()
     guarded: tuple[tuple[str, tuple[Condition, ...]], ...] = ()
+    export_name: str = ""
+    public_standard: int = 0
+    installed_includes: tuple[str, ...] = ()
 
 
 class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An install rule. kind: targets, files, programs, directory, python (catkin_python_setup,
     ament_python_install_package), export. items: paths relative to the workspace root, or target names.
-    patterns: of PATTERN/REGEX/FILES_MATCHING; excluded patterns start with `!`."""
+    patterns: of PATTERN/REGEX/FILES_MATCHING; excluded patterns start with `!`, and regular expressions then with `~`.
+    only: with FILES_MATCHING, so that nothing but what the patterns name is installed. rename: of files. export: the
+    export set that targets are put into. namespace: of an export. includes: INCLUDES DESTINATION of targets."""
 
     kind: str
     items: tuple[str, ...]
@@ -94,6 +101,11 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     at: At
     patterns: tuple[str, ...] = ()
     conditions: tuple[Condition, ...] = ()
+    only: bool = False
+    rename: str = ""
+    export: str = ""
+    namespace: str = ""
+    includes: tuple[str, ...] = ()
 
 
 class Exported(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -102,7 +114,8 @@ class Exported(msgspec.Struct, frozen=True, array_like=True, gc=False):
     how: ament_export_dependencies, ament_export_include_directories, ament_export_libraries, ament_export_targets,
     catkin_depends, system_depends (DEPENDS), include_dirs, libraries, cfg_extras, plugin_description, component
     (rclcpp_components: item is the class).
-    context: for a plugin description the package of the base class, for a component the library it is in.
+    context: for a plugin description the package of the base class, for a component the library it is in, for
+    ament_export_targets the namespace where one is given.
     executable: the program that is made to run the component alone, empty for none.
     """
 

@@ -46,11 +46,11 @@ _EXPORTS = {
 def ament_export(run: Interpreter, call: Call, args: list[Word]) -> None:
     """ament_export_dependencies() and kin."""
     how = _EXPORTS[call.name]
-    for item in split_words(args):
-        if item in ("HAS_LIBRARY_TARGET", "NAMESPACE"):
-            continue
+    given = sections(args, frozenset({"HAS_LIBRARY_TARGET", "NAMESPACE"}))
+    space = str(given["NAMESPACE"][0]) if given.get("NAMESPACE") else ""
+    for item in split_words([*given[""], *given.get("HAS_LIBRARY_TARGET", ()), *given.get("NAMESPACE", ())[1:]]):
         # Folders are relative to the install prefix here, unlike in catkin_package().
-        run.add_export(item, how, item.at, run.under(item))
+        run.add_export(item, how, item.at, run.under(item), space)
 
 
 @handles("ament_package")
@@ -336,8 +336,9 @@ def ament_auto_package(run: Interpreter, call: Call, args: list[Word]) -> None:
             run.add_export(draft.name, "ament_export_libraries", call.at, run.conditions)
     include = run.tree_path("include/")
     if run.path_exists(run.resolve("include"), True):
-        run.add_install(Install("directory", (include,), "include", at, (), run.conditions))
-        run.add_export("include", "ament_export_include_directories", call.at, run.conditions)
+        headers = f"include/{package}" if "USE_SCOPED_HEADER_INSTALL_DIR" in given else "include"
+        run.add_install(Install("directory", (include,), headers, at, (), run.conditions))
+        run.add_export(headers, "ament_export_include_directories", call.at, run.conditions)
     share = split_words([*given.get("INSTALL_TO_SHARE", []), *given.get("USE_SCOPED_HEADER_INSTALL_DIR", [])])
     for item in share:
         run.add_install(

@@ -14,11 +14,14 @@ class TargetDraft:
         "at",
         "conditions",
         "definitions",
+        "export_name",
         "installed_as",
+        "installed_includes",
         "kind",
         "links",
         "name",
         "output_name",
+        "public_standard",
         "sources",
         "standard",
     )
@@ -35,6 +38,9 @@ class TargetDraft:
         self.standard = 0
         self.output_name = ""
         self.alias_of = ""
+        self.export_name = ""
+        self.public_standard = 0
+        self.installed_includes: dict[str, None] = {}
         self.installed_as = kind  # the artifact: executable, library, static or module
 
     def finish(self) -> BuildTarget:
@@ -55,6 +61,9 @@ class TargetDraft:
                 for path, conditions in self.sources.items()
                 if (own := tuple(c for c in conditions if c not in self.conditions))
             ),
+            self.export_name,
+            self.public_standard,
+            tuple(self.installed_includes),
         )
 
     def add_source(self, path: str, conditions: tuple[Condition, ...]) -> None:

@@ -55,9 +55,11 @@ def install(run: Interpreter, call: Call, args: list[Word]) -> None:
         _directory(run, call, args[1:])
     elif form == "EXPORT" and len(args) > 1:
         destination = following(args, "DESTINATION") or ""
+        space = str(following(args, "NAMESPACE") or "")
         run.add_install(
-            Install("export", (str(args[1]),), run.shown(destination), run.place(args[1].at), (), run.under(args[1]))
-        )
+            Install("export", (str(args[1]),), run.shown(destination), run.place(args[1].at), (), run.under(args[1]),
+                    namespace=space)
+        )  # fmt: skip
 
 
 @handles("install_targets", "install_files", "install_programs")
@@ -77,6 +79,8 @@ def _targets(run: Interpreter, call: Call, args: list[Word]) -> None:
     artifact = ""
     expecting = ""
     in_names = True
+    export = ""
+    includes: list[str] = []
     for item in args:
         if in_names and item not in _KEYWORDS and item not in _ARTIFACTS:
             names.append(item)
@@ -89,8 +93,13 @@ def _targets(run: Interpreter, call: Call, args: list[Word]) -> None:
             expecting = str(item)
             if item == "INCLUDES":
                 artifact = "INCLUDES"
+        elif expecting == "DESTINATION" and artifact == "INCLUDES":
+            includes.append(run.shown(item))
         elif expecting == "DESTINATION":
             destinations.setdefault(artifact, run.shown(item))
+            expecting = ""
+        elif expecting == "EXPORT":
+            export = str(item)
             expecting = ""
     fallback = destinations.get("", "")
     rules: dict[tuple[str, tuple[Condition, ...]], list[Word]] = {}
@@ -110,10 +119,9 @@ def _targets(run: Interpreter, call: Call, args: list[Word]) -> None:
         rules.setdefault((destination, run.under(name)), []).append(name)
     for (destination, conditions), members in rules.items():
         run.add_install(
-            Install(
-                "targets", tuple(str(name) for name in members), destination, run.place(members[0].at), (), conditions
-            )
-        )
+            Install("targets", tuple(str(name) for name in members), destination, run.place(members[0].at), (),
+                    conditions, export=export, includes=tuple(includes))
+        )  # fmt: skip
 
 
 def _files(run: Interpreter, call: Call, kind: str, args: list[Word]) -> None:
@@ -130,7 +138,8 @@ def _files(run: Interpreter, call: Call, kind: str, args: list[Word]) -> None:
     for conditions, members in by_conditions.items():
         paths = tuple(run.tree_path(item) for item in members)
         place = run.place(members[0].at if len(members) == 1 else call.at)
-        run.add_install(Install(kind, paths, destination, place, (), merge(run.conditions, conditions)))
+        under, rename = merge(run.conditions, conditions), run.shown(following(args, "RENAME") or "")
+        run.add_install(Install(kind, paths, destination, place, (), under, rename=rename))
 
 
 def _destination(run: Interpreter, args: list[Word]) -> str:
@@ -152,9 +161,10 @@ def _directory(run: Interpreter, call: Call, args: list[Word]) -> None:
         elif in_items:
             items.append(item)
         elif mode in ("PATTERN", "REGEX"):
-            patterns.append(str(item))
+            patterns.append(f"~{item}" if mode == "REGEX" else str(item))
             mode = ""
     paths = tuple(run.tree_path(item) for item in split_words(items))
     run.add_install(
-        Install("directory", paths, _destination(run, args), run.place(call.at), tuple(patterns), run.conditions)
-    )
+        Install("directory", paths, _destination(run, args), run.place(call.at), tuple(patterns), run.conditions,
+                only="FILES_MATCHING" in args)
+    )  # fmt: skip

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from ..build import GeneratedInterfaces, Link
 from .blocks import Call
 from .drafts import TargetDraft
@@ -102,6 +104,8 @@ def known(run: Interpreter, name: Word) -> TargetDraft:
     return draft if draft is not None else run.new_target(name, "unknown", name.at)
 
 
+# The folders of the prefix that those who link a target search; spaces stand where a list was split.
+_INSTALLED = re.compile(r"\$<INSTALL_INTERFACE:([^<>]*)>")
 _VISIBILITY = {
     "PUBLIC": "PUBLIC",
     "PRIVATE": "PRIVATE",
@@ -141,7 +145,10 @@ def target_include_directories(run: Interpreter, call: Call, args: list[Word]) -
     """target_include_directories()."""
     if args:
         items = split_words(item for item in args[1:] if item not in _INCLUDE_FLAGS)
-        add_links(run, known(run, args[0]), items, "include")
+        draft = known(run, args[0])
+        add_links(run, draft, items, "include")
+        for found in _INSTALLED.findall(" ".join(items)):
+            draft.installed_includes.update(dict.fromkeys(run.shown(folder) for folder in found.split()))
 
 
 @handles("include_directories")
@@ -212,8 +219,12 @@ def target_compile_options(run: Interpreter, call: Call, args: list[Word]) -> No
     """target_compile_options() and target_compile_features(), of which the C++ standard is kept."""
     if args:
         draft = known(run, args[0])
+        seen = "PUBLIC"
         for item in args[1:]:
+            seen = str(item) if item in _VISIBILITY else seen
             draft.standard = max(draft.standard, flag_standard(item), feature_standard(item))
+            if seen != "PRIVATE":
+                draft.public_standard = max(draft.public_standard, feature_standard(item))
 
 
 @handles("add_compile_options", "add_definitions")
@@ -266,6 +277,8 @@ def set_target_property(run: Interpreter, name: Word, key: str, value: Word) -> 
         draft.standard = max(draft.standard, flag_standard(value))
     elif key in ("OUTPUT_NAME", "LIBRARY_OUTPUT_NAME", "RUNTIME_OUTPUT_NAME"):
         draft.output_name = str(value)
+    elif key == "EXPORT_NAME":
+        draft.export_name = str(value)
     elif key in ("INTERFACE_LINK_LIBRARIES", "LINK_LIBRARIES"):
         add_links(run, draft, list(split_words([value])), "link", "INTERFACE" if key.startswith("INTERFACE") else "")
     elif key == "INTERFACE_INCLUDE_DIRECTORIES":
