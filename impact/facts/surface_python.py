@@ -143,6 +143,7 @@ class _Module:
         self.all: list[str] | None = None
         self.all_open = False
         self.open: list[tuple[str, str]] = []
+        self.modules: set[str] = set()  # names that stand for an entry of sys.modules
 
     def block(self, body: Iterable[ast.stmt], scope: str, conditions: tuple[Condition, ...]) -> None:
         """Statements of the module or of a class body. scope: the class, empty for the module."""
@@ -266,6 +267,7 @@ class _Module:
                 outside.update(at.names)
             elif isinstance(at, (ast.Assign, ast.AnnAssign, ast.AugAssign)):
                 annotation = _text(at.annotation) if isinstance(at, ast.AnnAssign) else ""
+                of_module = isinstance(at.value, ast.Subscript) and _dotted(at.value.value) == "sys.modules"
                 for target in _flat(at.targets if isinstance(at, ast.Assign) else [at.target]):
                     if isinstance(target, ast.Attribute) and me and _dotted(target.value) == me:
                         name = f"{scope}.{target.attr}"
@@ -274,6 +276,8 @@ class _Module:
                             self.names.append(Bound(name, "instance", at.lineno, (), annotation, conditions=conditions))
                     elif isinstance(target, ast.Subscript):
                         self.subscript(target, "")
+                    elif isinstance(target, ast.Name) and of_module:
+                        self.modules.add(target.id)
                     elif isinstance(target, ast.Name) and target.id in outside:
                         late = (*conditions, LATE)
                         self.names.append(Bound(target.id, "attribute", at.lineno, conditions=late))
@@ -320,6 +324,8 @@ class _Module:
                 return
             name = f"{scope}.{target.id}" if scope else target.id
             text = _literal(value)
+            if isinstance(value, ast.Subscript) and _dotted(value.value) == "sys.modules":
+                self.modules.add(target.id)
             self.names.append(Bound(name, "attribute", target.lineno, (), annotation, text, conditions=conditions))
             if value is not None:
                 self.expression(value, scope)
@@ -336,7 +342,7 @@ class _Module:
         elif isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name) and not scope:
             # `Class.name = value` beside the class
             name = f"{target.value.id}.{target.attr}"
-            if any(bound.name == target.value.id and bound.kind == "class" for bound in self.names):
+            if self.is_class(target.value.id):
                 self.names.append(Bound(name, "attribute", target.lineno, (), "", _literal(value),
                                         conditions=conditions))  # fmt: skip
 
@@ -422,14 +428,17 @@ class _Module:
         if name in ("exec", "execfile"):
             self.open.append((scope, f"{name}()"))
         elif name == "setattr" and isinstance(owner, ast.Name):
-            of = owner.id if any(b.name == owner.id and b.kind == "class" for b in self.names) else ""
-            self.open.append((of, "setattr()"))
+            self.open.append((owner.id if self.is_class(owner.id) else "", "setattr()"))
         elif name == "setattr":
             self.open.append((scope, "setattr()"))
         elif isinstance(node.func, ast.Attribute) and node.func.attr == "update":
             maker = _dotted(node.func.value) if isinstance(node.func.value, ast.Call) else ""
             if maker in _NAMESPACES:
                 self.open.append((scope, f"{maker}().update()"))
+
+    def is_class(self, name: str) -> bool:
+        """Whether the module has bound a class of this name so far."""
+        return any(bound.name == name and bound.kind == "class" for bound in self.names)
 
     def late_call(self, node: ast.Call, scope: str, me: str) -> None:
         """The same in a function, where only the object itself and the module can be given names."""
@@ -438,7 +447,9 @@ class _Module:
             owner = node.args[0] if name == "setattr" and node.args else None
             if isinstance(owner, ast.Name) and owner.id == me:
                 self.open.append((scope, "setattr()"))
-            elif owner is not None and "sys.modules" in _text(owner):
+            elif isinstance(owner, ast.Name) and self.is_class(owner.id):
+                self.open.append((owner.id, "setattr()"))
+            elif owner is not None and ("sys.modules" in _text(owner) or _text(owner) in self.modules):
                 self.open.append(("", "setattr()"))
         elif me and name == f"{me}.__dict__.update":
             self.open.append((scope, "__dict__.update()"))

@@ -146,7 +146,7 @@ class _Surface:
             package.build_type,
             tuple(self.cmake_names()),
             targets,
-            _once(self.library(e.item) for e in self.exports if e.how in ("libraries", "ament_export_libraries")),
+            _once(self.libraries()),
             _once(self.roots()),
             _once(self.dependencies()),
             _once(e.item for e in self.exports if e.how == "system_depends"),
@@ -226,10 +226,14 @@ class _Surface:
             if not any(made.target == missing for made in self.build.generated):
                 self.note("targets", f"the export set `{missing}`")
 
-    def library(self, item: str) -> str:
-        if "$" in item:
-            self.note("libraries", f"`{item}`")
-        return item
+    def libraries(self) -> Iterator[str]:
+        for export in self.exports:
+            if export.how not in ("libraries", "ament_export_libraries"):
+                continue
+            if "$" in export.item:
+                self.note("libraries", f"`{export.item}`")
+            else:
+                yield export.item
 
     def roots(self) -> Iterator[str]:
         """Folders of the prefix that dependants search for headers."""
