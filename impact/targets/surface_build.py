@@ -335,7 +335,8 @@ class _Surface:
             sure = not install.conditions
             for source, installed in self.copied(install, destination):
                 if _HEADER.search(installed):
-                    yield Header(_below(installed, roots), installed, source, sure)
+                    include, certain = _below(installed, roots)
+                    yield Header(include, installed, source, sure and certain)
         yield from self.generated_headers(roots)
 
     def copied(self, install: Install, destination: str) -> Iterator[tuple[str, str]]:
@@ -493,9 +494,12 @@ def _actions(actions: Iterable[Action]) -> Iterator[Action]:
             yield from _actions(action.children)
 
 
-def _below(installed: str, roots: list[str]) -> str:
-    """The path below the longest exported folder that holds it. Roots come longest first."""
-    return next((installed[len(root) + 1 :] for root in roots if installed.startswith(f"{root}/")), installed)
+def _below(installed: str, roots: list[str]) -> tuple[str, bool]:
+    """What dependants write for a header: its path below the longest exported folder that leaves it in a folder, as
+    they all are called after their package; and whether that is the longest folder of all. Roots come longest first."""
+    rests = [installed[len(root) + 1 :] for root in roots if installed.startswith(f"{root}/")]
+    chosen = next((rest for rest in rests if "/" in rest), rests[-1] if rests else installed)
+    return chosen, not rests or chosen == rests[0]
 
 
 def _let_in(install: Install, inside: str) -> bool:

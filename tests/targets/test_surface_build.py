@@ -157,6 +157,9 @@ def test_a_catkin_package(surface):
         ("if(X)\n  install(FILES include/arm/a.hpp DESTINATION include/arm)\nendif()", ["arm/a.hpp?"]),
         ("install(DIRECTORY include/ DESTINATION include/arm)\nament_export_include_directories(include/arm)",
          ["arm/a.hpp", "arm/deep/b.h"]),
+        # The folder that is searched is not where they go: the prefix's own is searched too.
+        ("install(DIRECTORY include/ DESTINATION include)\nament_export_include_directories(include/arm)",
+         ["arm/a.hpp?", "deep/b.h"]),
         ("install(DIRECTORY include/ DESTINATION share/arm)", []),
     ],
 )  # fmt: skip
@@ -238,8 +241,8 @@ def test_a_plain_cmake_package_with_a_configuration_of_its_own(surface):
         (LIBRARY, LIBRARY.replace("rclcpp ", ""), [("removed", "dependency", "rclcpp", "")]),
         (LIBRARY, LIBRARY.replace("std_17", "std_20"), [("signature", "standard", "C++", "20")]),
         (LIBRARY, LIBRARY.replace("/${PROJECT_NAME}", ""), []),
-        (LIBRARY, LIBRARY.replace("install(DIRECTORY include/", "install(DIRECTORY include/arm/"),
-         [("moved", "header", "arm/a.hpp", "a.hpp")]),
+        (LIBRARY, LIBRARY.replace("DESTINATION include/${PROJECT_NAME})", "DESTINATION include/${PROJECT_NAME}/b)"),
+         [("moved", "header", "arm/a.hpp", "b/arm/a.hpp")]),
         (LIBRARY, LIBRARY.replace("install(DIRECTORY include/", "install(DIRECTORY ${X}/include/"),
          [("removed", "header", "arm/a.hpp", "unsure")]),
     ],
