@@ -148,6 +148,12 @@ ROWS = {
              "self.create_subscription(Twist, 'courses', print, 10)"),
         ("quay/crane.py", "input()", "'far_away'"),
     ),
+    "a publisher that is not seen to be made": Row(
+        "near-miss-name",
+        quay(TALKS + "\nself.pub = self.far_pub()\nself.pub.publish(Twist())",
+             "self.create_subscription(Twist, 'courses', print, 10)"),
+        ("quay/crane.py", "self.pub.publish(Twist())", "pass"),
+    ),
     "a server of an unknown name": Row(
         "unmatched-client",
         quay("self.create_service(GetMap, 'port/chart', print)\nself.create_service(GetMap, input(), print)",

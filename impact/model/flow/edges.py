@@ -102,7 +102,8 @@ class Flow:
         return [one for one in self.known.get((_kind(endpoint.role), endpoint.topic), ()) if one.role == wanted]
 
     def may_have(self, role: str, type_: str) -> bool:
-        """Whether something in the workspace of this role and type has a name that is not known or not certain."""
+        """Whether something in the workspace of this role and type has a name that is not known or not certain, or
+        publishes what is not known."""
         return bool(self._unsure.get(role, set()) & {type_, "", "*"})
 
     @cached_property
@@ -113,6 +114,9 @@ class Flow:
         for one in self.graph.endpoints:
             if not self.is_sure(one):
                 found.setdefault(one.role, set()).add(one.type)
+        # What publishes through something that is not seen to be made anywhere, as a wrapper that is not followed.
+        if any(one.what == "publish" and "which publisher" in one.reason for one in self.graph.coverage.unresolved):
+            found.setdefault("publisher", set()).add("")
         return found
 
     def of_node(self, one: Endpoint) -> list[Endpoint]:

@@ -31,6 +31,8 @@ def one_sided(workspace: Workspace, role: str) -> Iterator[Sure]:
         if type_.partition("/")[0] not in workspace.interface_names or not met.isdisjoint((type_, "", "*")):
             continue
         private = begins(endpoint, "~") or endpoint.topic.startswith(f"{one.node.name}/")
+        if role == "subscriber" and flow.may_have("publisher", type_):
+            continue
         place = (endpoint.path, endpoint.line)
         if endpoint.implied or private or not told.isdisjoint((endpoint.topic, place)):
             continue
