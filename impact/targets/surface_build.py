@@ -133,6 +133,8 @@ class _Surface:
         self.name = self.build.project or package.name
         self.unknown: dict[tuple[str, str], None] = {}
         self.targets = {target.name: target for target in self.build.targets}
+        # Packages of catkin that DEPENDS names are taken for CATKIN_DEPENDS.
+        self.of_catkin = frozenset(found.name for found in self.build.found if found.how == "catkin")
         self.installs = [install for install in self.build.installs if not for_tests(install.conditions)]
         self.exports = [export for export in self.build.exports if not for_tests(export.conditions)]
 
@@ -149,7 +151,7 @@ class _Surface:
             _once(self.libraries()),
             _once(self.roots()),
             _once(self.dependencies()),
-            _once(e.item for e in self.exports if e.how == "system_depends"),
+            _once(e.item for e in self.exports if e.how == "system_depends" and e.item not in self.of_catkin),
             tuple(sorted(commands)),
             tuple(sorted(variables)),
             max((target.standard for target in targets), default=0),
@@ -252,7 +254,8 @@ class _Surface:
 
     def dependencies(self) -> Iterator[str]:
         for export in self.exports:
-            if export.how in ("ament_export_dependencies", "catkin_depends"):
+            of_catkin = export.how == "system_depends" and export.item in self.of_catkin
+            if of_catkin or export.how in ("ament_export_dependencies", "catkin_depends"):
                 yield export.item
         # In catkin the packages that messages come from are declared again; rosidl exports them by itself.
         yield from (name for made in self.build.generated if made.how == "rosidl" for name, _ in made.dependencies)

@@ -154,6 +154,7 @@ def test_a_catkin_package(surface):
         ('install(DIRECTORY include/ DESTINATION include FILES_MATCHING REGEX "[.]h$")', ["arm/deep/b.h"]),
         ("install(FILES include/arm/a.hpp DESTINATION include/arm RENAME c.hpp)", ["arm/c.hpp"]),
         ("install(FILES ${CMAKE_CURRENT_BINARY_DIR}/export.h DESTINATION include/arm)", ["arm/export.h"]),
+        ("install(FILES ${CATKIN_DEVEL_PREFIX}/include/arm/made.h DESTINATION include/arm)", ["arm/made.h"]),
         ("if(X)\n  install(FILES include/arm/a.hpp DESTINATION include/arm)\nendif()", ["arm/a.hpp?"]),
         ("install(DIRECTORY include/ DESTINATION include/arm)\nament_export_include_directories(include/arm)",
          ["arm/a.hpp", "arm/deep/b.h"]),
@@ -172,6 +173,12 @@ def test_headers_of_a_folder_that_cannot_be_told_are_unknown(surface):
     found = surface("install(DIRECTORY ${SOMEWHERE}/include/ DESTINATION include)\nament_package()")
     assert found.headers == ()
     assert found.unknown == (("headers", "`${SOMEWHERE}/include/` is installed"),)
+
+
+def test_a_catkin_package_in_depends_is_a_dependency_like_others(surface):
+    cmake = "find_package(catkin REQUIRED COMPONENTS tf2 urdf)\ncatkin_package(DEPENDS tf2 Boost)"
+    found = surface(cmake, tool="catkin")
+    assert (found.dependencies, found.system) == (("tf2",), ("Boost",))
 
 
 def test_components_and_plugins(surface):
