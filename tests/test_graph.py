@@ -128,7 +128,7 @@ def test_a_launch_file_gives_names_parameters_and_remappings(ws):
 
 
 def test_an_argument_that_the_launch_file_does_not_declare_is_told(ws):
-    code, out, err = run(ws, "--launch", "talk.launch.xml", "--set", "wehre:=rear", "-f", "json")
+    code, _, err = run(ws, "--launch", "talk.launch.xml", "--set", "wehre:=rear", "-f", "json")
     assert code == 0
     assert "--set wehre: `src/talk/launch/talk.launch.xml` has no such argument; it declares `where`" in err
     assert "no such argument" not in run(ws, "--launch", "talk.launch.xml", "--set", "where:=rear")[2]
