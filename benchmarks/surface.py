@@ -132,13 +132,14 @@ def _take(child, path: str, prefix: str, found: list[Seen]) -> None:
         return
     if known in ("function", "method", "constructor", "destructor", "conversion"):
         seen = _function(child, friend=False)
-        if access == "private" and not (seen["virtual"] or seen["deleted"]):
+        if kind == "FUNCTION_TEMPLATE":
+            known = _template_kind(child)
+        if access == "private" and not (seen["virtual"] or seen["deleted"] or known in ("constructor", "destructor")):
             return
         name = re.sub(r"<[^()]*>$", "", child.spelling) if known in ("constructor",) else child.spelling
         if kind == "FUNCTION_DECL" and _explicit(child):
             return
         if kind == "FUNCTION_TEMPLATE":
-            known = _template_kind(child)
             name = re.sub(r"<[^()]*>$", "", name) if known == "constructor" else name
         if known == "destructor":
             name = name.partition("<")[0]

@@ -68,7 +68,7 @@ class Entity(msgspec.Struct, frozen=True, array_like=True, gc=False):
     noexcept, explicit, deleted, defaulted, friend, inline, extern, mutable, volatile, scoped, nodiscard, variadic, `&`,
     `&&`. deprecated: None, or the message, which may be empty. internal: stands in a namespace that is called detail,
     internal, impl or the like. macro: the macro that declares it, where it is not spelt out. A private entity is only
-    there when it is virtual or a deleted constructor or assignment."""
+    there when it is virtual, deleted, or a constructor or destructor (the compiler then makes none)."""
 
     kind: str
     name: str

@@ -19,7 +19,6 @@ from .surface import Argument, Entity, HeaderSurface
 from .surface_cpp_declarations import ClassHead, Declared, Head, class_head, declared, head_of, without_deprecation
 from .surface_cpp_macros import DECLARES
 from .surface_cpp_types import (
-    IDENTIFIER,
     arguments_of,
     closed,
     joined,
@@ -74,6 +73,7 @@ _INTERNAL = re.compile(
 _ENDS_INIT = "=(,[&|+*?<"
 _BODY_WORDS = frozenset(("const", "noexcept", "override", "final", "mutable", "try", "volatile"))
 _LAST_WORD = re.compile(r"(\w+)\s*\Z")
+_MADE = frozenset(("constructor", "destructor"))
 _NUMBER = re.compile(r"(?:0[xX][\da-fA-F]+|\d+)[uUlL]*\Z")
 _HEADER_MACROS = ("DEPRECATED_HEADER", "HEADER_DEPRECATED")
 
@@ -356,7 +356,7 @@ class _Reader:
                         self.access = word[0] if word[0] in ("public", "protected", "private") else "public"
                         place += 2
                         continue
-                    if tokens[place + 2 : place + 3] == [":"] and IDENTIFIER.match(tokens[place + 1]):
+                    if tokens[place + 2 : place + 3] == [":"] and tokens[place + 1].isidentifier():
                         self.access = word[0]
                         place += 3
                         continue
@@ -462,7 +462,7 @@ class _Reader:
                 cut = words.index("operator")
                 name = "operator" + joined(words[cut + 1 :])
             else:
-                name = next((word for word in reversed(words) if IDENTIFIER.match(word)), "")
+                name = next((word for word in reversed(words) if word.isidentifier()), "")
             if name and "::" in words:
                 self._add("using", name, start, at, type=joined(words).removeprefix("::"), deprecated=deprecated)
 
@@ -565,7 +565,7 @@ class _Reader:
         if not name and not whole:
             return
         access = self.access if scope.class_name and not friend else ""
-        if access == "private" and not ("virtual" in traits or "deleted" in traits):
+        if access == "private" and not ("virtual" in traits or "deleted" in traits or kind in _MADE):
             return
         offset = self._offset(at_word or name, start, at)
         prefix = scope.around if friend else scope.prefix
@@ -638,7 +638,7 @@ class _Reader:
                 continue
             if token == "::":
                 inline.append(tokens[position + 1 : position + 2] == ["inline"])
-            elif IDENTIFIER.match(token) and token not in ("inline", "__attribute__") and len(names) < len(inline):
+            elif token.isidentifier() and token not in ("inline", "__attribute__") and len(names) < len(inline):
                 names.append(token)
             position += 1
         prefix = around.prefix
@@ -721,7 +721,7 @@ class _Reader:
                 piece = piece[1:]
             if any("eprecated" in word or "DEPRECATED" in word for word in piece[1:]):
                 piece, deprecated = without_deprecation(piece)
-            if not piece or not IDENTIFIER.match(piece[0]):
+            if not piece or not piece[0].isidentifier():
                 continue
             word = piece[0]
             offset = self._word(word, position, end)
@@ -866,7 +866,7 @@ def _last_closing(tokens: Sequence[str]) -> int:
 
 def _is_macro_before_section(tokens: Sequence[str], place: int) -> bool:
     word = tokens[place]
-    if not IDENTIFIER.match(word) or not word.isupper():
+    if not word.isidentifier() or not word.isupper():
         return False
     behind = place + 1
     if behind < len(tokens) and tokens[behind] == "(":
@@ -910,7 +910,7 @@ def _declarators(tail: Sequence[str]) -> list[tuple[str, str]]:
             if word == "(":
                 place = closed(piece, place)
                 continue
-            if IDENTIFIER.match(word) and word not in ("const", "volatile"):
+            if word.isidentifier() and word not in ("const", "volatile"):
                 name = name if name else word
             place += 1
         if name and not (name.isupper() and name.endswith("PACKED")):

@@ -11,7 +11,6 @@ from .surface_cpp_types import (
     ATTRIBUTE_WORDS,
     BUILTIN,
     CAPITALS,
-    IDENTIFIER,
     argument,
     arguments_of,
     closed,
@@ -179,12 +178,12 @@ def head_of(tokens: Sequence[str], class_name: str) -> Head:
             and token != class_name
             and token != "decltype"
             and token not in BUILTIN
-            and IDENTIFIER.match(token)
+            and token.isidentifier()
             and token != "operator"
         ):
             behind = closed(tokens, place + 1)
             if behind < end and not (
-                (IDENTIFIER.match(tokens[behind]) and tokens[behind] not in _AFTER_FUNCTION)
+                (tokens[behind].isidentifier() and tokens[behind] not in _AFTER_FUNCTION)
                 or tokens[behind] in ("~", "::", "[", ";")
             ):
                 break
@@ -245,7 +244,7 @@ def template_parameters(tokens: Sequence[str]) -> tuple[TemplateParameter, ...]:
 def _type_parameter(kind: str, rest: list[str]) -> TemplateParameter:
     pack = rest[:1] == ["..."]
     rest = rest[1:] if pack else rest
-    name = rest[0] if rest and IDENTIFIER.match(rest[0]) else ""
+    name = rest[0] if rest and rest[0].isidentifier() else ""
     default = None
     if "=" in rest:
         default = type_text(rest[rest.index("=") + 1 :])
@@ -276,7 +275,7 @@ def class_head(tokens: Sequence[str], place: int) -> ClassHead | None:
         elif token == "(" and units and CAPITALS.match(tokens[units[-1][0]]):
             units.pop()  # a macro with arguments
             place = closed(tokens, place)
-        elif IDENTIFIER.match(token) or token == "::":
+        elif token.isidentifier() or token == "::":
             behind = unit_end(tokens, place)
             if behind <= place:
                 return None
@@ -358,9 +357,9 @@ def declared(tokens: list[str], head: Head, class_name: str) -> list[Declared] |
         elif token == "[":
             place = closed(rest, place)
             continue
-        elif token == "~" or IDENTIFIER.match(token) or token == "::":
+        elif token == "~" or token.isidentifier() or token == "::":
             if token not in _PLAIN:
-                if token == "::" and not (place + 1 < end and (IDENTIFIER.match(rest[place + 1]))):
+                if token == "::" and not (place + 1 < end and (rest[place + 1].isidentifier())):
                     place += 1
                     continue
                 behind = unit_end(rest, place)
@@ -415,7 +414,7 @@ def _called(
     if len(units) == 1 and not builtin:
         if behind < len(rest) and rest[behind] == "->":
             return []  # a deduction guide
-        if behind < len(rest) and (IDENTIFIER.match(rest[behind]) or rest[behind] in ("~", "[")):
+        if behind < len(rest) and (rest[behind].isidentifier() or rest[behind] in ("~", "[")):
             # a macro, and what follows it
             again = head_of(rest[behind:], class_name)
             return declared(rest[behind:], again._replace(traits=again.traits | head.traits), class_name)
@@ -537,7 +536,7 @@ def _operator(rest: list[str], place: int, units: list[tuple[int, int]], head: H
         stop += 2
         converts = False
     else:
-        word = stop < end and bool(IDENTIFIER.match(rest[stop]) or rest[stop] == "::")
+        word = stop < end and bool(rest[stop].isidentifier() or rest[stop] == "::")
         converts = word and rest[stop] not in ("new", "delete", "co_await")
         while stop < end and rest[stop] != "(":
             if converts and rest[stop] == "<":
@@ -569,14 +568,14 @@ def _operator(rest: list[str], place: int, units: list[tuple[int, int]], head: H
 def _grouped(rest: list[str], place: int, behind: int, head: Head) -> list[Declared] | None:
     """`type (*name)(arguments)`, `type (name)(arguments)`."""
     group = rest[place + 1 : behind - 1]
-    if len(group) == 1 and IDENTIFIER.match(group[0]) and behind < len(rest) and rest[behind] == "(":
+    if len(group) == 1 and group[0].isidentifier() and behind < len(rest) and rest[behind] == "(":
         return declared([*rest[:place], group[0], *rest[behind:]], head._replace(place=0), "")
     if "(" in group and group[0] in _POINTERS:
         # a function that gives a pointer to a function or array
         inner = [*rest[:place], "(", group[0], ")", *rest[behind:]]
         opening = group.index("(")
         stop = closed(group, opening)
-        if opening and IDENTIFIER.match(group[opening - 1]):
+        if opening and group[opening - 1].isidentifier():
             return [
                 _function(
                     "function", group[opening - 1], named(inner)[0], group, group[opening + 1 : stop - 1], stop, head

@@ -27,7 +27,6 @@ _POINTERS = frozenset(("*", "&", "&&", "..."))
 RESTRICT = frozenset(("restrict", "__restrict", "__restrict__"))
 ATTRIBUTE_WORDS = frozenset(("__attribute__", "__attribute", "__declspec", "alignas", "_Alignas"))
 _NO_UNITS = frozenset((*_DROPPED, *_QUALIFIERS, *RESTRICT, "register", "in", "mutable")) - {"in"}
-IDENTIFIER = re.compile(r"[^\W\d]")
 CAPITALS = re.compile(r"_*[A-Z][A-Z0-9_]+\Z")
 """How macros are written, and some types."""
 
@@ -263,11 +262,7 @@ def unit_end(tokens: Sequence[str], at: int) -> int:
             place = closed_angle(tokens, place) or place
             if tokens[place - 1] != ">":
                 return place
-        if (
-            place + 1 < end
-            and tokens[place] == "::"
-            and (IDENTIFIER.match(tokens[place + 1]) or tokens[place + 1] == "~")
-        ):
+        if place + 1 < end and tokens[place] == "::" and (tokens[place + 1].isidentifier() or tokens[place + 1] == "~"):
             place += 1
             continue
         return place
@@ -318,11 +313,11 @@ def named(tokens: Sequence[str]) -> tuple[str, str]:
                     inner_end = closed(rest, 0)
                     return f"{front}({operators}){parameters_text(rest[1 : inner_end - 1])}", name
                 return f"{front}({operators}){joined(rest)}", name
-            if units and behind < end and IDENTIFIER.match(tokens[behind]):
+            if units and behind < end and tokens[behind].isidentifier():
                 dropped.append((units.pop()[0], behind))  # a macro with arguments
             place = behind
             continue
-        elif IDENTIFIER.match(token) or token == "::":
+        elif token.isidentifier() or token == "::":
             behind = unit_end(tokens, place)
             if behind > place:
                 units.append((place, behind))
@@ -362,7 +357,7 @@ def _within_group(group: Sequence[str]) -> tuple[str, str]:
     """The name in `(*name)`, `(&name)[3]`, `(Class::*name)`, and what is left without it."""
     place = max(index for index, token in enumerate(group) if token in _POINTERS) + 1
     rest = [token for token in group[place:] if token not in _QUALIFIERS]
-    if rest and IDENTIFIER.match(rest[0]):
+    if rest and rest[0].isidentifier():
         return rest[0], joined(group[:place])
     return "", joined(group[:place])
 

@@ -17,7 +17,7 @@ class Change(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | kind | holds |
     |---|---|
     | removed, added | the entity; what is `overload` where others of its name stay; members of a class that goes or
-      comes as a whole are not told one by one |
+      comes as a whole are not told one by one; what the compiler makes then by itself is compatible |
     | moved | the same entity in another header; members are not told beside their class |
     | renamed | a hint: a removed and an added entity that look alike; sure: how much, 0 to 1. Both are told as removed
       and added too |
@@ -73,7 +73,7 @@ def compare(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) 
     changes += _renamed(gone, come)
     for path, one in gone:
         if _owner(one.name) not in lost:
-            changes.append(Change("removed", one.name, one, None, path))
+            changes.append(Change("removed", one.name, one, None, path, "", (), _implicit(one)))
     for path, one in come:
         if _owner(one.name) in found:
             continue
@@ -85,6 +85,25 @@ def compare(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) 
             (change for change in changes if not (change.kind == "moved" and _owner(change.name) in moved)),
             key=lambda change: (change.name, change.kind, change.old_header, change.new_header),
         )
+    )
+
+
+def _implicit(one: Entity) -> bool:
+    """Whether the compiler makes it when nobody writes it: a destructor, and constructors with no others beside."""
+    if one.kind == "destructor":
+        return "virtual" not in one.traits
+    return one.kind == "constructor" and (
+        _copies(one) or all(parameter.default is not None for parameter in one.parameters or ())
+    )
+
+
+def _copies(one: Entity) -> bool:
+    """Whether it is a copy or move constructor."""
+    types = _types(one)
+    return (
+        one.kind == "constructor"
+        and len(types) == 1
+        and types[0].removeprefix("const ").rstrip("&") == _simple(one.name)
     )
 
 
@@ -207,7 +226,7 @@ def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[Change]
     added = [placed for number, placed in enumerate(left) if number not in used_new]
     for path, one in removed:
         # an overload that another one takes over is no loss
-        taken = "virtual" not in one.traits and _covered(one, [other for _, other in news])
+        taken = _copies(one) or ("virtual" not in one.traits and _covered(one, [other for _, other in news]))
         changes.append(Change("removed", one.name, one, None, path, "", ("overload",), taken))
     for path, one in added:
         changes.append(Change("added", one.name, None, one, "", path, ("overload",), "pure" not in one.traits))

@@ -25,6 +25,10 @@ CASES = [
     ("struct A { int a; void f(); };", "", [("removed", "A", "", False)]),
     ("struct A { int a; int b; };", "struct A { int a; };", [("removed", "A::b", "", False)]),
     ("struct A {};", "struct A { virtual void f() = 0; };", [("added", "A::f", "", False)]),
+    ("struct A { A(); ~A(); };", "struct A {};", [("removed", "A::A", "", True), ("removed", "A::~A", "", True)]),
+    ("struct A { A(int); };", "struct A {};", [("removed", "A::A", "", False)]),
+    ("struct A { A(int); A(const A &); };", "struct A { A(int); };", [("removed", "A::A", "overload", True)]),
+    ("class A { public: A(); };", "class A { private: A(); };", [("access", "A::A", "", False)]),
     # signatures
     ("void f(int a);", "void f(int a, int b = 0);", [("signature", "f", "arity", True)]),
     ("void f(int a);", "void f(int a, int b);", [("signature", "f", "arity", False)]),
