@@ -154,7 +154,12 @@ class Calls:
         if value.kind == "name":
             if value.text == "this" or value.text in ("self", "*this"):
                 return True
-            if self.kinds_of(self.code.type_of(value, fn), fn) & {"node", "handle", "image_transport"}:
+            if self.kinds_of(self.code.type_of(value, fn), fn) & {
+                "node",
+                "handle",
+                "image_transport",
+                "cloud_transport",
+            }:
                 return True
             kind = self.code.type_of(value, fn).name
             return tail(kind) in ("NodeT", "NodeType", "Node") or (not kind and tail(value.text).strip("_") in _NODES)
@@ -203,6 +208,10 @@ class Calls:
                 rows = self._rows(code.meant(around(call.callee), source, scope), fn)
                 if rows:
                     yield rows, call
+            elif cpp and last[:1].isupper() and "::" in call.callee and "." not in call.callee:
+                kind = code.meant_type(call.callee, source, scope)
+                if rows := self._rows(kind.name, fn):
+                    yield rows, call if call.types else _with_types(call, kind)
             for argument in call.arguments if cpp else ():
                 for make in _nested(argument) if argument.parts or argument.kind == "make" else ():
                     kind = code.meant_type(make.text, source, scope)
@@ -242,7 +251,8 @@ class Calls:
                     yield rows, Call(kind.name, arguments, each.line, 0, each.guard, types, each.target)
 
     def _made_by_members(self, fn: Fn) -> Iterator[tuple[str, Call]]:
-        """Members that a class has by value and that its constructors do not initialise, told once."""
+        """Members that a class has by value, or makes where they stand, and that its constructors do not initialise,
+        told once."""
         owner = self.code.owner_of(fn) if fn.source.facts.language == "cpp" and fn.facts.owner else None
         if owner is None:
             return
@@ -258,9 +268,16 @@ class Calls:
         begun = {each.target for one in constructors for each in one.facts.assignments}
         for member in owner.facts.members:
             target = f"this.{member.name}"
-            if member.value is None and target not in begun and "*" not in member.type and "&" not in member.type:
+            given = member.value
+            if given is not None and given.kind == "make" and given.text and target not in begun:
+                kind = self.code.meant_type(given.text, owner.source, owner.name)
+                types = ", ".join(kind.arguments)
+                yield kind.name, Call(kind.name, given.parts, member.line, 0, -1, types, target)
+            elif member.value is None and target not in begun and "*" not in member.type and "&" not in member.type:
                 kind = self.code.meant_type(member.type, owner.source, owner.name)
-                if parsed(member.type).name == member.type.partition("<")[0]:
+                # What is left is a pointer: `Client<T>::SharedPtr`.
+                whole = "<" not in member.type or member.type.rstrip().endswith(">")
+                if whole and parsed(member.type).name == member.type.partition("<")[0]:
                     types = ", ".join(kind.arguments)
                     yield kind.name, Call(kind.name, (), fn.facts.line, 0, -1, types, target)
 

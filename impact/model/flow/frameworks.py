@@ -60,13 +60,15 @@ class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 class Frameworks:
     """The table, ready to be asked. calls: rows by the last part of the callee; objects: rows by the last part of the
-    type that is made; kinds: last part of a class's name to its full names and their kinds."""
+    type that is made; kinds: last part of a class's name to its full names and their kinds; types: classes to the
+    interfaces that they are sent as."""
 
     def __init__(self, table: dict[str, Any]):
         """table: as frameworks.toml has it. Raises msgspec.ValidationError that names what is wrong."""
         self.calls: dict[str, list[Row]] = {}
         self.objects: dict[str, list[Row]] = {}
         self.kinds: dict[str, list[tuple[str, str]]] = {}
+        self.types: dict[str, str] = dict(table.get("types", {}))
         for row in map(_row, table.get("call", ())):
             for name in row.names:
                 self.calls.setdefault(name, []).append(row)

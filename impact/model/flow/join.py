@@ -478,13 +478,15 @@ class Join:
 
 
 def _types(site: Site, owner: Owner) -> tuple[str, ...]:
-    """The types that a site has for whoever runs it: several where a template is used with several."""
+    """The types that a site has for whoever runs it: several where a template is used with several. Which of several
+    names has which of them is not known."""
     if site.type or not site.types:
         return (site.type,)
     here = site.types
     if isinstance(owner, Running):
         here = [one for one in here if one.cls in owner.classes or one.fn in owner.functions]
-    return tuple(dict.fromkeys(one.type for one in here)) or ("",)
+    found = tuple(dict.fromkeys(one.type for one in here)) or ("",)
+    return found if len(found) == 1 or len(site.names) < 2 else ("",)
 
 
 def _node_of(owner: Owner) -> Node | None:

@@ -20,7 +20,7 @@ from .templates import Templates
 from .types import interface_of, interface_of_header, parsed, split
 from .values import Value, Values, beside
 
-_HANDLES = frozenset(("handle", "image_transport"))
+_HANDLES = frozenset(("handle", "image_transport", "cloud_transport"))
 LOST = "?"
 """Begins the namespace of a node handle that is not known."""
 _ROLES: dict[str, Role] = {
@@ -312,7 +312,9 @@ class Sites:
                     continue
                 if tail(kind.name) in ("ShapeShifter", "AnyMsg", "SerializedMessage"):
                     return "*"
-                known = interface_of(f"{kind.name}<{', '.join(kind.arguments)}>" if kind.arguments else kind.name)
+                known = self.calls.table.types.get(kind.name) or interface_of(
+                    f"{kind.name}<{', '.join(kind.arguments)}>" if kind.arguments else kind.name
+                )
                 if not known:
                     known = self._in_namespaces(kind.name, fn) or self._in_scope(kind.name, fn)
                 if known:
@@ -458,7 +460,10 @@ class Sites:
 
     def _joined_callbacks(self, use: Use) -> tuple[tuple[Fn, ...], str]:
         """For filters: the callbacks registered with whatever joins them."""
-        variable = (self._variable(use) or self._joint(use)) if use.row.does == "subscriber" else None
+        # A listener to transforms that a filter waits for feeds nothing through it.
+        fixed = isinstance(use.row.topic[0], str) and use.row.topic[0].startswith("=") if use.row.topic else False
+        feeds = use.row.does == "subscriber" and not fixed
+        variable = (self._variable(use) or self._joint(use)) if feeds else None
         if variable is None:
             return (), ""
         found = list(dict.fromkeys(fn for fn in self.joins.get(variable, ())))
@@ -865,6 +870,15 @@ class Sites:
         found = self.kept.get(variable)
         if found:
             yield from found
+        wrapped = [(writer, each.value) for writer, each in code.writes.get(variable, ())]
+        for writer, value in [*wrapped, *self._resets.get(variable, ())]:
+            # `RealtimePublisher(publisher)`
+            if value.kind == "make" and "publisher" in self.calls.kinds_of(
+                code.meant_type(value.text, writer.source, writer.scope), writer
+            ):
+                for part in value.parts:
+                    if part.kind == "name":
+                        yield from self.publishers(part.text, writer, depth + 1)
         for writer, each in code.writes.get(variable, ()):
             if each.value.kind in ("name", "index", "call") and each.operator in ("=", "for"):
                 text = (
