@@ -61,7 +61,7 @@ class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Frameworks:
     """The table, ready to be asked. calls: rows by the last part of the callee; objects: rows by the last part of the
     type that is made; kinds: last part of a class's name to its full names and their kinds; types: classes to the
-    interfaces that they are sent as."""
+    interfaces that they are sent as; generations: frameworks to the generation of ROS that they are of."""
 
     def __init__(self, table: dict[str, Any]):
         """table: as frameworks.toml has it. Raises msgspec.ValidationError that names what is wrong."""
@@ -69,6 +69,7 @@ class Frameworks:
         self.objects: dict[str, list[Row]] = {}
         self.kinds: dict[str, list[tuple[str, str]]] = {}
         self.types: dict[str, str] = dict(table.get("types", {}))
+        self.generations: dict[str, int] = dict(table.get("generations", {}))
         for row in map(_row, table.get("call", ())):
             for name in row.names:
                 self.calls.setdefault(name, []).append(row)

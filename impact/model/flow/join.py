@@ -46,8 +46,6 @@ _TRIGGERS = {
     "subscriber": "subscriber", "server": "service", "action server": "action", "client": "service",
     "action client": "action", "publisher": "unknown",
 }  # fmt: skip
-_ROS1 = frozenset(("roscpp", "rospy", "actionlib", "dynamic_reconfigure"))
-_ROS2 = frozenset(("rclcpp", "rclpy", "nav2"))
 
 
 class Running(NamedTuple):
@@ -412,10 +410,10 @@ class Join:
         full = node.name if node and node.name else f"/{node.executable or tail(node.plugin)}" if node else "/node"
         full = loaded.name if loaded is not None else full
         namespace, _, own = full.rpartition("/")
-        framework = site.use.row.framework
-        if framework == "moos":
+        generation = self.calls.table.generations.get(site.use.row.framework, self.ros)
+        if not generation:
             return text, value.how, ""
-        one = framework in _ROS1 or (framework not in _ROS2 and self.ros == 1)
+        one = generation == 1
         try:
             if one:
                 text = text.replace("{node}", full).replace("{ns}", namespace or "/")

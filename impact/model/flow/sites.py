@@ -250,7 +250,17 @@ class Sites:
                         and "." in call.callee
                     ):
                         return self.code.identity(call.callee.rpartition(".")[0], use.fn)
+        # `fast_ = std::make_unique<RealtimePublisher<T>>(create_publisher<T>(...))`
+        for each in use.fn.facts.assignments if use.row.does == "publisher" else ():
+            inner = (part for part in each.value.parts if part.kind == "call") if each.value.kind == "make" else ()
+            same = any(part.parts == use.call.arguments and part.text == use.call.callee for part in inner)
+            if same and self._is_publisher(each.value, use.fn):
+                return self.code.identity(each.target, use.fn)
         return None
+
+    def _is_publisher(self, value: Expr, fn: Fn) -> bool:
+        """Whether an object that is made is a publisher."""
+        return "publisher" in self.calls.kinds_of(self.code.meant_type(value.text, fn.source, fn.scope), fn)
 
     def template_parameter(self, use: Use) -> str:
         """The parameter of a template that tells an endpoint's type, empty for none."""
@@ -873,9 +883,7 @@ class Sites:
         wrapped = [(writer, each.value) for writer, each in code.writes.get(variable, ())]
         for writer, value in [*wrapped, *self._resets.get(variable, ())]:
             # `RealtimePublisher(publisher)`
-            if value.kind == "make" and "publisher" in self.calls.kinds_of(
-                code.meant_type(value.text, writer.source, writer.scope), writer
-            ):
+            if value.kind == "make" and self._is_publisher(value, writer):
                 for part in value.parts:
                     if part.kind == "name":
                         yield from self.publishers(part.text, writer, depth + 1)

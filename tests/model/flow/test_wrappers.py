@@ -63,10 +63,11 @@ def test_what_does_the_work_is_the_callback_of_an_action_server(made):
     assert (one.topic, one.type, one.callback.name) == ("/go", "a_msgs/Go", "Hub::work")
 
 
-def test_a_publisher_in_a_publisher():
-    body = """
-        plain_ = create_publisher<std_msgs::msg::Bool>("x", 1);
-        fast_ = std::make_unique<realtime_tools::RealtimePublisher<std_msgs::msg::Bool>>(plain_);
+@pytest.mark.parametrize("inner", ["plain_", 'create_publisher<std_msgs::msg::Bool>("x", 1)'])
+def test_a_publisher_in_a_publisher(inner):
+    body = f"""
+        {'plain_ = create_publisher<std_msgs::msg::Bool>("x", 1);' if inner == "plain_" else ""}
+        fast_ = std::make_unique<realtime_tools::RealtimePublisher<std_msgs::msg::Bool>>({inner});
         fast_->try_publish(message_);
     """
     members = """
