@@ -88,6 +88,9 @@ class Join:
         self.triggers = self._triggers()
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
+        # Of a function it is the same in all nodes that run the same of what leads to it.
+        self._ways: dict[tuple[int, frozenset[int]], list[Way]] = {}
+        self._leading: dict[int, frozenset[int]] = {}
 
     # Nodes
 
@@ -232,8 +235,33 @@ class Join:
                 found.setdefault(id(fn), []).append(Trigger("timer", timer.period, use.fn.source.path, use.call.line))
         return found
 
-    def ways(self, fn: Fn, functions: set[int] | None = None, depth: int = 0, seen: tuple[int, ...] = ()) -> list[Way]:
+    def ways(self, fn: Fn, functions: set[int] | None = None) -> list[Way]:
         """The ways that lead to a function from whatever triggers it. functions: those that run, all when None."""
+        leading = self._leads_to(fn)
+        key = (id(fn), leading if functions is None else leading & functions)
+        known = self._ways.get(key)
+        if known is None:
+            known = self._ways[key] = self._walked(fn, functions, 0, ())
+        return known
+
+    def _leads_to(self, fn: Fn) -> frozenset[int]:
+        """The functions from which a function may be reached, by their id()."""
+        known = self._leading.get(id(fn))
+        if known is None:
+            found: set[int] = set()
+            queue = [fn]
+            while queue:
+                one = queue.pop()
+                around = self.code.enclosing(one)
+                callers = [caller for caller, _ in self.code.callers.get(id(one), ())]
+                for caller in (*callers, *((around,) if around is not None else ())):
+                    if id(caller) not in found:
+                        found.add(id(caller))
+                        queue.append(caller)
+            known = self._leading[id(fn)] = frozenset(found)
+        return known
+
+    def _walked(self, fn: Fn, functions: set[int] | None, depth: int, seen: tuple[int, ...]) -> list[Way]:
         found = [Way(trigger) for trigger in self.triggers.get(id(fn), ())]
         if id(fn) in seen or depth > _DEEPEST:
             return found
@@ -242,14 +270,14 @@ class Join:
             if functions is not None and id(caller) not in functions:
                 continue
             own = self.guards(caller, call.guard)
-            for way in self.ways(caller, functions, depth + 1, here):
+            for way in self._walked(caller, functions, depth + 1, here):
                 found.append(Way(way.trigger, (*way.guards, *own)))
                 if len(found) >= _MOST_WAYS:
                     return found
         if not found:
             around = self.code.enclosing(fn)
             if around is not None:
-                return self.ways(around, functions, depth + 1, here)
+                return self._walked(around, functions, depth + 1, here)
             owner = tail(fn.facts.owner)
             starts = fn.name in ("main", "") or (owner and tail(fn.name) in (owner, "__init__"))
             kind = "start" if starts else "unknown"
@@ -261,103 +289,69 @@ class Join:
     def graph(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
         `library` nodes, or to none."""
-        missing: list[Unresolved] = []
-        if launch is None:
-            running = self.running()
-        else:
-            running, missing = self.started(launch)
-        running = list(self.with_loaded(running))
-        endpoints: list[Endpoint] = []
-        publishes: list[Publish] = []
-        timers: list[Timer] = []
-        parameters: list[ParameterUse] = []
-        unresolved: list[Unresolved] = list(missing)
-        calls = resolved = by_default = 0
-        libraries: dict[str, Node] = {}
-        used: set[str] = set()
-
-        running_of: dict[int, list[Running]] = {}
-        for one in running:
-            for each in one.functions:
-                running_of.setdefault(each, []).append(one)
-
-        def owners(use: Use) -> list[Owner]:
-            found: list[Owner] = [*running_of.get(id(use.fn), ())]
-            if launch is not None:
-                return found
-            if not found:
-                found = [one for one in running if use.fn.source.path in one.program.files]
-            if not found:
-                node = self._library(use.fn)
-                found = [libraries.setdefault(node.id, node) if node is not None else None]
-            return found
-
-        for site in self.sites.endpoints:
-            those = owners(site.use)
-            if launch is not None and not those:
-                continue
-            if launch is not None:
-                site = self._site_of(site, those[0])
-            lacking = self._missing(site)
-            if not site.implied:
-                calls += 1
-                if lacking:
-                    unresolved.append(Unresolved(*lacking, *_place(site.use), site.written))
-                else:
-                    resolved += 1
-                    by_default += all(value.how == "default" for value in site.names)
-            for owner in those:
-                node = _node_of(owner)
-                if node is not None:
-                    used.add(node.id)
-                here = self._site_of(site, owner)
-                for value in here.names:
-                    for type_ in _types(here, owner):
-                        endpoints.append(self._endpoint(here, value, type_, owner))
-        for statement in self.sites.statements:
-            those = owners(statement.use)
-            if launch is not None and not those:
-                continue
-            calls += not statement.through
-            sites = [self._site_of(site, those[0]) if launch is not None else site for site in statement.sites]
-            reason = statement.reason or next((s.names[0].reason for s in sites if s.names[0].text is None), "")
-            if statement.through:
-                pass  # counted where it sends
-            elif reason:
-                unresolved.append(
-                    Unresolved("publish", reason, *_place(statement.use), self.calls.receiver_of(statement.use))
-                )
-            else:
-                resolved += 1
-                by_default += all(value.how == "default" for site in statement.sites for value in site.names)
-            for owner in those:
-                node = _node_of(owner)
-                if node is not None:
-                    used.add(node.id)
-                publishes.extend(self._publishes(statement, owner))
-        for timer in self.sites.timers:
-            for owner in owners(timer.use):
-                node = _node_of(owner)
-                callback = _callback(timer.callbacks)
-                timers.append(Timer(node.id if node else "", timer.period, callback, *_place(timer.use)))
-        for use in self.calls.uses:
-            if use.row.does == "parameter" and not self.sites.wraps(use.fn, "parameter"):
-                parameters.extend(self._parameters(use, owners(use)))
-        nodes = [one.node for one in running if one.node.id in used or launch is not None] + [
-            node for node in libraries.values() if node.id in used
-        ]
+        running, missing = (self.running(), []) if launch is None else self.started(launch)
+        owners = _Owners(self, list(self.with_loaded(running)), launch is not None)
+        count = _Count(list(missing))
+        endpoints = dict.fromkeys(self._all_endpoints(owners, count))
+        publishes = dict.fromkeys(self._all_publishes(owners, count))
+        timers = dict.fromkeys(self._all_timers(owners))
+        parameters = dict.fromkeys(self._all_parameters(owners))
         coverage = Coverage(
-            calls, resolved, by_default, len(self.code.sources), tuple(sorted(unread)),
-            tuple(sorted(unresolved, key=lambda one: (one.path, one.line, one.what))),
+            count.calls, count.resolved, count.by_default, len(self.code.sources), tuple(sorted(unread)),
+            tuple(sorted(count.unresolved, key=lambda one: (one.path, one.line, one.what))),
             tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_place(use)) for use in self.sites.wrapped),
         )  # fmt: skip
         return Graph(
-            tuple(sorted(dict.fromkeys(nodes), key=lambda node: node.id)),
-            tuple(dict.fromkeys(endpoints)), tuple(dict.fromkeys(publishes)), tuple(dict.fromkeys(timers)),
-            tuple(dict.fromkeys(parameters)), coverage, root, rev, self.ros,
+            owners.nodes(), tuple(endpoints), tuple(publishes), tuple(timers), tuple(parameters), coverage, root, rev,
+            self.ros,
         )  # fmt: skip
 
-    def _library(self, fn: Fn) -> Node | None:
+    def _all_endpoints(self, owners: _Owners, count: _Count) -> Iterator[Endpoint]:
+        for site in self.sites.endpoints:
+            those = owners.of(site.use)
+            if not those:
+                continue
+            if owners.launched:
+                site = self._site_of(site, those[0])
+            if not site.implied:
+                lacking = self._missing(site)
+                lost = Unresolved(*lacking, *_place(site.use), site.written) if lacking else None
+                count.call(lost, (site,))
+            for owner in those:
+                owners.use(owner)
+                here = self._site_of(site, owner)
+                for value in here.names:
+                    for type_ in _types(here, owner):
+                        yield self._endpoint(here, value, type_, owner)
+
+    def _all_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
+        for statement in self.sites.statements:
+            those = owners.of(statement.use)
+            if not those:
+                continue
+            if not statement.through:  # else counted where it sends
+                sites = [self._site_of(site, those[0]) if owners.launched else site for site in statement.sites]
+                reason = statement.reason or next((s.names[0].reason for s in sites if s.names[0].text is None), "")
+                receiver = self.calls.receiver_of(statement.use)
+                lost = Unresolved("publish", reason, *_place(statement.use), receiver) if reason else None
+                count.call(lost, statement.sites)
+            for owner in those:
+                owners.use(owner)
+                yield from self._publishes(statement, owner)
+
+    def _all_timers(self, owners: _Owners) -> Iterator[Timer]:
+        for timer in self.sites.timers:
+            for owner in owners.of(timer.use):
+                node = _node_of(owner)
+                yield Timer(node.id if node else "", timer.period, _callback(timer.callbacks), *_place(timer.use))
+
+    def _all_parameters(self, owners: _Owners) -> Iterator[ParameterUse]:
+        for use in self.calls.uses:
+            if use.row.does == "parameter" and not self.sites.wraps(use.fn, "parameter"):
+                yield from self._parameters(use, owners.of(use))
+
+    def library(self, fn: Fn) -> Node | None:
+        """The library that a function belongs to, as a node; None outside of packages."""
         package, path = fn.source.package, fn.source.path
         if not package:
             return None
@@ -473,6 +467,59 @@ class Join:
             if value.text:
                 for node in nodes:
                     yield ParameterUse(node, value.text, kind, *_place(use), default)
+
+
+class _Owners:
+    """Who runs a piece of code, among programs that run. launched: by a launch; what it does not start is left out."""
+
+    def __init__(self, join: Join, running: list[Running], launched: bool):
+        self.join, self.running, self.launched = join, running, launched
+        self._libraries: dict[str, Node] = {}
+        self._used: set[str] = set()
+        self._by_function: dict[int, list[Owner]] = {}
+        for one in running:
+            for number in one.functions:
+                self._by_function.setdefault(number, []).append(one)
+
+    def of(self, use: Use) -> list[Owner]:
+        """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none."""
+        found = self._by_function.get(id(use.fn), [])
+        if self.launched or found:
+            return found
+        built = [one for one in self.running if use.fn.source.path in one.program.files]
+        if built:
+            return [*built]
+        node = self.join.library(use.fn)
+        return [self._libraries.setdefault(node.id, node) if node is not None else None]
+
+    def use(self, owner: Owner) -> None:
+        """Notes that an owner has an entry in the graph."""
+        node = _node_of(owner)
+        if node is not None:
+            self._used.add(node.id)
+
+    def nodes(self) -> tuple[Node, ...]:
+        """Those that have an entry, and all that a launch starts; sorted."""
+        running = (one.node for one in self.running if self.launched or one.node.id in self._used)
+        libraries = (node for node in self._libraries.values() if node.id in self._used)
+        return tuple(sorted(dict.fromkeys((*running, *libraries)), key=lambda node: node.id))
+
+
+class _Count:
+    """Calls of the frameworks, counted."""
+
+    def __init__(self, unresolved: list[Unresolved]):
+        self.calls = self.resolved = self.by_default = 0
+        self.unresolved = unresolved
+
+    def call(self, lost: Unresolved | None, sites: Iterable[Site]) -> None:
+        """Counts a call. lost: what of it is not resolved, None for nothing."""
+        self.calls += 1
+        if lost is not None:
+            self.unresolved.append(lost)
+        else:
+            self.resolved += 1
+            self.by_default += all(value.how == "default" for site in sites for value in site.names)
 
 
 def _types(site: Site, owner: Owner) -> tuple[str, ...]:
