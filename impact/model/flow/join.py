@@ -88,6 +88,8 @@ class Join:
         self.triggers = self._triggers()
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
+        # With who runs it, so that nothing else comes by the same id().
+        self._sites_of: dict[tuple[int, int, int], tuple[Running, Site]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[int, frozenset[int]], list[Way]] = {}
         self._leading: dict[int, frozenset[int]] = {}
@@ -200,7 +202,8 @@ class Join:
         name = ""
         for use in [*own, *in_main, *others]:
             values = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
-            name = next((value.text for value in values if value.text), "")
+            # `_` stands for a name that options give.
+            name = next((value.text for value in values if value.text and value.text != "_"), "")
             if name and "{" not in name:
                 break
         default = program.executable or _snake(tail(parsed(program.plugin).name))
@@ -374,11 +377,17 @@ class Join:
 
     def _site_of(self, site: Site, owner: Owner) -> Site:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
-        if not isinstance(owner, Running) or owner.values is self.values or site.implied:
+        if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
             return site
-        use, values = site.use, owner.values
-        names = self.sites.names(use, site.prefix, values)
-        return site._replace(names=names, type=site.type or self.sites.type_of(use, values))
+        key = (id(site.use), id(owner.values), id(owner.functions))
+        if key not in self._sites_of:
+            # What code that the node does not run passes to its functions is none of its names.
+            names = self.sites.names(site.use, site.prefix, owner.values.run(owner.functions))
+            if all(name.text is None for name in names):
+                names = self.sites.names(site.use, site.prefix, owner.values)
+            type_ = site.type or self.sites.type_of(site.use, owner.values)
+            self._sites_of[key] = owner, site._replace(names=names, type=type_)
+        return self._sites_of[key][1]
 
     def _endpoint(self, site: Site, value: Value, type_: str, owner: Owner) -> Endpoint:
         use = site.use

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import product
 from typing import NamedTuple
@@ -23,9 +23,9 @@ _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
      "get_value", "to_string", "as_int", "as_bool", "as_double")
 )  # fmt: skip
-_OF_FIRST = frozenset(("resolveName", "resolve_name", "resolve", "string", "str", "String", "move", "forward",
-                       "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name", "resolve_service_name",
-                       "resolve_topic_or_service_name"))  # fmt: skip
+_OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "string", "str", "String", "move",
+                       "forward", "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name",
+                       "resolve_service_name", "resolve_topic_or_service_name"))  # fmt: skip
 # What is least certain of a text that is put together, first.
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
 _PUT = frozenset(("push_back", "emplace_back", "append"))
@@ -53,20 +53,26 @@ class Values:
         settings: Mapping[str, str] | None = None,
         arguments: Sequence[str] | None = None,
         way: Mapping[int, Call] | None = None,
+        within: Collection[int] | None = None,
     ):
         """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`).
         arguments: of the command line, without the program's name; None where they are not known. way: the only call
-        through which a function is reached, by the function's id()."""
+        through which a function is reached, by the function's id(). within: the functions that run, by their id()s, all
+        when None."""
         self.calls, self.code = calls, calls.code
-        self.settings, self.arguments, self.way = settings or {}, arguments, way or {}
+        self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
 
     def under(self, settings: Mapping[str, str], arguments: Sequence[str] | None = None) -> Values:
         """The same code where a launch sets parameters and gives arguments."""
-        return self._other(settings, arguments, self.way)
+        return self._other(settings, arguments, self.way, self.within)
+
+    def run(self, functions: Collection[int]) -> Values:
+        """The same code where only some functions run, by their id()s: what others pass to them does not count."""
+        return self._other(self.settings, self.arguments, self.way, functions)
 
     def called(self, way: Mapping[int, Call]) -> Values:
         """The same code as far as it is reached through some calls, by the id() of the function called."""
-        return self._other(self.settings, self.arguments, way) if way else self
+        return self._other(self.settings, self.arguments, way, self.within) if way else self
 
     def _other(self, *given) -> Values:
         other = Values(self.calls, *given)
@@ -271,7 +277,7 @@ class Values:
         number = 0
         only = self.way.get(id(fn))
         for caller, call in self.code.callers.get(id(fn), ()):
-            if only is not None and call is not only:
+            if (only is not None and call is not only) or not self._runs(caller):
                 continue
             argument = _argument(call.arguments, place, name)
             if argument is not None:
@@ -283,16 +289,20 @@ class Values:
             for maker in (owner, *self.code.derived.get(owner.name, ())):
                 for caller, arguments, line in self.code.constructions.get(maker.name, ()):
                     argument = _argument(arguments, place, name)
-                    if argument is not None and (maker is owner or tail(fn.name) == "__init__"):
+                    direct = maker is owner or tail(fn.name) == "__init__"
+                    if argument is not None and direct and self._runs(caller):
                         number += 1
                         yield from self._of(argument, caller, line, seen)
             for caller, arguments, line in self.bases_made.get(owner.name, ()):
                 argument = _argument(arguments, place, name)
-                if argument is not None:
+                if argument is not None and self._runs(caller):
                     number += 1
                     yield from self._of(argument, caller, line, seen)
         if not number:
             yield Value(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
+
+    def _runs(self, fn: Fn) -> bool:
+        return self.within is None or id(fn) in self.within
 
     @cached_property
     def bases_made(self) -> dict[str, list[tuple[Fn, tuple[Expr, ...], int]]]:
