@@ -52,19 +52,23 @@ def text(impact: Impact, everything: bool = False, style: Style = WIDE) -> str:
             lines += _tree(group[0].reaches, names, everything, style)
     lines += [*([""] if lines else []), *_line([Piece(summary(impact))], style, 0, 2)]
     if impact.of:
-        lines += coverage_lines(impact.coverage, impact.coverage.unresolved, everything, style)
+        paths = {effect.path for effect in impact.effects}
+        paths |= {hop.path for effect in impact.effects for hop in effect.reaches}
+        near = [one for one in impact.coverage.unresolved if everything or one.path in paths]
+        lines += coverage_lines(impact.coverage, near, everything, style)
     return "\n".join(lines) + "\n"
 
 
 def summary(impact: Impact) -> str:
     """What was found, on one line."""
+    silent = f"; nothing known to be sent because of {counted(impact.silent, 'changed function')}"
+    silent = silent if impact.silent else ""
     if not impact.effects:
-        return "no change that message flow knows of"
+        return f"no change that message flow knows of{silent}"
     counts = Counter(effect.kind for effect in impact.effects)
     told = ", ".join(counted(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
     reached = {hop.node for effect in impact.effects for hop in effect.reaches}
-    silent = f"; nothing known to be sent because of {counted(impact.silent, 'changed function')}"
-    return f"{told} changed; {counted(len(reached), 'node')} of {impact.of:,} reached{silent if impact.silent else ''}"
+    return f"{told} changed; {counted(len(reached), 'node')} of {impact.of:,} reached{silent}"
 
 
 def names_of(impact: Impact) -> dict[str, str]:

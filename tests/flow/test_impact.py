@@ -254,6 +254,13 @@ def test_text_fits_a_terminal_of_eighty_columns(between: Between):
     assert max(map(len, shown.splitlines())) <= 80
 
 
+def test_changed_functions_of_which_nothing_goes_out_are_counted(between: Between):
+    found = between(ROWS["a callback of which nothing goes out"].files)
+    assert impact_report.summary(found) == (
+        "no change that message flow knows of; nothing known to be sent because of 1 changed function"
+    )
+
+
 def test_json_is_as_its_schema_says(between: Between):
     schema = json.loads(impact_report.schema())
     page = Path(__file__).parents[2] / "docs/impact.schema.json"
