@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any, NamedTuple, Protocol
 
 from ..facts.flow_launch import Entry, LaunchFile, ParameterFile
@@ -176,19 +177,24 @@ def file_values(setting: SettingFile, full_name: str) -> dict[str, Entry]:
             continue
         split = entry.path.index("ros__parameters")
         name = ".".join(entry.path[split + 1 :])
-        if name and _names_node("/".join(entry.path[:split]), full_name):
+        if name and _names_node(entry.path[:split], full_name):
             found.pop(name, None)
             found[name] = entry
     return found
 
 
-def _names_node(pattern: str, full_name: str) -> bool:
+def _names_node(keys: tuple[str, ...], full_name: str) -> bool:
     """Whether the keys above `ros__parameters` mean a node: `/**` any, `*` one part of a name, `**` any number."""
-    pattern = canonical("/" + pattern)
+    pattern = _pattern(keys)
+    return pattern is None or (bool(full_name) and pattern.fullmatch(full_name) is not None)
+
+
+@lru_cache(maxsize=4096)
+def _pattern(keys: tuple[str, ...]) -> re.Pattern[str] | None:
+    """What names of nodes match some keys; None for any."""
+    pattern = canonical("/" + "/".join(keys))
     if pattern == "/**":
-        return True
-    if not full_name:
-        return False
+        return None
     parts = [r"(?:/\w+)*" if part == "**" else r"/\w+" if part == "*" else "/" + re.escape(part)
              for part in pattern.split("/")[1:]]  # fmt: skip
-    return re.fullmatch("".join(parts), full_name) is not None
+    return re.compile("".join(parts))

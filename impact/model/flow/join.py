@@ -88,6 +88,9 @@ class Join:
         self.triggers = self._triggers()
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
+        self._asked: dict[int, list[Value]] = {}
+        # Of the last launch, which is asked for more than once.
+        self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
         # With who runs it, so that nothing else comes by the same id().
         self._sites_of: dict[tuple[int, int, int], tuple[Running, Site]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
@@ -120,6 +123,11 @@ class Join:
 
     def started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
+        if self._started is None or self._started[0] is not launch:
+            self._started = launch, self._start(launch)
+        return self._started[1]
+
+    def _start(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         programs = self.running()
         found: list[Running] = []
         missing: list[Unresolved] = []
@@ -465,10 +473,18 @@ class Join:
                 for type_ in _types(here, owner):
                     yield Publish(topic=topic, type=type_, reason=reason, **common)
 
+    def asked(self, use: Use) -> list[Value]:
+        """The names of a parameter that is declared or read; the same in every node."""
+        known = self._asked.get(id(use))
+        if known is None:
+            known = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
+            self._asked[id(use)] = known
+        return known
+
     def _parameters(self, use: Use, owners: list[Owner]) -> Iterator[ParameterUse]:
         if not owners:
             return
-        values = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
+        values = self.asked(use)
         default = shown(self.calls.argument(use, use.row.default)) if use.row.default else ""
         kind = "declared" if use.row.declares else "read"
         nodes = {node.id if node else "": None for node in (_node_of(owner) for owner in owners)}

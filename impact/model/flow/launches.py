@@ -179,8 +179,7 @@ def _parameters(join: Join, one: Running) -> set[str]:
     found: set[str] = set()
     for use in join.calls.uses:
         if use.row.does == "parameter" and id(use.fn) in one.functions:
-            values = join.values.of(join.calls.argument(use, use.row.topic), use.fn, use.call.line)
-            found.update(value.text for value in values if value.text)
+            found.update(value.text for value in join.asked(use) if value.text)
     return found
 
 
