@@ -313,7 +313,11 @@ class Code:
             return None
         key = id(fn)
         if key not in self._owner_of:
-            self._owner_of[key] = self.class_of(fn.facts.owner, fn.source, fn.scope)
+            found = self.class_of(fn.facts.owner, fn.source, fn.scope)
+            if found is None and fn.owner[:1] == fn.owner[1:2]:
+                # `void a::B::f()` inside `namespace a`
+                found = self.class_of("::".join(fn.owner[1:]), fn.source, fn.scope)
+            self._owner_of[key] = found
         return self._owner_of[key]
 
     def method(self, cls: Cls, name: str) -> list[Fn]:

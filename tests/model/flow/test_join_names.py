@@ -54,3 +54,26 @@ def test_a_name_that_rospy_remaps():
         rospy.Publisher(rospy.remap_name("on"), Bool, queue_size=1)
     """
     assert ends(graph({"p/lamp.py": text}, 1), "publisher") == {("p/lamp.py", "/on", "std_msgs/Bool")}
+
+
+def test_a_method_may_be_written_with_the_namespace_that_it_stands_in():
+    found = graph({
+        "p/lamp.hpp": """
+            namespace shop {
+            class Lamp : public rclcpp::Node {
+              Lamp();
+              void light();
+              rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr pub_;
+            };
+            }
+        """,
+        "p/lamp.cpp": """
+            #include "lamp.hpp"
+            namespace shop {
+            shop::Lamp::Lamp() : Node("lamp") { pub_ = create_publisher<std_msgs::msg::Bool>("on", 1); }
+            void Lamp::light() { pub_->publish(std_msgs::msg::Bool()); }
+            }
+            int main(int c, char** v) { rclcpp::spin(std::make_shared<shop::Lamp>()); }
+        """,
+    })  # fmt: skip
+    assert [(publish.node, publish.topic) for publish in found.publishes] == [("p/lamp", "/on")]
