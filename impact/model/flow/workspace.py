@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -16,10 +17,12 @@ from ..workspace import Package, Workspace, link
 from .callers import Callers, callers
 from .defined import Defined
 from .graph import Graph
-from .join import Join
-from .nodes import Built
-from .started import launched
 from .wanted import code_kinds
+
+if TYPE_CHECKING:
+    # What is remembered is read without them.
+    from .join import Join
+    from .nodes import Built
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
 _BUILD = frozenset(
@@ -65,6 +68,8 @@ def code_of(workspace: Workspace) -> dict[str, str]:
 
 def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[Built]:
     """What the build of each package makes. files: flow facts by path."""
+    from .nodes import Built
+
     libraries = {
         target.name: target.sources
         for package in workspace
@@ -135,6 +140,8 @@ def _runs(file: FlowFile) -> bool:
 
 def joined(workspace: Workspace) -> Join:
     """The code of a workspace, joined."""
+    from .join import Join
+
     gathered = facts_of(workspace)
     packages = code_of(workspace)
     gathered.preload(packages)
@@ -154,6 +161,8 @@ def graph_of(
     the launch file's arguments.
     """
     if launch:
+        from .started import launched
+
         start = launched(workspace, launch, arguments or {})
         return workspace.code.graph(root, rev, _unread(workspace.code), start)
     key = _key(workspace)
