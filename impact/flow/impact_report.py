@@ -49,7 +49,7 @@ def text(impact: Impact, everything: bool = False, style: Style = WIDE) -> str:
         for group in same:
             for one in group:
                 lines += _head(one, names, style)
-            lines += _tree(group[0].reaches, names, everything, style)
+            lines += _tree(group[0], names, everything, style)
     lines += [*([""] if lines else []), *_line([Piece(summary(impact))], style, 0, 2)]
     if impact.of:
         paths = {effect.path for effect in impact.effects}
@@ -82,15 +82,15 @@ def grouped(effects: Iterable[Effect]) -> list[list[Effect]]:
     found: list[list[Effect]] = []
     for effect in effects:
         last = found[-1][0] if found else None
-        if last is not None and (last.kind, last.package, last.reaches) == (
-            effect.kind,
-            effect.package,
-            effect.reaches,
-        ):
+        if last is not None and _alike(last) == _alike(effect):
             found[-1].append(effect)
         else:
             found.append([effect])
     return found
+
+
+def _alike(effect: Effect) -> tuple:
+    return effect.kind, effect.package, effect.reaches, bool(effect.topics)
 
 
 def _line(pieces: Sequence[Piece], style: Style, indent: int, hang: int) -> Iterator[str]:
@@ -114,11 +114,12 @@ def _some(names: Sequence[str]) -> str:
     return ", ".join(names[:_MOST_NODES]) + more
 
 
-def _tree(hops: Sequence[Hop], names: dict[str, str], everything: bool, style: Style) -> Iterator[str]:
+def _tree(effect: Effect, names: dict[str, str], everything: bool, style: Style) -> Iterator[str]:
     """The nearest nodes, each below the one it is reached from; those on one line that are one place of the code."""
+    hops = effect.reaches
     kept = hops if everything else hops[:SHOWN]
     if not kept:
-        yield "      reaches nothing in the workspace"
+        yield f"      {_nowhere(effect)}"
         return
     present = {hop.node for hop in kept}
     below: dict[str, dict[tuple[str, str, int], list[Hop]]] = {}
@@ -159,7 +160,7 @@ def short(impact: Impact, style: Style, base: str = "", most: int = _MOST_EFFECT
         if len(group) > _MOST_NODES:
             lines.append(f"  and {len(group) - _MOST_NODES} more")
         near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in group[0].reaches))
-        lines += _line([Piece(f"reaches {_some(near) or 'nothing in the workspace'}")], style, 6, 8)
+        lines += _line([Piece(f"reaches {_some(near)}" if near else _nowhere(group[0]))], style, 6, 8)
     left = sum(map(len, grouped(impact.effects)[most:]))
     if left:
         said = f"and {counted(left, 'further change')}; `rosimpact impact --base {base}` shows all"
@@ -179,13 +180,18 @@ def compact(impact: Impact, most: int = 20) -> dict[str, Any]:
     return {"changes": rows, "reached": len(reached), "nodes": impact.of, "silent": impact.silent}
 
 
+def _nowhere(effect: Effect) -> str:
+    """What is said of a change that reaches no node."""
+    return "reaches nothing in the workspace" if effect.topics else "no topic of it is known"
+
+
 def markdown(impact: Impact, most: int = _MOST_EFFECTS, told: bool = True) -> str:
     """The same in short, for a comment: a line for each change. most: as many; told: with the last line."""
     names = names_of(impact)
     rows = []
     for effect in impact.effects[:most]:
         near = [names.get(hop.node, hop.node) for hop in effect.reaches]
-        reaches = f"reaches {escaped(_some(near))}" if near else "reaches nothing in the workspace"
+        reaches = f"reaches {escaped(_some(near))}" if near else _nowhere(effect)
         place = code(one_line(f"{effect.path}:{effect.line}"))
         rows.append(f"- {effect.kind} {escaped(effect.change)} {code(one_line(effect.subject))} {place}: {reaches}")
     if len(impact.effects) > most:

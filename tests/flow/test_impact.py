@@ -254,6 +254,13 @@ def test_text_fits_a_terminal_of_eighty_columns(between: Between):
     assert max(map(len, shown.splitlines())) <= 80
 
 
+def test_a_message_that_nothing_sends_is_said_to_have_no_topic(between: Between):
+    files = {**edited("tide_msgs/msg/Level.msg", ("metres", "fathoms")), CPP: "int main() {}\n"}
+    files[PY] = files["harbour/harbour/horn.py"] = ""
+    shown = impact_report.text(between(files))
+    assert "      no topic of it is known\n" in shown
+
+
 def test_changed_functions_of_which_nothing_goes_out_are_counted(between: Between):
     found = between(ROWS["a callback of which nothing goes out"].files)
     assert impact_report.summary(found) == (
