@@ -5,6 +5,8 @@ usage: check.py WORKSPACE [--ros1 WORKSPACE] [--target jazzy] [--repeat 3]
 Every figure is the best of the repeats, wall time of a whole process on this machine, imports included:
     cold       no facts are known (an empty cache folder; the distro data is unpacked already)
     warm       nothing has changed since
+    previews   no facts are known, and preview rules are asked too: those on the message flow need more facts of code
+    again      the same, when nothing has changed since
     header     a comment in a shared header was changed (the one that most packages of the workspace include)
     include    an include was added to that header, so that everything is judged anew
     macro      a comment in a CMake file that packages give their dependants was changed
@@ -98,6 +100,9 @@ def main() -> None:
             ("cold", *best(args.repeat, forget, command, environment)),
             ("warm", *best(args.repeat + 2, lambda: None, command, environment)),
         ]
+        previews = [*command, "--preview"]
+        rows.append(("previews", *best(args.repeat, forget, previews, environment)))
+        rows.append(("again", *best(args.repeat + 2, lambda: None, previews, environment)))
         rows.append(("header", *best(args.repeat, change(header, "// {}"), command, environment)))
         rows.append(
             ("include", *best(args.repeat, change(header, "#include <rclcpp/of_{}.hpp>"), command, environment))
@@ -115,7 +120,9 @@ def main() -> None:
         anchors = anchor_figures(files, args.repeat)
         for name, seconds, memory in rows:
             beside = ", ".join(
-                f"{seconds / anchor:.2f} x {label}" for label, anchor in anchors if name in ("cold", "warm")
+                f"{seconds / anchor:.2f} x {label}"
+                for label, anchor in anchors
+                if name in ("cold", "warm", "previews", "again")
             )
             print(f"  {name:8s} {seconds:6.2f} s  {memory:4d} MB  {beside}")
         for label, anchor in anchors:
