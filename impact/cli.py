@@ -28,7 +28,11 @@ env_app = typer.Typer(
 data_app = typer.Typer(
     help="The shipped distro data: its date, rebuilding it, refreshing it.", no_args_is_help=True, rich_markup_mode=None
 )
+surface_app = typer.Typer(
+    help="What versions of packages offer, and what changed between them.", no_args_is_help=True, rich_markup_mode=None
+)
 app.add_typer(env_app, name="env")
+app.add_typer(surface_app, name="surface")
 app.add_typer(data_app, name="data")
 app.add_typer(corpus_app, name="corpus")
 app.add_typer(classifier_app, name="classifier")
@@ -290,6 +294,47 @@ def env_diff(
     from . import run
 
     raise typer.Exit(run.env_diff(first, second, path, format))
+
+
+_REPOS_HELP = "Folder of git clones with their tags, called OWNER+NAME or NAME."
+
+
+@surface_app.command("show")
+def surface_show(
+    package: Annotated[str, typer.Argument(help="PACKAGE, PACKAGE@28.1.0 or PACKAGE@jazzy.")],
+    repos: Annotated[Path, typer.Option(help=_REPOS_HELP)] = Path("."),
+    all: Annotated[bool, typer.Option("--all", help="Members of classes, constants and macros too.")] = False,
+    format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+) -> None:
+    """Say what a version of a package offers: headers, names, messages, targets, programs."""
+    from . import run
+
+    raise typer.Exit(run.surface_show(package, repos=repos, all_of_it=all, format=format, output=output, jobs=jobs))
+
+
+@surface_app.command("diff")
+def surface_diff(
+    what: Annotated[str, typer.Argument(help="A package, or the path of a clone (then without --repos).")],
+    old: Annotated[str, typer.Argument(help="A version or a distro, such as 16.0.0 or humble; of a clone a revision.")],
+    new: Annotated[str, typer.Argument(help="The same of what it is compared with.")],
+    repos: Annotated[Path | None, typer.Option(help=_REPOS_HELP)] = None,
+    packages: Annotated[list[str] | None, typer.Option(help="Of a clone, only these packages.")] = None,
+    all: Annotated[bool, typer.Option("--all", help="Also list what is new and what still builds.")] = False,
+    format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+) -> None:
+    """Say what changed between two versions: what is gone, moved, deprecated, called differently."""
+    from . import run
+
+    raise typer.Exit(
+        run.surface_diff(
+            what, old, new, repos=repos, packages=_names(packages), all_of_it=all, format=format, output=output,
+            jobs=jobs,
+        )
+    )  # fmt: skip
 
 
 @data_app.command("status")

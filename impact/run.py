@@ -409,6 +409,96 @@ def _style(output: Path | None) -> Style:
     return style if sys.stdout.isatty() else style._replace(width=UNBROKEN)
 
 
+def surface_show(what: str, *, repos, all_of_it, format, output, jobs) -> int:
+    """Prints what a version of a package offers. Returns the exit status: 0, or 2 (failed)."""
+    from .report import surface as report
+
+    def answer(store) -> str:
+        from .targets.clones import Clones
+
+        package, _, asked = what.partition("@")
+        clones = Clones(repos)
+        asked = asked or clones.newest(package)
+        version, state = clones.surface(package, asked, store, jobs)
+        surface, source = state.surfaces[package], _source(version, asked)
+        if format == "json":
+            return report.show_json(surface, source, __version__)
+        if format == "markdown":
+            return report.show_markdown(surface, source)
+        return report.show_text(surface, source, _style(output), all_of_it)
+
+    return _of_surfaces(answer, format, output)
+
+
+def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, format, output, jobs) -> int:
+    """Prints what changed between two versions of a package, or of all packages of a clone. Returns the exit status:
+    0, or 2 (failed)."""
+    from .report import surface as report
+
+    def answer(store) -> str:
+        from .targets.clones import Clone, Clones
+        from .targets.surface import State, compare, compare_states
+
+        if os.path.isdir(what) and repos is None:
+            clone = Clone(Path(what))
+            states = [State(clone.surfaces(revision, store, jobs)) for revision in (old, new)]
+            changes = compare_states(*states)
+            unknown = [name for name in packages if name not in changes]
+            if unknown:
+                raise Failed(f"--packages {unknown[0]}: {clone.name} has no such package at {old} or {new}")
+            changes = {name: each for name, each in changes.items() if (name in packages if packages else each)}
+            sources = [report.Source(revision, "", clone.name, revision) for revision in (old, new)]
+        else:
+            if repos is None:
+                raise Failed(f"{what}: no such folder; for a package, say where the clones are: --repos DIR")
+            clones = Clones(repos)
+            (first, before), (second, after) = (clones.surface(what, asked, store, jobs) for asked in (old, new))
+            changes = {what: compare(before.surfaces[what], after.surfaces[what], before, after)}
+            sources = [_source(first, old), _source(second, new)]
+        found = report.Difference(sources[0], sources[1], changes)
+        if format == "json":
+            return report.diff_json(found, __version__)
+        return (
+            report.diff_markdown(found) if format == "markdown" else report.diff_text(found, _style(output), all_of_it)
+        )
+
+    return _of_surfaces(answer, format, output)
+
+
+def _source(version, asked: str):
+    from .report.surface import Source
+
+    revision = version.revision.removeprefix("refs/").partition("/")[2] or version.revision
+    return Source(asked, version.version, version.clone.name, revision, version.approximate)
+
+
+def _of_surfaces(answer: Callable, format: str, output: Path | None) -> int:
+    """Delivers what a command on surfaces says, its errors as one line."""
+    from .report.surface import FORMATS as known
+
+    try:
+        with told():
+            if format not in known:
+                raise Failed(f"--format {format}: unknown; choose one of {', '.join(known)}")
+            from .facts.store import Store
+            from .targets.clones import VersionError
+
+            with Store() as store:
+                try:
+                    text = answer(store)
+                except VersionError as error:
+                    raise Failed(str(error)) from None
+                for note in store.notes:
+                    say(f"rosimpact: {note}")
+            _deliver(text, output)
+    except Failed as error:
+        return failed(str(error))
+    except KeyboardInterrupt:
+        say("rosimpact: interrupted; what was read is kept, and the next run goes on from there")
+        return 130
+    return 0
+
+
 def explain(name: str | None) -> int:
     """Prints a rule's documentation, or the list of rules."""
     from .rules.rule import all_rules

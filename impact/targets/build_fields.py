@@ -22,6 +22,7 @@ import msgspec
 import zstandard
 
 from ..facts.interface import PRIMITIVES, Interface, extract
+from .build_history import git_directory
 from .snapshot import default
 from .version import parts
 
@@ -245,19 +246,12 @@ def _successors(name: str, definitions: list[Definitions]) -> dict[tuple[str, st
     return found
 
 
-def _git_directory(clone: Path) -> Path | None:
-    for candidate in (clone, clone / "repo", clone / "repo" / ".git", clone / ".git"):
-        if (candidate / "HEAD").is_file() and (candidate / "objects").is_dir():
-            return candidate
-    return None
-
-
 def read_folder(folder: Path, wanted: frozenset[str]) -> Iterator[Released]:
     """What all clones in a folder have."""
     import pygit2
 
     for clone in sorted(folder.iterdir()):
-        where = _git_directory(clone) if clone.is_dir() and "-release" not in clone.name else None
+        where = git_directory(clone) if clone.is_dir() and "-release" not in clone.name else None
         if where is not None:
             yield from read_repository(pygit2.Repository(str(where)), wanted)
 

@@ -212,7 +212,7 @@ def read_repositories(folder: Path, snapshot: Snapshot | None = None) -> RosFact
     cmake: dict[str, set[str]] = defaultdict(set)
     data = snapshot or default()
     for clone in sorted(folder.iterdir()):
-        where = _git_directory(clone)
+        where = git_directory(clone)
         if where is None:
             continue
         repository = pygit2.Repository(str(where))
@@ -247,7 +247,8 @@ def read_repositories(folder: Path, snapshot: Snapshot | None = None) -> RosFact
     )
 
 
-def _git_directory(clone: Path) -> Path | None:
+def git_directory(clone: Path) -> Path | None:
+    """The git directory of a clone, bare or not, or of one in its folder `repo`; None where there is none."""
     for candidate in (clone, clone / "repo", clone / "repo" / ".git", clone / ".git"):
         if (candidate / "HEAD").is_file() and (candidate / "objects").is_dir():
             return candidate

@@ -550,12 +550,12 @@ def compare(old: BuildSurface, new: BuildSurface) -> tuple[Change, ...]:
     """What changed for those who build on the package or start it, part by part, each sorted by name.
 
     A thing that is gone is not `sure` where it hung on a condition, or where the new version has things of its part
-    that cannot be told.
+    that cannot be told and that the old one did not have.
     """
     found: list[Change] = []
     for what, part, things in _PARTS:
         had, has = things(old), things(new)
-        open_ended = any(where == part for where, _ in new.unknown)
+        open_ended = any(where == part and (where, why) not in old.unknown for where, why in new.unknown)
         fresh = {name for name in has if name not in had}
         for name in sorted(had):
             shown, sure = had[name]

@@ -226,7 +226,7 @@ def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[Change]
     added = [placed for number, placed in enumerate(left) if number not in used_new]
     for path, one in removed:
         # an overload that another one takes over is no loss
-        taken = _copies(one) or ("virtual" not in one.traits and _covered(one, [other for _, other in news]))
+        taken = _copies(one) or ("virtual" not in one.traits and still_callable(one, [other for _, other in news]))
         changes.append(Change("removed", one.name, one, None, path, "", ("overload",), taken))
     for path, one in added:
         changes.append(Change("added", one.name, None, one, "", path, ("overload",), "pure" not in one.traits))
@@ -263,7 +263,7 @@ def _pair(path: str, one: Entity, there: str, other: Entity, offered: Sequence[E
     if one.value and other.value and one.value != other.value:
         told("value", True)
     if _defaults(one.parameters, other.parameters) or _template_defaults(one, other):
-        told("default", _family(one) != "function" or _covered(one, offered))
+        told("default", _family(one) != "function" or still_callable(one, offered))
     if one.kind in CLASSES and other.kind in CLASSES and one.bases != other.bases:
         told("base", {base.type for base in one.bases} <= {base.type for base in other.bases})
     if one.access == "public" and other.access in ("protected", "private"):
@@ -325,10 +325,10 @@ def _compatible(one: Entity, other: Entity, what: Sequence[str], offered: Sequen
         return False
     if "template" in what and one.template:
         return False
-    return _covered(one, offered)
+    return still_callable(one, offered)
 
 
-def _covered(one: Entity, offered: Sequence[Entity]) -> bool:
+def still_callable(one: Entity, offered: Sequence[Entity]) -> bool:
     """Whether every call of a function still finds one that takes it, by the types of its parameters as written."""
     mine = one.parameters or ()
     least = sum(parameter.default is None and not parameter.pack for parameter in mine)

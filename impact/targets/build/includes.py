@@ -22,7 +22,7 @@ import msgspec
 import zstandard
 
 from .. import includes
-from ..build_history import _git_directory, _tree
+from ..build_history import _tree, git_directory
 from ..changes import DISTROS
 from ..distro import DistroTarget
 from ..snapshot import DATA
@@ -216,7 +216,7 @@ def read_clones(folder: Path, names: Iterable[str]) -> Iterator[tuple[str, str, 
     import pygit2
 
     for name in names:
-        where = _git_directory(folder / name)
+        where = git_directory(folder / name)
         if where is None:
             raise FileNotFoundError(f"{folder / name}: no git directory")
         repository = pygit2.Repository(str(where))
@@ -238,7 +238,7 @@ def read_generators(folder: Path) -> Iterator[tuple[str, str, State]]:
         ("ros+gencpp", ("scripts", ""), "msg.h.template", "gencpp"),
         ("ros2+rosidl", ("rosidl_generator_cpp/resource",), ".em", "rosidl_generator_cpp"),
     ):
-        where = _git_directory(folder / name)
+        where = git_directory(folder / name)
         repository = pygit2.Repository(str(where))
         for ref in sorted(repository.references):
             match = _VERSION.match(ref.removeprefix("refs/tags/")) if ref.startswith("refs/tags/") else None

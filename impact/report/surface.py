@@ -1,0 +1,304 @@
+"""What a package offers, and what changed between two versions of it, as text, JSON and Markdown."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import msgspec
+
+from ..facts.surface import FUNCTIONS
+from ..targets.surface import Change, Surface, declared
+from ..targets.surface_python import Names, signature
+from .columns import Piece, laid_out
+from .text import Style, painted
+
+FORMATS = ("text", "json", "markdown")
+
+
+class Source(NamedTuple):
+    """Where a version was read. asked: as the user wrote it. approximate: a branch stands for a missing tag."""
+
+    asked: str
+    version: str
+    repository: str
+    revision: str
+    approximate: bool = False
+
+
+class Difference(NamedTuple):
+    """A comparison of two versions of some packages of one repository."""
+
+    old: Source
+    new: Source
+    changes: dict[str, tuple[Change, ...]]
+
+
+# -- differences -------------------------------------------------------------------------------------------------------
+
+_GROUPS = ("breaks", "may break", "deprecated", "changed", "added")
+_TITLES = {
+    "breaks": "Breaks who uses it",
+    "may break": "May break who uses it",
+    "deprecated": "Warns now",
+    "changed": "Changed, and still builds",
+    "added": "New",
+}
+_ROLES = {"breaks": "error", "may break": "warning", "deprecated": "warning", "changed": "note", "added": "good"}
+
+
+def group_of(change: Change) -> str:
+    """Which part of the report a change belongs to."""
+    if change.breaks:
+        return "breaks" if change.sure >= 0.6 else "may break"
+    if change.kind == "deprecated":
+        return "deprecated"
+    return "added" if change.kind == "added" else "changed"
+
+
+def diff_text(found: Difference, style: Style, everything: bool) -> str:
+    """The report for people. everything: what is new and what changed harmlessly one by one too, else as numbers."""
+    lines: list[str] = []
+    for package, changes in found.changes.items():
+        lines += _heading(package, found, style)
+        groups = {name: [c for c in changes if group_of(c) == name] for name in _GROUPS}
+        for name in _GROUPS:
+            if not groups[name]:
+                continue
+            title = f"{_TITLES[name]}: {len(groups[name])}"
+            if name in ("changed", "added") and not everything:
+                counts = Counter(c.what for c in groups[name])
+                told = ", ".join(f"{number} {_plural(what, number)}" for what, number in counts.most_common())
+                lines += ["", *laid_out([Piece(f"{title} ({told})", "dim")], style, 0, 2)]
+                continue
+            lines += ["", painted(style, _ROLES[name], title)]
+            at = ""
+            for change in sorted(groups[name], key=lambda c: (c.side, c.where)):
+                if change.where != at and change.where not in ("", change.name):
+                    lines += laid_out([Piece("in ", "dim", change.where)], style, 2, 4)
+                at = change.where
+                lines += _change(change, style)
+        if not changes:
+            lines += ["", "nothing changed"]
+        lines.append("")
+    if not everything and any(group_of(c) in ("changed", "added") for each in found.changes.values() for c in each):
+        lines += [painted(style, "dim", "--all lists what is new and what still builds"), ""]
+    return "\n".join(lines[:-1]) + "\n"
+
+
+def _heading(package: str, found: Difference, style: Style) -> list[str]:
+    arrow = style.symbols[3]
+    lines = [painted(style, "bold", f"{package} {_short(found.old)} {arrow} {_short(found.new)}")]
+    for source in (found.old, found.new):
+        lines += _source(source, style)
+    return lines
+
+
+def _short(source: Source) -> str:
+    return f"{source.version} ({source.asked})" if source.version not in ("", source.asked) else source.asked
+
+
+def _source(source: Source, style: Style) -> Iterator[str]:
+    text = f"{source.asked}: {source.revision} of {source.repository}"
+    if source.approximate:
+        text += f"; there is no tag for {source.version}, so this is approximate"
+    yield from laid_out([Piece(text, "warning" if source.approximate else "dim")], style, 2, 4)
+
+
+def _change(change: Change, style: Style) -> Iterator[str]:
+    aspects = f" ({', '.join(change.aspects)})" if change.aspects and change.kind != "removed" else ""
+    word = "overload removed" if change.kind == "removed" and "overload" in change.aspects else change.kind
+    pieces = [Piece(f"{word} {change.what}{aspects}"), Piece(change.name, "bold")]
+    if change.sure < 0.6:
+        pieces.append(Piece("not sure", "dim"))
+    yield from laid_out(pieces, style, 2, 4)
+    for mark, text in (("- ", change.old), ("+ ", change.now)):
+        if text:
+            yield from laid_out([Piece(mark + text)], style, 4, 8)
+    help_ = instead_of(change)
+    if help_:
+        yield from laid_out([Piece(help_, "help")], style, 4, 6)
+
+
+def instead_of(change: Change) -> str:
+    """What to do now, in a clause; empty where that is not known."""
+    told = []
+    if change.instead:
+        told.append(f"perhaps `{change.instead}`" if change.kind == "removed" else f"now `{change.instead}`")
+    if change.moved_to:
+        told.append(f"in package {change.moved_to}")
+    return f"help: {', '.join(told)}" if told else ""
+
+
+def _plural(what: str, number: int) -> str:
+    if number == 1:
+        return what
+    return f"{what[:-1]}ies" if what.endswith("y") else f"{what}es" if what.endswith(("s", "sh")) else f"{what}s"
+
+
+def diff_markdown(found: Difference) -> str:
+    """The report as Markdown, for a pull request or a wiki."""
+    lines: list[str] = []
+    for package, changes in found.changes.items():
+        lines += [f"## {package} {_short(found.old)} → {_short(found.new)}", ""]
+        for source in (found.old, found.new):
+            if source.approximate:
+                lines += [f"There is no tag for {source.version}; `{source.revision}` stands for it.", ""]
+        for name in _GROUPS:
+            these = [c for c in changes if group_of(c) == name]
+            if not these:
+                continue
+            lines += [f"### {_TITLES[name]}: {len(these)}", "", "| what | name | old | new |", "|---|---|---|---|"]
+            for change in these:
+                now = change.now or instead_of(change).removeprefix("help: ")
+                cells = (f"{change.kind} {change.what}", _code(change.name), _code(change.old), _code(now))
+                lines.append(f"| {' | '.join(cells)} |")
+            lines.append("")
+        if not changes:
+            lines += ["Nothing changed.", ""]
+    return "\n".join(lines)
+
+
+def _code(text: str) -> str:
+    if not text:
+        return ""
+    if "`" in text:
+        return text.replace("|", "\\|")
+    return "`" + text.replace("|", "\\|") + "`"
+
+
+def diff_json(found: Difference, tool: str) -> str:
+    """The report as JSON: `tool`, `old` and `new` (see Source), `changes` (see Change)."""
+    changes = [change for each in found.changes.values() for change in each]
+    return _json({"tool": tool, "old": found.old._asdict(), "new": found.new._asdict(), "changes": changes})
+
+
+def _json(value: Any) -> str:
+    return msgspec.json.format(msgspec.json.encode(value), indent=1).decode() + "\n"
+
+
+# -- one surface -------------------------------------------------------------------------------------------------------
+
+
+class Item(NamedTuple):
+    """Something that a package offers. part: Interfaces, C++, Python, CMake or Programs. where: header or file.
+    deprecated: None for what is not."""
+
+    part: str
+    what: str
+    name: str
+    declaration: str = ""
+    where: str = ""
+    deprecated: str | None = None
+
+
+def items(surface: Surface) -> Iterator[Item]:
+    """All that a package offers, part by part."""
+    for name, definition in surface.interfaces:
+        for section in definition.sections:
+            part = "" if section.name == "message" else f"{section.name}."
+            for field in section.fields:
+                default = f" {field.default}" if field.default else ""
+                written = f"{field.type}{field.array} {field.name}{default}"
+                yield Item("Interfaces", "field", f"{surface.package}/{name} {part}{field.name}", written)
+            for one in section.constants:
+                yield Item(
+                    "Interfaces",
+                    "constant",
+                    f"{surface.package}/{name} {part}{one.name}",
+                    f"{one.type} {one.name}={one.value}",
+                )
+        if not any(section.fields or section.constants for section in definition.sections):
+            yield Item("Interfaces", "interface", f"{surface.package}/{name}")
+    known = dict(surface.headers)
+    for header in surface.build.headers:
+        if header.include not in known:
+            yield Item("C++", "header", header.include, "generated")
+    for path, header in surface.headers:
+        yield Item("C++", "header", path, deprecated=header.deprecated)
+        for one in header.entities:
+            if one.kind != "using namespace" and not one.internal and one.access != "private":
+                yield Item("C++", one.kind, one.name, declared(one), path, one.deprecated)
+    names = Names(surface.python)
+    for module in surface.python.modules:
+        yield Item("Python", "module", module.name, where=module.path)
+    for name, entry in sorted(names.offered.items()):
+        shown = signature(entry.bound.parameters) if entry.bound and entry.kind in ("function", "method") else ""
+        yield Item(
+            "Python", entry.kind, name, shown, deprecated=(entry.bound.deprecated or None) if entry.bound else None
+        )
+        for member, inner in names.members(entry).items() if entry.kind == "class" and entry.where == name else ():
+            shown = signature(inner.bound.parameters) if inner.bound and "method" in inner.kind else ""
+            yield Item("Python", inner.kind, f"{name}.{member}", shown)
+    build = surface.build
+    yield from (Item("CMake", "cmake package", name) for name in build.cmake_names)
+    yield from (Item("CMake", "target", target.name, target.kind) for target in build.targets)
+    yield from (Item("CMake", "command", name) for name in build.commands)
+    yield from (Item("CMake", "variable", name) for name in build.variables)
+    yield from (Item("Programs", "executable", program.name, program.how) for program in build.programs)
+    yield from (Item("Programs", "plugin", plugin.name, f"{plugin.type} ({plugin.base})") for plugin in build.plugins)
+    for launch in build.launches:
+        written = ", ".join(name if default is None else f"{name}:={default}" for name, default in launch.arguments)
+        yield Item("Programs", "launch file", launch.path, written)
+
+
+def show_text(surface: Surface, source: Source, style: Style, everything: bool) -> str:
+    """What a package offers, for people. everything: members of classes, constants and macros too."""
+    build = surface.build
+    lines = [painted(style, "bold", f"{surface.package} {_short(source)}"), *_source(source, style)]
+    facts = [f"build type {build.build_type}"]
+    if build.standard:
+        facts.append(f"C++{build.standard}")
+    if build.dependencies:
+        facts.append(f"passes on {', '.join(build.dependencies)}")
+    lines += laid_out([Piece("; ".join(facts))], style, 2, 4)
+    if surface.guessed:
+        lines += laid_out([Piece("the build does not tell which headers are installed; those of include/ are listed",
+                                 "warning")], style, 2, 4)  # fmt: skip
+    last = ""
+    for item in items(surface):
+        if not everything and item.part != "Interfaces" and item.what in _DETAILS:
+            continue
+        if item.part != last:
+            lines += ["", painted(style, "bold", item.part)]
+            last = item.part
+        inner = item.part == "C++" and item.what != "header"
+        written = item.part == "C++" and item.what in _WRITTEN
+        pieces = [Piece(item.what, "dim"), Piece(item.declaration if written else item.name)]
+        if not written and item.declaration:
+            pieces.append(Piece(item.declaration, "dim"))
+        if item.deprecated is not None:
+            pieces.append(Piece(f"deprecated: {item.deprecated}" if item.deprecated else "deprecated", "warning"))
+        lines += laid_out(pieces, style, 4 if inner else 2, 8)
+    if surface.build.unknown:
+        lines += ["", painted(style, "bold", "Not known")]
+        for part, why in surface.build.unknown:
+            lines += laid_out([Piece(f"{part}: {why}")], style, 2, 4)
+    return "\n".join(lines) + "\n"
+
+
+_DETAILS = frozenset(("method", "field", "constructor", "destructor", "conversion", "enumerator", "macro", "attribute",
+                      "property", "classmethod", "staticmethod", "instance", "using"))  # fmt: skip
+_WRITTEN = FUNCTIONS | {"class", "struct", "union", "enum", "alias", "variable", "macro"}
+
+
+def show_json(surface: Surface, source: Source, tool: str) -> str:
+    """What a package offers as JSON: `tool`, `source` (see Source), `package`, `items` (see Item), `unknown`."""
+    return _json({
+        "tool": tool,
+        "source": source._asdict(),
+        "package": surface.package,
+        "build_type": surface.build.build_type,
+        "standard": surface.build.standard,
+        "passes_on": surface.build.dependencies,
+        "items": [item._asdict() for item in items(surface)],
+        "unknown": [{"part": part, "why": why} for part, why in surface.build.unknown],
+    })  # fmt: skip
+
+
+def show_markdown(surface: Surface, source: Source) -> str:
+    """What a package offers as a table."""
+    lines = [f"## {surface.package} {_short(source)}", "", "| what | name | declaration |", "|---|---|---|"]
+    lines += [f"| {i.what} | {_code(i.name)} | {_code(i.declaration)} |" for i in items(surface)]
+    return "\n".join(lines) + "\n"

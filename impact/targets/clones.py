@@ -1,0 +1,197 @@
+"""Released versions of packages in a folder of git clones: which clone, which tag, and the surfaces there."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ..tree import GitTree, TreeError
+from .build_history import git_directory, plain_url, releases_of, tag_of
+from .distro import DistroTarget, TargetError, known_distros
+from .snapshot import Snapshot, default
+from .surface import State, Surface, of_tree
+from .version import parts
+
+if TYPE_CHECKING:
+    from ..facts.store import Store
+
+
+class VersionError(Exception):
+    """A version that cannot be read from the clones; the message says why and what to do."""
+
+
+class Version(NamedTuple):
+    """A repository state that stands for a version. version: as released, empty where only a revision was asked for.
+    approximate: there is no tag, so a branch stands for it."""
+
+    clone: Clone
+    revision: str
+    version: str = ""
+    approximate: bool = False
+
+
+class Clone:
+    """A git repository, bare or not. name: `owner/name` or its folder's name."""
+
+    def __init__(self, place: Path, name: str = ""):
+        where = git_directory(place)
+        if where is None:
+            raise VersionError(f"{place} is no git repository; give a clone with its tags")
+        self.place, self.name = where, name or place.name.replace("+", "/")
+        self._tree: GitTree | None = None
+
+    @cached_property
+    def tags(self) -> dict[str, str]:
+        """Refs by the names of tags."""
+        start = "refs/tags/"
+        return {ref.removeprefix(start): ref for ref in self._repository.references if ref.startswith(start)}
+
+    @cached_property
+    def _repository(self) -> Any:
+        from .build.git import open_repository
+
+        return open_repository(self.place)
+
+    def tag(self, version: str, package: str = "", distro: str = "") -> str | None:
+        """The ref of the tag of a version: as developers name them, else as bloom does in release repositories."""
+        found = tag_of(self.tags, version, self.name.rpartition("/")[2])
+        if found is not None:
+            return found
+        ends = re.compile(rf"release/{distro or '[^/]+'}/{re.escape(package) or '[^/]+'}/{re.escape(version)}(?:-\d+)?")
+        return next((self.tags[name] for name in sorted(self.tags, reverse=True) if ends.fullmatch(name)), None)
+
+    def branch(self, *names: str) -> str | None:
+        """The ref of the first of these branches that there is."""
+        known = set(self._repository.references)
+        spelt = (f"{start}{name}" for name in names if name for start in ("refs/heads/", "refs/remotes/origin/"))
+        return next((ref for ref in spelt if ref in known), None)
+
+    def is_older(self, version: str) -> bool:
+        """Whether there are tags, all of them of versions before this one."""
+        known = [parts(tag) for tag in self.tags if re.fullmatch(r"v?\d+\.\d+(?:\.\d+)?", tag)]
+        return bool(known) and max(known) < parts(version)
+
+    def surfaces(self, revision: str, store: Store, jobs: int | None = None) -> dict[str, Surface]:
+        """The surfaces of all packages at a revision. Raises TreeError."""
+        self._tree = GitTree(self.place, revision) if self._tree is None else self._tree.at(revision)
+        return of_tree(self._tree, store, self.folder_id(revision), jobs)
+
+    def folder_id(self, revision: str) -> str:
+        """Git's id of all that a revision holds. Raises TreeError."""
+        import pygit2
+
+        try:
+            return str(self._repository.revparse_single(revision).peel(pygit2.Tree).id)
+        except (KeyError, ValueError, pygit2.GitError):
+            raise TreeError(f"{self.name}: there is no revision `{revision}`; `git tag` lists what there is") from None
+
+
+class Clones:
+    """A folder of clones, called `OWNER+NAME` or by the repository's name (the git directory may lie below)."""
+
+    def __init__(self, folder: Path, data: Snapshot | None = None):
+        if not folder.is_dir():
+            raise VersionError(f"{folder}: no such folder; give one that holds clones of the repositories")
+        self.folder, self._data = folder, data or default()
+        self._clones: dict[str, Clone] = {}
+
+    @cached_property
+    def _places(self) -> dict[str, list[Path]]:
+        """Folders of clones by the last part of their name, in lower case."""
+        found: dict[str, list[Path]] = {}
+        for place in sorted(self.folder.iterdir()):
+            if place.is_dir() and git_directory(place) is not None:
+                name = place.name.rpartition("+")[2].removesuffix(".git").lower()
+                found.setdefault(name, []).append(place)
+        return found
+
+    def all(self) -> Iterator[Clone]:
+        """Every clone."""
+        for places in self._places.values():
+            yield from map(self._open, places)
+
+    def _open(self, place: Path) -> Clone:
+        if place.name not in self._clones:
+            self._clones[place.name] = Clone(place)
+        return self._clones[place.name]
+
+    def of(self, package: str) -> list[Clone]:
+        """Clones of the repositories that ever released a package."""
+        urls = self._data.rows(
+            "SELECT DISTINCT u.text FROM package p JOIN home h ON h.package = p.id JOIN source s ON"
+            " s.distro = h.distro AND s.repository = h.repository JOIN url u ON u.id = s.url WHERE p.name = ?",
+            (package,),
+        )
+        names = dict.fromkeys(plain_url(text) for (text,) in urls if text)
+        found = [place for name in names for place in self._places.get(name.rpartition("/")[2], ())]
+        # The clone of the very owner first; forks and moved repositories have the same tags.
+        exact = [place for place in found if place.name.lower().replace("+", "/") in names]
+        return [self._open(place) for place in dict.fromkeys((*exact, *found))]
+
+    def releases(self, clone: Clone) -> dict[str, dict[str, frozenset[str]]]:
+        """What a repository released: distro to version, in order, to packages."""
+        found: dict[str, dict[str, frozenset[str]]] = {}
+        for release in releases_of(self._data, clone.name):
+            found.setdefault(release.distro, {})[release.version] = release.packages
+        return found
+
+    def find(self, package: str, asked: str) -> Iterator[Version]:
+        """States that may stand for a version (`28.1.0`), or for a distro's (`jazzy`, `jazzy@2024-08-01`), of a
+        package, best first. Raises VersionError when the distro never had it, or there is no clone."""
+        clones = self.of(package)
+        if not clones:
+            raise VersionError(f"no clone in {self.folder} has `{package}`; clone its repository there, with tags")
+        version, branch, distro = asked, "", ""
+        own: list[Clone] = []
+        if asked and not asked[0].isdigit():
+            version, url, branch, distro = self._released(package, asked)
+            # Another owner's repository of the same name may be another project: geometry2 of ROS 1 and of ROS 2.
+            own = [clone for clone in clones if url and clone.name.lower() == plain_url(url)]
+        clones = own or clones
+        for clone in clones:
+            tag = clone.tag(version, package, distro)
+            if tag is not None:
+                yield Version(clone, tag, version)
+        for clone in clones if distro else ():
+            tip = clone.branch(branch, distro, f"{distro}-devel")
+            if tip is None and own and clone.is_older(version):
+                tip = "HEAD"  # released after all that the clone has a tag for
+            if tip is not None:
+                yield Version(clone, tip, version, True)
+
+    def _released(self, package: str, asked: str) -> tuple[str, str, str, str]:
+        """Version, source URL, branch and name of a distro asked for."""
+        name, _, date = asked.partition("@")
+        try:
+            target = DistroTarget(name, date or None, data=self._data)
+        except TargetError as error:
+            raise VersionError(str(error)) from None
+        version = target.version(package)
+        if version is None:
+            having = [known.name for known in known_distros(self._data) if DistroTarget(known.name).version(package)]
+            where = f"; released in {', '.join(having)}" if having else ", and no other distro either"
+            raise VersionError(f"{asked} has no `{package}`{where}")
+        _, url, branch = target.repository(package) or ("", "", "")
+        return version, url, branch, name
+
+    def newest(self, package: str) -> str:
+        """The newest distro that has a package. Raises VersionError when none has it."""
+        for known in reversed(known_distros(self._data)):
+            if DistroTarget(known.name, data=self._data).version(package):
+                return known.name
+        raise VersionError(f"no distro ever had `{package}`; say which version is meant: {package}@1.0.0")
+
+    def surface(self, package: str, asked: str, store: Store, jobs: int | None = None) -> tuple[Version, State]:
+        """The state that stands for a version of a package, see find(). Raises VersionError where there is none."""
+        tried = []
+        for version in self.find(package, asked):
+            surfaces = version.clone.surfaces(version.revision, store, jobs)
+            if package in surfaces:
+                return version, State(surfaces)
+            tried.append(version.revision.removeprefix("refs/").partition("/")[2])
+        clones = ", ".join(clone.name for clone in self.of(package))
+        what = f"{', '.join(tried)} in {clones} does not have it" if tried else f"{clones} has no tag for it"
+        raise VersionError(f"`{package}` {asked} cannot be read: {what}; `git fetch --tags` may bring it")
