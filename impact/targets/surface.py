@@ -445,12 +445,15 @@ def _successor(path: str, had: Mapping[str, bool], has: Mapping[str, bool]) -> s
 def _cpp(old: Surface, new: Surface, before: State, after: State) -> Iterator[Change]:
     changes = surface_diff.compare(dict(old.headers), dict(new.headers))
     hints = {change.name: change for change in changes if change.kind == "renamed"}
+    broken = {(c.old, c.new) for c in changes if c.kind == "signature" and not c.compatible}
     lost = {path for path, header in new.headers if header.lost or header.problems}
     open_ended = _open_ended(old, new)
     has = _all_headers(new)
     for change in changes:
         if change.kind.startswith("header ") or change.kind == "renamed":
             continue
+        if change.kind == "default" and (change.old, change.new) in broken:
+            continue  # both declarations are shown with what breaks
         one = change.old or change.new
         assert one is not None
         sure = 1.0

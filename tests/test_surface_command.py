@@ -1,0 +1,148 @@
+"""rosimpact surface: what a package offers, and what changed, from the command line."""
+
+import json
+import subprocess
+
+import pytest
+from rosimpact.impact.cli import app
+from typer.testing import CliRunner
+
+MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
+<maintainer email="a@b.c">m</maintainer><license>l</license><buildtool_depend>ament_cmake</buildtool_depend>
+<export><build_type>ament_cmake</build_type></export></package>"""
+CMAKE = """cmake_minimum_required(VERSION 3.16)
+project({name})
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY include/ DESTINATION include)
+ament_package()
+"""
+OLD = """namespace rclcpp {
+class Node { public: void spin(int times = 1); int rate; [[deprecated("use spin")]] void turn(); };
+void gone(const char * with_a_long_name, unsigned long and_another_long_name, double and_one_more_long_name);
+}
+"""
+NEW = """namespace rclcpp {
+class Node { public: void spin(int times, bool fast); void fresh(); [[deprecated("use spin")]] void turn(); };
+}
+"""
+
+
+def git(folder, *arguments):
+    identity = ("-c", "user.name=a", "-c", "user.email=a@b.c")
+    subprocess.run(["git", "-C", str(folder), *identity, *arguments], check=True, capture_output=True)
+
+
+@pytest.fixture
+def repos(tmp_path, monkeypatch):
+    """A folder with a clone of two releases of rclcpp."""
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
+    place = tmp_path / "clones" / "ros2+rclcpp"
+    (place / "rclcpp/include/rclcpp").mkdir(parents=True)
+    git(place, "init", "-q", "-b", "rolling")
+    for tag, text in (("16.0.0", OLD), ("28.1.0", NEW)):
+        (place / "rclcpp/package.xml").write_text(MANIFEST.format(name="rclcpp", version=tag))
+        (place / "rclcpp/CMakeLists.txt").write_text(CMAKE.format(name="rclcpp"))
+        (place / "rclcpp/include/rclcpp/node.hpp").write_text(text)
+        git(place, "add", "-A")
+        git(place, "commit", "-qm", "x")
+        git(place, "tag", tag)
+    git(place, "branch", "humble", "16.0.0")
+    return place.parent
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, ["surface", *map(str, arguments)])
+
+
+def test_diff_as_text(repos):
+    result = run("diff", "rclcpp", "16.0.0", "28.1.0", "--repos", repos)
+    assert (result.exit_code, result.stdout) == (
+        0,
+        """rclcpp 16.0.0 → 28.1.0
+  16.0.0: 16.0.0 of ros2/rclcpp
+  28.1.0: 28.1.0 of ros2/rclcpp
+
+Breaks who uses it: 3
+  in rclcpp/node.hpp
+  removed field  rclcpp::Node::rate
+    - int rclcpp::Node::rate
+  signature method (arity)  rclcpp::Node::spin
+    - void rclcpp::Node::spin(int times = 1)
+    + void rclcpp::Node::spin(int times, bool fast)
+  removed function  rclcpp::gone
+    - void rclcpp::gone(const char* with_a_long_name, unsigned long and_another_long_name, double and_one_more_long_name)
+
+New: 1 (1 method)
+
+--all lists what is new and what still builds
+""",
+    )
+
+
+def test_a_line_fits_eighty_columns(repos, tmp_path):
+    from rosimpact.impact.facts.store import Store
+    from rosimpact.impact.report.surface import Difference, Source, diff_text, show_text
+    from rosimpact.impact.report.text import PLAIN
+    from rosimpact.impact.targets.clones import Clone
+    from rosimpact.impact.targets.surface import State, compare_states
+
+    clone = Clone(repos / "ros2+rclcpp")
+    with Store(tmp_path / "other") as store:
+        old, new = (State(clone.surfaces(tag, store, 1)) for tag in ("16.0.0", "28.1.0"))
+    source = Source("16.0.0", "16.0.0", "ros2/rclcpp", "16.0.0")
+    style = PLAIN._replace(width=80)
+    told = diff_text(Difference(source, source, compare_states(old, new)), style, True)
+    shown = show_text(old.surfaces["rclcpp"], source, style, True)
+    assert [line for line in (told + shown).splitlines() if len(line) > 80] == []
+    assert "and_one_more_long_name" in told and "and_one_more_long_name" in shown
+
+
+def test_diff_of_a_clone_as_json(repos):
+    result = run("diff", repos / "ros2+rclcpp", "16.0.0", "rolling", "--format", "json")
+    data = json.loads(result.stdout)
+    assert [(c["package"], c["kind"], c["name"], c["breaks"]) for c in data["changes"]] == [
+        ("rclcpp", "added", "rclcpp::Node::fresh", False),
+        ("rclcpp", "removed", "rclcpp::Node::rate", True),
+        ("rclcpp", "signature", "rclcpp::Node::spin", True),
+        ("rclcpp", "removed", "rclcpp::gone", True),
+    ]
+
+
+def test_diff_as_markdown_says_what_is_approximate(repos):
+    result = run("diff", "rclcpp", "humble", "28.1.0", "--repos", repos, "--format", "markdown")
+    assert "`humble` stands for it." in result.stdout
+    assert "| removed field | `rclcpp::Node::rate` | `int rclcpp::Node::rate` |  |" in result.stdout
+
+
+def test_show(repos):
+    result = run("show", "rclcpp@16.0.0", "--repos", repos, "--all")
+    assert "    method  void rclcpp::Node::turn()  deprecated: use spin\n" in result.stdout
+    data = json.loads(run("show", "rclcpp@16.0.0", "--repos", repos, "--format", "json").stdout)
+    assert [(i["part"], i["what"], i["name"]) for i in data["items"]] == [
+        ("C++", "header", "rclcpp/node.hpp"),
+        ("C++", "class", "rclcpp::Node"),
+        ("C++", "method", "rclcpp::Node::spin"),
+        ("C++", "field", "rclcpp::Node::rate"),
+        ("C++", "method", "rclcpp::Node::turn"),
+        ("C++", "function", "rclcpp::gone"),
+        ("CMake", "cmake package", "rclcpp"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("diff", "rclcpp", "16.0.0", "28.1.0"), "say where the clones are: --repos DIR"),
+        (("diff", "rclcpp", "16.0.0", "9.9.9", "--repos", "REPOS"), "has no tag for it"),
+        (("diff", "REPOS/ros2+rclcpp", "16.0.0", "nowhere"), "nowhere"),
+        (("diff", "REPOS/ros2+rclcpp", "16.0.0", "28.1.0", "--packages", "x"), "--packages x: "),
+        (("diff", "rclcpp", "a", "b", "--format", "x"), "--format x: unknown; choose one of text, json, markdown"),
+        (("show", "rclcpp", "--repos", "REPOS/none"), "no such folder"),
+        (("show", "nothing_like_it", "--repos", "REPOS"), "no distro ever had `nothing_like_it`"),
+    ],
+)
+def test_errors_are_one_line(repos, arguments, said):
+    result = run(*(argument.replace("REPOS", str(repos)) for argument in arguments))
+    assert result.exit_code == 2
+    assert result.stderr.startswith("rosimpact: ") and result.stderr.count("\n") == 1
+    assert said in result.stderr
