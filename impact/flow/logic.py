@@ -20,7 +20,7 @@ from ..facts.store import Store, fact_key, pack, unpack
 from .history import Commit, History, State
 from .logic_changes import Change, Reached, Side
 from .logic_states import compared, decoded, digest_key, safe_digest, stamp
-from .statements import kind_of_facts
+from .statements import Before, kind_of_facts
 
 Progress = Callable[[str, int, int], None]
 _STATES_AT_ONCE = 24
@@ -330,13 +330,14 @@ def _digest_chunk(repository: str, folder: str, states: Sequence[State]) -> list
     history = History(repository)
     known: dict[tuple[str, str], Any] = {}
     rows: list[tuple[bytes, bytes]] = []
+    before = Before()
     with Store(folder) as store:
         for state in states:
             wanted = {(file.id, kind_of_facts(file)) for file in state.files}
             known = {key: facts for key, facts in known.items() if key in wanted}
             known.update(_facts(history, store, [key for key in wanted if key not in known]))
             facts = {file.path: known.get((file.id, kind_of_facts(file))) for file in state.files}
-            rows.append((state.key, pack(msgspec.msgpack.encode(safe_digest(state, facts)))))
+            rows.append((state.key, pack(msgspec.msgpack.encode(safe_digest(state, facts, before)))))
     return rows
 
 

@@ -16,7 +16,7 @@ from .guards import Language
 from .history import File, State
 from .logic_changes import Change, Side, changes, settled
 from .logic_match import Names
-from .statements import EMPTY, Digest, digest
+from .statements import EMPTY, Before, Digest, digest
 
 _LONGEST_TEXT = 500_000
 _decoder = msgspec.msgpack.Decoder(Digest)
@@ -62,11 +62,13 @@ def renamed_words(
     return found
 
 
-def safe_digest(state: State, facts: Mapping[str, Any]) -> Digest:
+def safe_digest(state: State, facts: Mapping[str, Any], before: Before | None = None) -> Digest:
     """The digest of a state, an empty one of code that is nested beyond all reason: it must not end the run."""
     try:
-        return digest(state, facts)
+        return digest(state, facts, before)
     except RecursionError:
+        if before is not None:
+            before.code = None
         return EMPTY
 
 

@@ -11,7 +11,7 @@ import msgspec
 
 from ..facts import kinds
 from ..facts.flow import Call, FlowFile
-from ..model.flow.code import Fn, tail
+from ..model.flow.code import Code, Fn, tail
 from ..model.flow.graph import GuardAt, Node, Trigger, Way
 from ..model.flow.join import Join, Owner
 from ..model.flow.nodes import Built
@@ -117,11 +117,21 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
 EMPTY = Digest()
 
 
-def digest(state: State, facts: Mapping[str, Any]) -> Digest:
+class Before:
+    """The code of the state that was digested last, for the next one of the same package."""
+
+    def __init__(self) -> None:
+        self.code: Code | None = None
+
+
+def digest(state: State, facts: Mapping[str, Any], before: Before | None = None) -> Digest:
     """What a package says of publishing. facts: of each file of the state by its path: a FlowFile, CMakeFile or
-    SetupFile."""
+    SetupFile; those of a file that did not change are the same objects. before: of neighbouring states, to be quick."""
     sources = {f.path: facts[f.path] for f in state.files if isinstance(facts.get(f.path), FlowFile)}
-    join = Join(sources, lambda _: state.name, (built(state, facts),), state.ros)
+    before = before or Before()
+    last, before.code = before.code, None
+    join = Join(sources, lambda _: state.name, (built(state, facts),), state.ros, before=last)
+    before.code = join.code
     if not join.calls.uses:
         return Digest(unread=_unread(join), unclear=_unclear(join))
     return _Digester(join, state).digest()
@@ -326,7 +336,7 @@ class _Digester:
             return f"{tail(name).lower()} {shown(made[0].arguments[0])}" if made and made[0].arguments else ""
         code = self.join.code
         variable = code.identity(receiver, fn)
-        for _, each in code.writes.get(variable, ()):
+        for _, each in code.writes(variable):
             paces = [shown(part) for part in each.value.parts if part.text not in ("this", "self", "*this")]
             if paces and each.value.kind in ("make", "call", "list"):
                 kind = tail(each.value.text).lower() if each.value.text else "rate"

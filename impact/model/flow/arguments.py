@@ -52,7 +52,7 @@ class CommandLine:
         variable = self.code.identity(value.text, fn)
         if any(call.arguments[2] == value for call in self._copies.get(id(fn), ())):
             return 0
-        for writer, each in self.code.writes.get(variable, ()):
+        for writer, each in self.code.writes(variable):
             if each.value != value and each.operator == "=":
                 begun = self.start(each.value, writer, depth + 1)
                 if begun is not None:
@@ -81,7 +81,7 @@ class CommandLine:
             return range(begun + int(index.text), begun + int(index.text) + 1)
         first = 0
         if index.kind == "name":
-            for _, each in self.code.writes.get(self.code.identity(index.text, fn), ()):
+            for _, each in self.code.writes(self.code.identity(index.text, fn)):
                 if each.operator == "=" and each.value.kind == "number" and each.value.text.isdigit():
                     first = int(each.value.text)
                     break
@@ -108,7 +108,7 @@ class CommandLine:
         head, name = around(path), tail(path)
         if not head or fn.source.facts.language != "python":
             return
-        for writer, each in self.code.writes.get(self.code.identity(head, fn), ()):
+        for writer, each in self.code.writes(self.code.identity(head, fn)):
             value = each.value.parts[0] if each.value.kind == "index" and each.value.parts else each.value
             if value.kind != "call" or tail(value.text) not in ("parse_args", "parse_known_args"):
                 continue

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 from ...facts.flow import Alias, Assignment, Call, Class, Expr, FlowFile, Function, Member, Parameter
 from .types import UNKNOWN, Type, parsed
+
+_Row = TypeVar("_Row")
 
 
 class Source(NamedTuple):
@@ -53,6 +55,11 @@ class Fn:
         if python:
             self.locals = self.locals.difference(facts.outside) if facts.name else set()
 
+    def forget(self) -> None:
+        """Drops what rests on the bodies of other functions."""
+        self.identities = {}
+        self.targets = {}
+
     def __repr__(self) -> str:
         return f"Fn({self.source.path}:{self.facts.line} {self.facts.name})"
 
@@ -75,6 +82,34 @@ class Variable(NamedTuple):
     kind: str
     owner: str
     name: str
+
+
+def _names_of(source: Source) -> tuple[object, ...]:
+    """What a file contributes to what names mean: where they are equal, names mean the same."""
+    facts = source.facts
+    return source.path, source.package, facts.language, facts.aliases, id(facts) if facts.classes else 0
+
+
+class _About(Generic[_Row]):
+    """Rows by the variable that they are about. Which one that is, is asked only of rows that name it by its name.
+
+    rows: the path, the function it stands in, and the row itself."""
+
+    def __init__(self, rows: Iterable[tuple[str, Fn, _Row]]):
+        self._named: dict[str, list[tuple[str, Fn, _Row]]] = {}
+        for row in rows:
+            pieces = _pieces(row[0])
+            self._named.setdefault(pieces[-1] if pieces else row[0], []).append(row)
+        self._found: dict[str, dict[Variable, list[_Row]]] = {}
+
+    def of(self, variable: Variable, meaning: Callable[[str, Fn], Variable]) -> Sequence[_Row]:
+        """The rows about a variable, in order. meaning: of a path in a function."""
+        known = self._found.get(variable.name)
+        if known is None:
+            known = self._found[variable.name] = {}
+            for path, fn, row in self._named.get(variable.name, ()):
+                known.setdefault(meaning(path, fn), []).append(row)
+        return known.get(variable, ())
 
 
 @lru_cache(maxsize=100_000)
@@ -101,11 +136,19 @@ def around(name: str) -> str:
 
 
 class Code:
-    """Functions, classes and variables of many files. outside: classes of other packages by name, for bases."""
+    """Functions, classes and variables of many files.
 
-    def __init__(self, sources: Iterable[Source]):
+    before: an earlier state of the same code. Where no name means anything else now, what was found out about names is
+    taken from it, and it must not be asked again.
+    """
+
+    def __init__(self, sources: Iterable[Source], before: Code | None = None):
         self.sources = list(sources)
+        self.names = tuple(_names_of(source) for source in self.sources)
+        if before is not None and before.names != self.names:
+            before = None
         self.functions: list[Fn] = []
+        self.functions_in: dict[str, list[Fn]] = {}
         self._first_in: dict[str, Fn] = {}
         self.by_tail: dict[str, list[Fn]] = {}
         self.by_name: dict[tuple[str, str], Fn] = {}
@@ -117,7 +160,7 @@ class Code:
         self._renamed: set[str] = set()
         # Packages of Python by the names of their folders.
         self._packages: dict[str, list[Source]] = {}
-        for source in self.sources:
+        for place, source in enumerate(self.sources):
             known = self.aliases.setdefault(source.path, {})
             if source.path.endswith("/__init__.py"):
                 self._packages.setdefault(source.path.split("/")[-2], []).append(source)
@@ -130,22 +173,29 @@ class Code:
                         self._qualified.setdefault(alias.name, []).append((source.package, alias))
             for cls in source.facts.classes:
                 self.classes.setdefault(tail(cls.name), []).append(Cls(source, cls))
-            for facts in source.facts.functions:
-                fn = Fn(source, facts)
+            if before is not None and before.sources[place].facts is source.facts:
+                functions = before.functions_in[source.path]
+                for fn in functions:
+                    fn.forget()
+            else:
+                functions = [Fn(source, facts) for facts in source.facts.functions]
+            self.functions_in[source.path] = functions
+            for fn in functions:
                 self.functions.append(fn)
                 self._first_in.setdefault(source.path, fn)
-                self.by_tail.setdefault(tail(facts.name), []).append(fn)
-                self.by_name.setdefault((source.path, facts.name), fn)
-        self._bases: dict[str, list[Cls]] = {}
-        self._class_of: dict[tuple[str, str, str], Cls | None] = {}
+                self.by_tail.setdefault(tail(fn.name), []).append(fn)
+                self.by_name.setdefault((source.path, fn.name), fn)
+        # By names alone; a later state of the code may take these over.
+        self._bases: dict[str, list[Cls]] = before._bases if before is not None else {}
+        self._class_of: dict[tuple[str, str, str], Cls | None] = before._class_of if before is not None else {}
+        self._meant: dict[tuple[str, str, str], str] = before._meant if before is not None else {}
+        self._meant_types: dict[tuple[str, str, str], Type] = before._meant_types if before is not None else {}
         self._owner_of: dict[int, Cls | None] = {}
         self._methods_of: dict[tuple[str, str, str], list[Fn]] = {}
         self._overrides: dict[tuple[str, str], list[Fn]] = {}
         self._functions_of: dict[int, list[Fn]] = {}
         self._members: dict[int, frozenset[str]] = {}
         self._member_types: dict[tuple[str, str], tuple[str, Source, str] | None] = {}
-        self._meant: dict[tuple[str, str, str], str] = {}
-        self._meant_types: dict[tuple[str, str, str], Type] = {}
 
     # Names
 
@@ -475,25 +525,41 @@ class Code:
                 found.setdefault(tail(fn.facts.owner), []).append(fn)
         return found
 
-    @cached_property
-    def writes(self) -> dict[Variable, list[tuple[Fn, Assignment]]]:
-        """All assignments, by the variable they change."""
-        found: dict[Variable, list[tuple[Fn, Assignment]]] = {}
-        for fn in self.functions:
-            for each in fn.facts.assignments:
-                if each.target:
-                    found.setdefault(self.identity(each.target, fn, 9), []).append((fn, each))
-        return found
+    def writes(self, variable: Variable) -> Sequence[tuple[Fn, Assignment]]:
+        """All assignments that change a variable."""
+        return self._writes.of(variable, self._declared)
+
+    def results(self, variable: Variable) -> Sequence[tuple[Fn, Call]]:
+        """Calls whose result a variable keeps."""
+        return self._results.of(variable, self._declared)
+
+    def passed(self, variable: Variable) -> Sequence[tuple[Fn, Call, int]]:
+        """Calls of functions of the code that a variable is passed to, with the argument's number."""
+        return self._passed.of(variable, self.identity)
+
+    def _declared(self, path: str, fn: Fn) -> Variable:
+        """What a path means by what is declared alone."""
+        return self.identity(path, fn, 9)
 
     @cached_property
-    def results(self) -> dict[Variable, list[tuple[Fn, Call]]]:
-        """Calls whose result is kept, by the variable that keeps it."""
-        found: dict[Variable, list[tuple[Fn, Call]]] = {}
-        for fn in self.functions:
-            for call in fn.facts.calls:
-                if call.target:
-                    found.setdefault(self.identity(call.target, fn, 9), []).append((fn, call))
-        return found
+    def _writes(self) -> _About[tuple[Fn, Assignment]]:
+        return _About((e.target, fn, (fn, e)) for fn in self.functions for e in fn.facts.assignments if e.target)
+
+    @cached_property
+    def _results(self) -> _About[tuple[Fn, Call]]:
+        return _About((c.target, fn, (fn, c)) for fn in self.functions for c in fn.facts.calls if c.target)
+
+    @cached_property
+    def _passed(self) -> _About[tuple[Fn, Call, int]]:
+        return _About(
+            (argument.text, fn, (fn, call, place))
+            for fn in self.functions
+            if fn.source.facts.language == "cpp"
+            for call in fn.facts.calls
+            if tail(call.callee) in self.by_tail
+            for place, argument in enumerate(call.arguments)
+            if argument.kind == "name"
+        )
 
     def declared_type(self, variable: Variable, fn: Fn) -> tuple[str, Source, str]:
         """The type a variable is declared with, as written, and the file and scope in which to read it."""
@@ -555,7 +621,7 @@ class Code:
         kind = self.meant_type(text, source, scope) if text else UNKNOWN
         if kind.name or depth > 4:
             return kind
-        for writer, each in self.writes.get(variable, ()):
+        for writer, each in self.writes(variable):
             kind = self.type_of(each.value, writer, depth + 1)
             if kind.name:
                 return kind
@@ -705,21 +771,6 @@ class Code:
                 for target in self.targets(call.callee, fn):
                     if target is not fn:
                         found.setdefault(id(target), []).append((fn, call))
-        return found
-
-    @cached_property
-    def passed(self) -> dict[Variable, list[tuple[Fn, Call, int]]]:
-        """Calls of functions of the code that a variable is passed to, with the argument's number."""
-        found: dict[Variable, list[tuple[Fn, Call, int]]] = {}
-        for fn in self.functions:
-            if fn.source.facts.language != "cpp":
-                continue
-            for call in fn.facts.calls:
-                if tail(call.callee) not in self.by_tail:
-                    continue
-                for place, argument in enumerate(call.arguments):
-                    if argument.kind == "name":
-                        found.setdefault(self.identity(argument.text, fn), []).append((fn, call, place))
         return found
 
     @cached_property

@@ -67,7 +67,8 @@ Owner = Running | Node | None
 
 class Join:
     """One body of code joined. files: facts by path; package_of: the package a path belongs to; built: what is built of
-    it; ros: the generation where a framework does not tell; defined: knows which interfaces there are."""
+    it; ros: the generation where a framework does not tell; defined: knows which interfaces there are; before: as for
+    Code."""
 
     def __init__(
         self,
@@ -77,10 +78,12 @@ class Join:
         ros: int = 2,
         table: Frameworks | None = None,
         defined: Defined | None = None,
+        before: Code | None = None,
     ):
         self.ros, self.built = ros, list(built)
         self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
-        self.code = Code(Source(path, package_of(path), facts) for path, facts in sorted(files.items()))
+        sources = (Source(path, package_of(path), facts) for path, facts in sorted(files.items()))
+        self.code = Code(sources, before)
         self.calls = Calls(self.code, table or frameworks())
         self.values = Values(self.calls)
         self.sites = Sites(self.code, self.calls, self.values, defined or Defined())

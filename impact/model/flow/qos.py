@@ -98,7 +98,7 @@ def _of(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos:
         variable = calls.code.identity(value.text, fn)
         found = [
             (_of(each.value, writer, calls, values, depth + 1), writer)
-            for writer, each in calls.code.writes.get(variable, ())
+            for writer, each in calls.code.writes(variable)
             if each.operator == "="
         ]
         found += [
@@ -137,7 +137,7 @@ def _built(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos
         variable = value.text.split(".")[0]
         found = [
             _of(each.value, writer, calls, values, depth + 1)
-            for writer, each in calls.code.writes.get(calls.code.identity(variable, fn), ())
+            for writer, each in calls.code.writes(calls.code.identity(variable, fn))
         ]
         if not found and len(links) == 1:
             found = [

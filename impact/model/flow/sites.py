@@ -333,7 +333,7 @@ class Sites:
             return ""
         options = self.calls.argument(use, (0,))
         if options is not None and options.kind == "name":
-            for _, call in code.results.get(code.identity(options.text, fn), ()):
+            for _, call in code.results(code.identity(options.text, fn)):
                 if "Options::" in call.callee and call.types:
                     return interface_of(code.meant_type(split(call.types)[0], fn.source, fn.scope).name)
         kept = self.calls.kept_in(use)
@@ -379,7 +379,7 @@ class Sites:
 
     def _is_free(self, name: str, fn: Fn) -> bool:
         """Whether a name of Python is neither a variable nor made in the file."""
-        return self.code.identity(name, fn).kind == "global" and not self.code.writes.get(self.code.identity(name, fn))
+        return self.code.identity(name, fn).kind == "global" and not self.code.writes(self.code.identity(name, fn))
 
     def _python_type(self, value: Expr, fn: Fn, values: Values) -> str:
         meant = self.code.meant(value.text, fn.source)
@@ -399,7 +399,7 @@ class Sites:
             return by_name
         # `import std_msgs.msg` leaves the name as it is; a variable may hold the class.
         variable = self.code.identity(value.text, fn)
-        for writer, each in self.code.writes.get(variable, ()):
+        for writer, each in self.code.writes(variable):
             if each.value.kind == "name":
                 found = self.code.meant(each.value.text, writer.source)
                 if interface_of(found):
@@ -415,7 +415,7 @@ class Sites:
         if value.kind == "call" and tail(value.text) == "get_topic_class":
             return "*"
         if value.kind == "name" and depth < 4:
-            for writer, each in self.code.writes.get(self.code.identity(value.text, fn), ()):
+            for writer, each in self.code.writes(self.code.identity(value.text, fn)):
                 found = self._class_by_name(each.value, writer, values, depth + 1)
                 if found:
                     return found
@@ -463,7 +463,7 @@ class Sites:
         if options is None or options.kind != "name":
             return None
         fn, variable = use.fn, self.code.identity(options.text, use.fn)
-        made = [call for _, call in self.code.results.get(variable, ()) if "Options::create" in call.callee]
+        made = [call for _, call in self.code.results(variable) if "Options::create" in call.callee]
         made += [call for call in fn.facts.calls if call.callee.startswith(f"{options.text}.init")]
         found = [body for call in made if len(call.arguments) > 2 for body in self.bodies(call.arguments[2], fn, use)]
         return (tuple(found), "") if found else None
@@ -571,7 +571,7 @@ class Sites:
                 return self._fitting(found, use)
         if value.kind in ("name", "function"):
             variable = code.identity(value.text, fn)
-            for writer, each in code.writes.get(variable, ()):
+            for writer, each in code.writes(variable):
                 if each.value != value:
                     found = self.bodies(each.value, writer, use, depth + 1)
                     if found:
@@ -701,12 +701,12 @@ class Sites:
         if value.kind != "name":
             return ""
         variable = self.code.identity(value.text, fn)
-        for writer, each in self.code.writes.get(variable, ()):
+        for writer, each in self.code.writes(variable):
             if each.value.kind in ("make", "list", "call", "name", "text") and each.value != value:
                 if each.value.kind == "text":
                     return self._made_handle((each.value,), writer, depth)
                 return self.handle(each.value, writer, depth + 1)
-        for caller, call in self.code.results.get(variable, ()):
+        for caller, call in self.code.results(variable):
             if tail(call.callee) in ("make_shared", "make_unique"):
                 return self._made_handle(call.arguments, caller, depth)
         for other in self._resets.get(variable, ()):
@@ -880,14 +880,14 @@ class Sites:
         found = self.kept.get(variable)
         if found:
             yield from found
-        wrapped = [(writer, each.value) for writer, each in code.writes.get(variable, ())]
+        wrapped = [(writer, each.value) for writer, each in code.writes(variable)]
         for writer, value in [*wrapped, *self._resets.get(variable, ())]:
             # `RealtimePublisher(publisher)`
             if value.kind == "make" and self._is_publisher(value, writer):
                 for part in value.parts:
                     if part.kind == "name":
                         yield from self.publishers(part.text, writer, depth + 1)
-        for writer, each in code.writes.get(variable, ()):
+        for writer, each in code.writes(variable):
             if each.value.kind in ("name", "index", "call") and each.operator in ("=", "for"):
                 text = (
                     each.value.text

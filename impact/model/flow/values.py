@@ -154,7 +154,7 @@ class Values:
         if value.kind == "list":
             return list(value.parts) if value.parts and all(part.kind == "list" for part in value.parts) else []
         if value.kind == "name" and depth < 4:
-            written = self.code.writes.get(self.code.identity(value.text, fn), ())
+            written = self.code.writes(self.code.identity(value.text, fn))
             if len(written) == 1:
                 return self.rows(written[0][1].value, written[0][0], depth + 1)
         return []
@@ -166,7 +166,7 @@ class Values:
             return
         if value.kind == "name":
             variable = self.code.identity(value.text, fn)
-            for writer, each in self.code.writes.get(variable, ()):
+            for writer, each in self.code.writes(variable):
                 if each.value.kind == "list":
                     yield from self._elements(each.value, writer, each.line, (*seen, variable))
                     return
@@ -210,7 +210,7 @@ class Values:
                             yield from self._of(member.value, holder, member.line, seen)
         elif variable.kind == "global":
             yield from self._constant(variable, fn, seen)
-        for writer, each in self.code.writes.get(variable, ()):
+        for writer, each in self.code.writes(variable):
             if self.arguments is not None and self.command_line.excluded(writer, each.guard, len(self.arguments) + 1):
                 continue
             if each.operator == "=":
@@ -223,7 +223,7 @@ class Values:
                 yield Value(None, "unresolved", f"`{variable.name}` is put together in steps")
         for use in self.filled.get(variable, ()):
             yield from self._parameter(use, seen)
-        if not self.code.writes.get(variable) or variable.kind == "local":
+        if not self.code.writes(variable) or variable.kind == "local":
             yield from self._by_reference(variable, seen)
         if variable.kind == "local":
             for one in self.code.chain(fn):
@@ -238,7 +238,7 @@ class Values:
         """What functions write into a variable that is passed to them by reference."""
         if len(seen) > _FAR:
             return  # from hand to hand: a walk over everything that is passed on would not end in time
-        for caller, call, place in self.code.passed.get(variable, ()):
+        for caller, call, place in self.code.passed(variable):
             for target in self.code.targets(call.callee, caller):
                 parameters = target.facts.parameters
                 if place < len(parameters) and "&" in parameters[place].type and "const" not in parameters[place].type:
@@ -248,7 +248,7 @@ class Values:
 
     def written(self, variable: Variable, seen: tuple) -> Iterator[Value]:
         """What is written into a variable, where it stands, or fills it from a parameter."""
-        for writer, each in self.code.writes.get(variable, ()):
+        for writer, each in self.code.writes(variable):
             if each.operator == "=":
                 yield from self._of(each.value, writer, each.line, seen)
         for use in self.filled.get(variable, ()):
