@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -30,6 +30,8 @@ from .tree import GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
 
 if TYPE_CHECKING:
     from .flow.impact import Impact
+    from .installed import Installed
+    from .targets.shelf import Shelf
 
 
 class CheckError(Exception):
@@ -42,6 +44,7 @@ class Options(NamedTuple):
     targets: as given on the command line. rev: a git revision instead of the files on disk. base: the revision to
     compare with, PATH=REV pairs, or a pinned .repos file. select, ignore: rules or families, over those of the
     configuration. config: another rosimpact.toml. baseline: text of a baseline file. cache: folder of the facts.
+    install: an install space whose built files are checked too.
     """
 
     targets: tuple[str, ...] = ()
@@ -54,6 +57,7 @@ class Options(NamedTuple):
     config: Path | None = None
     baseline: str = ""
     cache: Path | None = None
+    install: Path | None = None
 
 
 DEFAULTS = Options()
@@ -97,7 +101,7 @@ def run(
     started = time.perf_counter()
     rules = all_rules()
     with open_workspace(path, options, progress, lambda config: _chosen(rules, options, config)) as opened:
-        tree, store, gathered, workspace, targets, views, config = opened
+        tree, store, gathered, workspace, targets, views, config, installed, shelves = opened
         chosen = _chosen(rules, options, config)
         settings = _settings(rules, config)
         sources = Sources(reader(tree))
@@ -130,9 +134,12 @@ def run(
     report = Report(
         version=__version__,
         data=targets[0].target.data_date if targets else "",
-        targets=tuple(_reported(chosen_target, notes if i == 0 else ()) for i, chosen_target in enumerate(targets)),
+        targets=(
+            *(_reported(chosen_target, notes if i == 0 else ()) for i, chosen_target in enumerate(targets)),
+            *_alone({chosen_target.target.name for chosen_target in targets}, shelves),
+        ),
         findings=tuple(found),
-        coverage=coverage(workspace, gathered, views),
+        coverage=coverage(workspace, gathered, views, installed),
         packages=tuple(ReportedPackage(package.name, package.path) for package in workspace),
         suppressed=tuple(now.suppressed),
         known=tuple(known),
@@ -189,7 +196,8 @@ def check_workspace(
 
 
 class Opened(NamedTuple):
-    """A workspace ready to be asked: its files, facts, model, and how each target sees it."""
+    """A workspace ready to be asked: its files, facts, model, and how each target sees it; what is installed of it, and
+    what there is to run that with."""
 
     tree: Tree
     store: Store
@@ -198,6 +206,8 @@ class Opened(NamedTuple):
     targets: Sequence[Chosen]
     views: Sequence[View]
     config: Config
+    installed: Installed | None = None
+    shelves: Sequence[Shelf] = ()
 
 
 @contextmanager
@@ -222,7 +232,14 @@ def open_workspace(
         gathered.problems += [*workspace.discovered.problems, *_left_out(workspace, gathered)]
         targets = choose_targets(options.targets, config, workspace, tree)
         views = [View(workspace, chosen.target, default_providers(), config) for chosen in targets]
-        yield Opened(tree, store, gathered, workspace, targets, views, config)
+        installed, shelves = None, ()
+        if options.install is not None:
+            from . import installed as built
+
+            installed = built.of_workspace(options.install, root, workspace, store, options.jobs)
+            shelves = built.shelves(installed, targets, config)
+            gathered.problems += [*installed.problems, *built.of_other_machines(installed, shelves)]
+        yield Opened(tree, store, gathered, workspace, targets, views, config, installed, shelves)
 
 
 def _left_out(workspace: Workspace, gathered: Gathered) -> Iterator[PathProblem]:
@@ -297,6 +314,14 @@ def _reported(chosen: Chosen, notes: Iterable[str]) -> ReportedTarget:
     return ReportedTarget(
         target.name, target.distro, target.date, target.platform, chosen.reason, (*target.notes, *notes)
     )
+
+
+def _alone(names: Container[str], shelves: Iterable[Shelf]) -> Iterator[ReportedTarget]:
+    """Machines that only built files are checked on: this one, where no target is it."""
+    for shelf in shelves:
+        if shelf.target not in names:
+            note = "only built files were checked on it"
+            yield ReportedTarget(shelf.target, "", "", shelf.platform, "where --install lies", (note,))
 
 
 def _chosen(rules: Mapping[str, Rule], options: Options, config: Config) -> dict[str, Rule]:
@@ -406,7 +431,9 @@ def _has_header(view: View, path: str) -> bool:
     return target.platform in view.providers.header_platforms(path)
 
 
-def coverage(workspace: Workspace, gathered: Gathered, views: Sequence[View]) -> Coverage:
+def coverage(
+    workspace: Workspace, gathered: Gathered, views: Sequence[View], installed: Installed | None = None
+) -> Coverage:
     """How much was read and resolved."""
     broken = {path for package in workspace for path, _, _ in package.digest.problems}
     unresolved: dict[str, set[str]] = {}
@@ -419,4 +446,8 @@ def coverage(workspace: Workspace, gathered: Gathered, views: Sequence[View]) ->
         counts["cmake"] = counts.get("cmake", 0) + cmake
     # A file can be read and still have something wrong with it, such as its name.
     files = len(gathered.kinds.keys() | {problem.path for problem in gathered.problems})
-    return Coverage(len(workspace.packages), files, len(gathered.kinds) - len(broken & gathered.kinds.keys()), counts)
+    parsed = len(gathered.kinds) - len(broken & gathered.kinds.keys())
+    if installed is not None:
+        sound = sum(not binary.elf.problem for binary in installed.binaries)
+        files, parsed = files + sound, parsed + sound
+    return Coverage(len(workspace.packages), files, parsed, counts)

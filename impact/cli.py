@@ -78,6 +78,13 @@ def check(
             "file): only what is new fails."
         ),
     ] = None,
+    install: Annotated[
+        Path | None,
+        typer.Option(
+            help="Also check the built files of this install space (or devel space, or prefix of a package): shared "
+            "libraries that are gone, here or on a target."
+        ),
+    ] = None,
     select: Annotated[
         list[str] | None, typer.Option(help="Only these rules or families. May be repeated or comma-separated.")
     ] = None,
@@ -120,7 +127,7 @@ def check(
             path, targets=tuple(target or ()), format=format, output=output, rev=rev, base=tuple(base or ()),
             select=_names(select), ignore=_names(ignore), fail_on=fail_on, notes=notes, preview=preview,
             baseline=baseline, write_baseline=write_baseline, prune_baseline=prune_baseline, fix=fix, diff=diff,
-            config=config, jobs=jobs, quiet=quiet,
+            config=config, jobs=jobs, quiet=quiet, install=install,
         )
     )  # fmt: skip
 

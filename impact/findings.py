@@ -166,7 +166,7 @@ def joined(texts: Sequence[tuple[str, str]]) -> str:
 def _attributed(text: str, names: Sequence[str]) -> str:
     """The text with the targets it holds for behind it, unless it names them itself."""
     words = set(re.split(r"[\s`,;:()]+", text))
-    named = [name for name in names if name and name not in words]
+    named = [name for name in names if name and name not in words and not (" " in name and name in text)]
     return f"{text} ({', '.join(named)})" if named else text
 
 

@@ -55,6 +55,8 @@ def hits_of(
             for view in opened.views:
                 target = view.target.name
                 yield from ((name, target, hit) for name, hit in kept[target] if name == rule.name)
+        elif rule.installed:
+            yield from _of_install(opened, rule, crashed)
         elif rule.flow:
             yield from ((name, "", hit) for name, hit in of_flow if name == rule.name)
         else:
@@ -126,6 +128,19 @@ def _of_flow(
         memo.remember_flow(opened.store, key, said)
     crashed.update(failed)
     return said
+
+
+def _of_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Hit]]:
+    """What a rule says of the built files, machine by machine. What a machine has changes unseen, so it is not
+    remembered."""
+    installed = opened.installed
+    if installed is None:
+        return
+    views = {view.target.name: view for view in opened.views}
+    for shelf in opened.shelves:
+        view = views.get(shelf.target, opened.views[0])
+        hits = _tried(rule, shelf.target, crashed, lambda view=view, shelf=shelf: rule.run(view, installed, shelf))
+        yield from ((rule.name, shelf.target, hit) for hit in hits)
 
 
 def _run(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Hit]]:

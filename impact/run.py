@@ -14,6 +14,7 @@ from .check import Checked, CheckError, Options, open_workspace
 from .check import run as run_check
 from .config import ConfigError
 from .findings import SettingsError, fails
+from .installed import InstallError
 from .report.report import Coverage, Report
 from .report.text import PLAIN, Style, style_for
 from .targets.distro import TargetError
@@ -22,7 +23,7 @@ from .tree import TreeError, WorkingTree, shown
 
 FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
 FAIL_ON = ("error", "warning", "note", "never")
-_OUR_ERRORS = (CheckError, ConfigError, SettingsError, TargetError, SnapshotError, TreeError)
+_OUR_ERRORS = (CheckError, ConfigError, SettingsError, TargetError, SnapshotError, TreeError, InstallError)
 
 
 class Failed(Exception):
@@ -62,7 +63,7 @@ def failed(message: str, format: str = "text", output: Path | None = None) -> in
 
 def check(
     path: Path, *, targets, format, output, rev, base, select, ignore, fail_on, notes, preview, baseline,
-    write_baseline, prune_baseline, fix, diff, config, jobs, quiet,
+    write_baseline, prune_baseline, fix, diff, config, jobs, quiet, install=None,
 ) -> int:  # fmt: skip
     """Runs the check and prints its report. Returns the exit status: 0, 1 (findings) or 2 (failed)."""
     try:
@@ -74,7 +75,7 @@ def check(
             if prune_baseline and baseline is None:
                 raise Failed("--prune-baseline: needs the baseline to prune; give it with --baseline")
             known = _baseline(baseline)
-            options = Options(targets, rev, base, select, ignore, preview, jobs, config, known)
+            options = Options(targets, rev, base, select, ignore, preview, jobs, config, known, install=install)
             checked = run_check(path, options, None if quiet else _progress())
             incomplete = False
             if fix and not diff:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import shutil
+import struct
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,6 +28,41 @@ class Said(NamedTuple):
     @property
     def text(self) -> str:
         return self.out + self.err
+
+
+MACHINES = {"EM_X86_64": 62, "EM_AARCH64": 183, "EM_RISCV": 243}
+
+
+def elf_bytes(
+    machine: str, needed: Iterable[str] = (), soname: str = "", runpath: str = "", program: bool = False
+) -> bytes:
+    """The bytes of a small but whole ELF file of 64 bits that is linked at run time and does nothing."""
+    strings = bytearray(b"\0")
+
+    def at(text: str) -> int:
+        strings.extend(text.encode() + b"\0")
+        return len(strings) - len(text) - 1
+
+    tags = [(1, at(name)) for name in needed]  # DT_NEEDED
+    tags += [(14, at(soname))] if soname else []  # DT_SONAME
+    tags += [(29, at(runpath))] if runpath else []  # DT_RUNPATH
+    start = 64 + 2 * 56
+    size = 16 * (len(tags) + 3)
+    tags += [(5, start + size), (10, len(strings)), (0, 0)]  # DT_STRTAB, DT_STRSZ, DT_NULL
+    dynamic = b"".join(struct.pack("<QQ", *tag) for tag in tags)
+    whole = start + size + len(strings)
+    ident = b"\x7fELF" + bytes([2, 1, 1]) + bytes(9)
+    kind = 2 if program else 3  # ET_EXEC, ET_DYN
+    head = ident + struct.pack("<HHIQQQIHHHHHH", kind, MACHINES[machine], 1, 0, 64, 0, 0, 64, 56, 2, 0, 0, 0)
+    load = struct.pack("<IIQQQQQQ", 1, 5, 0, 0, 0, whole, whole, 4096)
+    segment = struct.pack("<IIQQQQQQ", 2, 6, start, start, start, size, size, 8)
+    return head + load + segment + dynamic + bytes(strings)
+
+
+@pytest.fixture(scope="session")
+def made_elf() -> Callable[..., bytes]:
+    """elf_bytes()."""
+    return elf_bytes
 
 
 @pytest.fixture(scope="session")

@@ -64,7 +64,8 @@ class Rule(NamedTuple):
     """A registered rule: name, family (folder), severity, whether it is a preview, function, documentation.
 
     per_target: asked once for each target. compares: asked about a workspace and its base, and silent without one.
-    flow: rests on the message flow, and on nothing that is not remembered with it."""
+    flow: rests on the message flow, and on nothing that is not remembered with it. installed: asked about the built
+    files of an install space, on each machine, and silent without one."""
 
     name: str
     family: str
@@ -75,23 +76,33 @@ class Rule(NamedTuple):
     documentation: str
     compares: bool = False
     flow: bool = False
+    installed: bool = False
 
 
 _RULES: dict[str, Rule] = {}
 
 
-def rule(*, severity: str, preview: bool = False, per_target: bool = True, compares: bool = False, flow: bool = False):
+def rule(
+    *,
+    severity: str,
+    preview: bool = False,
+    per_target: bool = True,
+    compares: bool = False,
+    flow: bool = False,
+    installed: bool = False,
+):
     """Registers the decorated generator as a rule. It is called as f(view), a workspace as one target sees it, and
     reports on the packages that the view iterates over, which may be a part of the workspace; or as f(workspace) when
-    per_target is False or it asks for the flow; or as f(workspace, base) when it compares. The name is the module's,
-    with dashes."""
+    per_target is False or it asks for the flow; or as f(workspace, base) when it compares; or as f(view, installed,
+    shelf) when it is about built files. The name is the module's, with dashes."""
 
     def register(function):
         parts = function.__module__.split(".")
         module = importlib.import_module(function.__module__)
         name = parts[-1].replace("_", "-")
-        per = per_target and not compares and not flow
-        _RULES[name] = Rule(name, parts[-2], severity, preview, per, function, module.__doc__ or "", compares, flow)
+        per = per_target and not compares and not flow and not installed
+        documentation = module.__doc__ or ""
+        _RULES[name] = Rule(name, parts[-2], severity, preview, per, function, documentation, compares, flow, installed)
         return function
 
     return register

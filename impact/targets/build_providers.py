@@ -60,7 +60,7 @@ class Suite(NamedTuple):
     def files(self) -> Iterator[tuple[str, tuple[str, ...]]]:
         """(path, Debian packages) of every file that may be a header, module, program or configuration."""
         for index in self.contents:
-            for line in _cat(index):
+            for line in lines_of(index):
                 path, _, where = line.rstrip().rpartition(b" " if b"\t" not in line else b"\t")
                 path = path.rstrip()
                 if _WANTED.match(path) and not _SKIP.match(path):
@@ -78,7 +78,7 @@ _SKIP = re.compile(rb"usr/share/(?:doc|gir-1\.0|perl5|icons|javascript|nodejs|ca
 _ROS_SOURCE = re.compile(r"(?:ros|ament|ros2|rosidl)-|ament_|catkin$")
 
 
-def _cat(path: Path) -> Iterator[bytes]:
+def lines_of(path: Path) -> Iterator[bytes]:
     """Lines of an index however apt compressed it, through apt's own helper."""
     with subprocess.Popen(["/usr/lib/apt/apt-helper", "cat-file", str(path)], stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
@@ -100,7 +100,7 @@ def read_suite(platform: str, lists: Path) -> Suite:
     ros: set[str] = set()
     source: dict[str, str] = {}
     for index in packages:
-        for name, fields in _paragraphs(_cat(index)):
+        for name, fields in _paragraphs(lines_of(index)):
             depends[name] = _relations(fields.get("Pre-Depends", "") + "," + fields.get("Depends", ""))
             for other in _relations(fields.get("Provides", "")):
                 provides[other].append(name)

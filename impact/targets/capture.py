@@ -82,12 +82,12 @@ def capture(
     run: Callable[[list[str]], str] | None = None, root: Path = Path("/"), environment: dict[str, str] | None = None
 ) -> Machine:
     """Reads this machine. run: a command to its output (empty when it fails); root and environment are for tests."""
-    run = run or _run
+    run = run or output_of
     environment = dict(os.environ) if environment is None else environment
     listing = run(["dpkg-query", "-W", "-f", "${db:Status-Abbrev}\t${Package}\t${Version}\n"])
     rows = [line.split("\t")[1:3] for line in listing.splitlines() if line.startswith("ii") and line.count("\t") == 2]
     distro, packages, libraries, debian = from_dpkg((name, version) for name, version in rows)
-    for prefix in _prefixes(root, environment):
+    for prefix in prefixes(root, environment):
         for manifest in sorted(prefix.glob("share/*/package.xml")):
             name, version = name_and_version(manifest)
             if name:
@@ -107,7 +107,7 @@ def capture(
     return Machine(
         environment.get("ROS_DISTRO") or distro or _only_distro(root),
         datetime.date.today().isoformat(),
-        _platform(root),
+        platform_of(root),
         *(dict(sorted(each.items())) for each in (packages, libraries, debian, _pip(), tools)),
     )
 
@@ -184,14 +184,14 @@ def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] 
     return found
 
 
-def _run(command: list[str]) -> str:
+def output_of(command: list[str]) -> str:
     try:
         return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False).stdout
     except (OSError, subprocess.TimeoutExpired):
         return ""
 
 
-def _prefixes(root: Path, environment: dict[str, str]) -> list[Path]:
+def prefixes(root: Path, environment: dict[str, str]) -> list[Path]:
     """Installed prefixes, overlaid ones first, so that what covers them is read last."""
     listed = [
         Path(p)
@@ -222,7 +222,7 @@ def name_and_version(manifest: Path) -> tuple[str, str]:
     return (name[1], version[1]) if name and version else ("", "")
 
 
-def _platform(root: Path) -> str:
+def platform_of(root: Path) -> str:
     try:
         text = (root / "etc" / "os-release").read_text(encoding="utf-8")
     except OSError:

@@ -1,7 +1,9 @@
 """Every rule on its own small workspaces: it speaks on `before`, and is silent on `after`, on every target.
 
 A case is a folder `<family>/<rule>/`, with underscores for dashes, that holds the workspaces `before` and `after`, and
-a file `targets` with one target a line (without it, each workspace names its own in rosimpact.toml). A further case of
+a file `targets` with one target a line (without it, each workspace names its own in rosimpact.toml). A workspace with
+a file `installed.txt` has an install space with these built files: machine (`here`: this one), path,
+and the libraries that each needs. A further case of
 the same rule is `<rule>__<what it shows>`. Rules that compare are given `after` as the base of both workspaces.
 One snapshot shows every finding of every rule over all `before` workspaces, so that a stray hit of another rule is seen
 in review.
@@ -9,6 +11,7 @@ in review.
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -18,6 +21,7 @@ from rosimpact.impact.base import compare
 from rosimpact.impact.check import Options, check
 from rosimpact.impact.report.report import Report
 from rosimpact.impact.rules.rule import all_rules
+from rosimpact.impact.targets.loader import own_machine
 
 HERE = Path(__file__).parent
 CASES = sorted(path.parent for path in HERE.glob("*/*/before"))
@@ -33,7 +37,7 @@ def name_of(case: Path) -> str:
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory) -> Run:
+def run(tmp_path_factory, made_elf) -> Run:
     """Checks one workspace of a case, once for all tests."""
     store = tmp_path_factory.mktemp("cache")
 
@@ -44,6 +48,16 @@ def run(tmp_path_factory) -> Run:
         options = Options(targets=asked, preview=True, cache=store, jobs=1)
         if all_rules()[rule_of(case)].compares:
             return compare(case / which, case / "after", options)
+        built = case / which / "installed.txt"
+        if built.exists():
+            copy = tmp_path_factory.mktemp("built") / which
+            shutil.copytree(case / which, copy)
+            for line in built.read_text().splitlines():
+                machine, path, *needed = line.split()
+                file = copy / "install" / path
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_bytes(made_elf(own_machine() if machine == "here" else machine, needed))
+            return check(copy, options._replace(install=copy / "install"))
         return check(case / which, options)
 
     return checked

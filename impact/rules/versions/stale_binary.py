@@ -1,0 +1,127 @@
+"""stale-binary: a built program or library needs a shared library that is gone.
+
+What it does
+    With `--install FOLDER`, reads the built files of an install space and reports shared libraries, and versions of
+    their symbols, that this machine or a target does not have: what is left behind when an upgrade of the system
+    replaces `libpcl_common.so.1.12` by `libpcl_common.so.1.13`, or when a file is built on a newer system than the one
+    that is to run it.
+
+Why it breaks
+    The loader stops the program before it begins: "error while loading shared libraries: libpcl_common.so.1.12: cannot
+    open shared object file", or "version `GLIBC_2.38' not found". A plugin fails when it is loaded.
+
+Severity
+    error: it is only said where it is sure. What cannot be told is counted in the coverage.
+
+Example
+    apt upgrade                              # brings PCL 1.13 for 1.12
+    ros2 run nav2_costmap_2d nav2_costmap_2d # built before
+
+Use instead
+    colcon build --packages-select nav2_costmap_2d --cmake-clean-cache
+
+Not reported
+    Libraries that the install space or an underlay holds; those that some ROS package of a target may bring in; a
+    library that lies outside of the folders that the loader searches, where a program may know of it; on a target whose
+    files are not known (DATA.md says which are), libraries whose version does not tell the name of their files; files
+    built for another kind of machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+from ....corpus.told import counted
+from ...model.build import At
+from ...model.view import View
+from ..rule import Hit, rule
+
+if TYPE_CHECKING:
+    from ...installed import Binary, Installed
+    from ...targets.shelf import Shelf
+
+
+class _Missing(NamedTuple):
+    """What a file asks for in vain. subject: soname or version; library: the soname; there: what is there instead."""
+
+    subject: str
+    library: str
+    there: str
+
+
+@rule(severity="error", installed=True)
+def stale_binary(view: View, installed: Installed, shelf: Shelf):
+    askers: dict[_Missing, dict[str, list[Binary]]] = {}
+    for binary in installed.binaries:
+        if shelf.machine and binary.elf.machine != shelf.machine:
+            continue
+        for missing in _missing(view, binary, installed, shelf):
+            askers.setdefault(missing, {}).setdefault(binary.package, []).append(binary)
+    stale = {package for by_package in askers.values() for package in by_package if package}
+    order = {package: place for place, package in enumerate(_in_build_order(view, stale))}
+    for missing, by_package in askers.items():
+        packages = sorted((package for package in by_package if package), key=order.__getitem__)
+        for package, binaries in by_package.items():
+            at = _place(view, package, binaries, installed)
+            yield Hit(at, missing.subject, _message(missing, binaries, shelf), _help(missing, packages, shelf), package)
+
+
+def _missing(view: View, binary: Binary, installed: Installed, shelf: Shelf) -> Iterator[_Missing]:
+    needed = [soname for soname in binary.elf.needed if soname not in installed.libraries]
+    absent = set()
+    for soname in needed:
+        there = shelf.has(soname, binary.elf, binary.folder)
+        if there is None:
+            view.unresolved.setdefault("shared library", set()).add(soname)
+        elif not there:
+            absent.add(soname)
+            yield _Missing(soname, soname, shelf.instead(soname))
+    for asked in binary.elf.asked:
+        if asked.library in absent or asked.library not in needed:
+            continue
+        lacks = shelf.lacks(asked, binary.elf, binary.folder)
+        if lacks:
+            yield _Missing(lacks[-1].version, asked.library, f"`{lacks[-1].there}`" if lacks[-1].there else "")
+
+
+def _message(missing: _Missing, binaries: list[Binary], shelf: Shelf) -> str:
+    first = min(binary.path for binary in binaries)
+    more = f" and {counted(len(binaries) - 1, 'more file')}" if len(binaries) > 1 else ""
+    what = f"`{missing.subject}`" + (f" of `{missing.library}`" if missing.library != missing.subject else "")
+    gone = "is gone" if shelf.gone and missing.there else "is not there"
+    there = f"{shelf.name} has {missing.there}" if missing.there else shelf.nothing
+    return f"{what}, which `{first}`{more} need{'' if more else 's'}, {gone}: {there}"
+
+
+def _help(missing: _Missing, packages: list[str], shelf: Shelf) -> str:
+    rebuild = f"rebuild {', '.join(packages)}" if packages else "rebuild it"
+    if len(packages) > 1:
+        rebuild += " in this order"
+    package = shelf.package(missing.subject)
+    if package:
+        return f"install `{package}`, or {rebuild}"
+    return rebuild
+
+
+def _place(view: View, package: str, binaries: list[Binary], installed: Installed) -> At:
+    """The package's manifest; of a package that is not in the workspace, the first file itself."""
+    known = view.workspace.packages.get(package)
+    if known is not None:
+        return At(known.digest.manifest_path, 0)
+    return At(f"{installed.label}/{min(binary.path for binary in binaries)}", 0)
+
+
+def _in_build_order(view: View, packages: Iterable[str]) -> list[str]:
+    """Packages, those first that others of them are built with; what is not in the workspace comes first."""
+    left = sorted(packages)
+    closures = {
+        name: view.closure(view.workspace.packages[name]) if name in view.workspace.packages else frozenset()
+        for name in left
+    }
+    ordered: list[str] = []
+    while left:
+        free = next((name for name in left if not any(o in closures[name] for o in left if o != name)), left[0])
+        ordered.append(free)
+        left.remove(free)
+    return ordered

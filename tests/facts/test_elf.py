@@ -1,0 +1,128 @@
+"""What built files say they need, told from their bytes alone."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rosimpact.impact.facts import elf
+from rosimpact.impact.facts.elf import Elf, read, stem_and_version
+
+
+def test_the_dynamic_section_is_read(made_elf):
+    data = made_elf("EM_AARCH64", ["libpcl_common.so.1.12", "libc.so.6"], "libwinch.so.2", "$ORIGIN/../lib:/opt/x")
+    assert read(data) == Elf(
+        machine="EM_AARCH64",
+        bits=64,
+        soname="libwinch.so.2",
+        needed=("libpcl_common.so.1.12", "libc.so.6"),
+        search=("$ORIGIN/../lib", "/opt/x"),
+        dynamic=True,
+    )
+
+
+def test_a_program_is_told_from_a_library(made_elf):
+    found = [read(made_elf("EM_X86_64", ["libc.so.6"], program=program)) for program in (True, False)]
+    assert [each is not None and each.program for each in found] == [True, False]
+
+
+@pytest.mark.parametrize("data", [b"", b"#!/bin/sh\n", b"\x7fEL", b"!<arch>\n", b"\0" * 100])
+def test_what_is_no_elf_file_gives_nothing(data):
+    assert read(data) is None
+
+
+@pytest.mark.parametrize("length", [4, 5, 16, 40, 63, 64, 100, 176, 200])
+def test_of_a_file_that_is_cut_off_that_is_told(made_elf, length):
+    found = read(made_elf("EM_X86_64", ["libpcl_common.so.1.12"])[:length])
+    assert found is not None
+    assert found.problem
+    assert found.needed == ()
+
+
+@settings(deadline=None, max_examples=300)
+@given(st.data())
+def test_damaged_bytes_never_raise(made_elf, data):
+    whole = bytearray(made_elf("EM_X86_64", ["liba.so.1", "libb.so.2"], "libc.so.3", "/opt"))
+    for _ in range(data.draw(st.integers(1, 6))):
+        whole[data.draw(st.integers(4, len(whole) - 1))] = data.draw(st.integers(0, 255))
+    assert isinstance(read(bytes(whole)), Elf)
+
+
+@pytest.mark.parametrize(
+    ("soname", "parts"),
+    [
+        ("libpcl_common.so.1.12", ("libpcl_common.so", "1.12")),
+        ("libopencv_core.so.4.5d", ("libopencv_core.so", "4.5d")),
+        ("librclcpp.so", ("librclcpp.so", "")),
+        ("libvtkCommonCore-9.1.so.1", ("libvtkCommonCore-9.1.so", "1")),
+        ("ld-linux-x86-64.so.2", ("ld-linux-x86-64.so", "2")),
+    ],
+)
+def test_a_soname_has_a_stem_and_a_version(soname, parts):
+    assert stem_and_version(soname) == parts
+
+
+# Files that a real linker made
+
+
+@pytest.fixture(scope="module")
+def linked(tmp_path_factory) -> Path:
+    """A folder with libwinch.so.2, whose symbols have versions, and a program `crane` that is linked with it."""
+    compiler = shutil.which("gcc")
+    if compiler is None:
+        pytest.skip("no gcc: install it to read files that a real linker made")
+    folder = tmp_path_factory.mktemp("linked")
+    (folder / "winch.c").write_text("int rope(void) { return 3; }\nint hook(void) { return 4; }\n")
+    (folder / "winch.map").write_text("WINCH_1 { global: rope; local: *; };\nWINCH_2 { global: hook; } WINCH_1;\n")
+    (folder / "crane.c").write_text(
+        "int rope(void); int hook(void); extern int maybe(void) __attribute__((weak));\n"
+        "int main(void) { return rope() + hook() + (maybe ? maybe() : 0); }\n"
+    )
+    run(compiler, folder, "-shared", "-fPIC", "-Wl,-soname,libwinch.so.2", "-Wl,--version-script=winch.map",
+        "-o", "libwinch.so.2", "winch.c")  # fmt: skip
+    run(compiler, folder, "-o", "crane", "crane.c", "./libwinch.so.2", "-Wl,--build-id=0x1234abcd",
+        "-Wl,--enable-new-dtags,-rpath,$ORIGIN")  # fmt: skip
+    run(compiler, folder, "-c", "-o", "crane.o", "crane.c")
+    return folder
+
+
+def run(compiler: str, folder: Path, *arguments: str) -> None:
+    subprocess.run([compiler, *arguments], cwd=folder, check=True, capture_output=True)
+
+
+def read_file(path: Path) -> Elf:
+    found = read(path.read_bytes())
+    assert found is not None and not found.problem
+    return found
+
+
+def test_a_linked_library_says_what_it_offers(linked):
+    library = read_file(linked / "libwinch.so.2")
+    assert (library.soname, library.program, library.offers) == ("libwinch.so.2", False, ("WINCH_1", "WINCH_2"))
+    assert library.defined >= 2
+
+
+def test_a_linked_program_says_what_it_needs_and_in_which_versions(linked):
+    program = read_file(linked / "crane")
+    assert program.program and program.dynamic
+    assert "libwinch.so.2" in program.needed
+    assert (program.search, program.build_id) == (("$ORIGIN",), "1234abcd")
+    assert {asked.library: asked.versions for asked in program.asked}["libwinch.so.2"] == ("WINCH_1", "WINCH_2")
+    undefined = {symbol.name: symbol for symbol in program.undefined}
+    assert (undefined["rope"].version, undefined["hook"].version) == ("WINCH_1", "WINCH_2")
+    assert (undefined["maybe"].version, undefined["maybe"].weak, undefined["rope"].weak) == ("", True, False)
+
+
+def test_an_object_file_is_not_linked_at_run_time(linked):
+    assert not read_file(linked / "crane.o").dynamic
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
+def test_a_linked_program_that_is_cut_off_is_told(linked, share):
+    data = (linked / "crane").read_bytes()
+    found = elf.read(data[: int(len(data) * share)])
+    assert found is not None and found.problem
