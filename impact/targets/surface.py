@@ -88,7 +88,7 @@ def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, 
             builds[name],
             surface_python.surface_of(package, facts),
             tuple((include, surface) for include, surface in known if surface is not None),
-            tuple(sorted(_interfaces(package))),
+            tuple(sorted(dict(_interfaces(package)).items())),
             name in guessed,
             tuple(sorted(name for name, how in package.declared.items() if how & _WITH)),
         )
@@ -333,11 +333,14 @@ def compare(old: Surface, new: Surface, before: State | None = None, after: Stat
 
 
 def compare_states(before: State, after: State) -> dict[str, tuple[Change, ...]]:
-    """What changed in each package of a repository. A package that is gone or new is one change."""
+    """What changed in each package of a repository. A package that is new is one change; of one
+    that is gone it is told where what it had is now."""
     found: dict[str, tuple[Change, ...]] = {}
     for name in sorted({*before.surfaces, *after.surfaces}):
         if name not in after.surfaces:
-            found[name] = (Change(name, "build", "removed", "package", name, old=before.surfaces[name].version),)
+            old, empty = before.surfaces[name], Surface(name, "", BuildSurface(name), PythonSurface(name))
+            gone = Change(name, "build", "removed", "package", name, old=old.version)
+            found[name] = (gone, *compare(old, empty, before, after))
         elif name not in before.surfaces:
             version = after.surfaces[name].version
             found[name] = (Change(name, "build", "added", "package", name, now=version, breaks=False),)

@@ -440,27 +440,28 @@ class Names:
                     found[dotted] = entry
         return found
 
-    def reexported(self, module: Module) -> Iterator[str]:
+    def reexported(self, module: Module, seen: frozenset[str] = frozenset()) -> Iterator[str]:
         """Public names that a module has from others of its package and means to offer: what is in its `__all__`, and
-        in an `__init__.py` what it imports from below itself; what it takes from elsewhere it needs for itself."""
+        in an `__init__.py` what it imports from below itself; what it takes from elsewhere it needs for itself. seen:
+        modules that lead here, as they may take all names from each other."""
         listed = module.surface.all or ()
         for name, taken in self.taken(module).items():
             for one in taken:
                 own = f"{self.target(module, one)}.".startswith(f"{module.name}.")
                 if name == "*" and own:
                     of = self.modules.get(self.target(module, one))
-                    yield from self.starred(of) if of is not None else ()
+                    yield from self.starred(of, seen | {module.name}) if of is not None else ()
                 elif name != "*" and not is_private(name) and (name in listed or (own and module.package)):
                     yield name
 
-    def starred(self, module: Module) -> Iterator[str]:
-        """Names that `from module import *` gives, as far as they are written."""
+    def starred(self, module: Module, seen: frozenset[str] = frozenset()) -> Iterator[str]:
+        """Names that `from module import *` gives, as far as they are written. seen: as of reexported()."""
         if module.surface.all is not None:
             yield from (name for name in module.surface.all if not name.startswith("+"))
             return
         yield from (name for name in self.bound(module) if "." not in name and not name.startswith("_"))
-        if module.package:
-            yield from self.reexported(module)
+        if module.package and module.name not in seen:
+            yield from self.reexported(module, seen)
 
     def members(self, entry: Entry) -> dict[str, Entry]:
         """Public members that a class itself has, and `__init__`."""

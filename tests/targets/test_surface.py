@@ -247,8 +247,18 @@ def test_packages_that_come_and_go(state):
     assert {name: [(c.kind, c.what) for c in changes] for name, changes in found.items()} == {
         "arm": [],
         "new": [("added", "package")],
-        "old": [("removed", "package")],
+        "old": [("removed", "package"), ("removed", "cmake package")],
     }
+
+
+def test_what_a_package_that_is_gone_had_may_be_in_another_one(state):
+    header = {"old/a.hpp": "void f();", "old/b.hpp": "void g();"}
+    changes = compare_states(state(files("old", header)), state(files("new", {"old/a.hpp": "void f();"})))["old"]
+    assert [(c.kind, c.what, c.name, c.moved_to) for c in changes if c.side == "c++"] == [
+        ("moved", "header", "old/a.hpp", "new"),
+        ("removed", "header", "old/b.hpp", ""),
+        ("removed", "function", "g", ""),
+    ]
 
 
 # -- versions in clones ------------------------------------------------------------------------------------------------

@@ -248,3 +248,8 @@ def test_a_signature_is_written_as_python_does(parameters, head):
 def test_nothing_else_asks_for_these_facts():
     assert "surface_python" not in {kinds.kind_of(path) for path in ("a.py", "b/__init__.py", "scripts/run")}
     assert (kind_of("a.py"), kind_of("setup.py"), kind_of("a.txt")) == ("surface_python", None, None)
+
+
+def test_modules_that_take_all_names_from_each_other(surface):
+    made = surface({"__init__.py": "from .sub import *\n", "sub/__init__.py": "from arm.sub import *\ndef f(): ...\n"})
+    assert set(Names(made).offered) == {"arm.f", "arm.sub.f"}
