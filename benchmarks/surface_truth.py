@@ -3,10 +3,10 @@
 usage: surface_truth.py precision CLONES [--packages N] [--list N]
        surface_truth.py recall CLONES UPSTREAM_CHANGES.yaml [--list N]
 
-precision: for packages with two released versions, every symbol that is reported as gone or changed is looked up at both
-tags: its name must stand in the package at the old one; at the new one a removed header's file must be gone, the name of
-a removed thing must not stand where it did (in the body of its class, or in the headers or modules at all), and the
-text of a changed declaration must not. The text is cut by regular expressions and braces, without the readers of
+precision: for packages with two released versions, every symbol that is reported as gone or changed is looked up at
+both tags: its name must stand in the package at the old one; at the new one a removed header's file must be gone, the
+name of a removed thing must not stand where it did (in what others see of its class, or in the headers or modules), and
+the text of a changed declaration must not. The text is cut by regular expressions and braces, without the readers of
 surfaces. recall: entries of the reviewed table that git verified are asked of the comparison of the two distros.
 """
 
@@ -72,7 +72,8 @@ def bodies(text: str, name: str) -> list[str]:
     """What stands between the braces of each class, struct, union or enum of a name, private parts left out."""
     found = []
     marks = r"(?:[A-Z_0-9]+\s+|\[\[[^\]]*\]\]\s*|alignas\([^)]*\)\s*)*"
-    head = rf"\b(class|struct|union|enum)\s+(?:class\s+|struct\s+)?{marks}{re.escape(name)}\s*(?:<[^;{{}}]*>)?\s*(?:final\s*)?"
+    end = r"\s*(?:<[^;{}]*>)?\s*(?:final\s*)?"
+    head = rf"\b(class|struct|union|enum)\s+(?:class\s+|struct\s+)?{marks}{re.escape(name)}{end}"
     for match in re.finditer(rf"{head}(?::(?!:)[^;{{}}]*)?\{{", text):
         depth, place, kept = 1, match.end(), []
         start, hidden = place, match[1] == "class"
@@ -313,9 +314,8 @@ def precision(folder: Path, count: int, listed: int) -> int:
                     if change.sure > 0.6:
                         sure[answer] += 1
                     if answer == "no":
-                        wrong.append(
-                            f"{package} {first[10:]} {last[10:]}: {change.side} {change.kind} {change.what} {change.name} {change.aspects} | {change.old} | {change.now} | {change.where}"
-                        )
+                        spot = f"{package} {first[10:]} {last[10:]}: {change.side} {change.kind} {change.what}"
+                        wrong.append(f"{spot} {change.name} | {change.old} | {change.now} | {change.where}")
                 print(f"{package:32} {first[10:]:10} {last[10:]:10} {dict(own)}", flush=True)
     print()
     for kind in sorted({kind for kind, _ in totals}):
@@ -323,9 +323,8 @@ def precision(folder: Path, count: int, listed: int) -> int:
     yes, no = (sum(n for (_, answer), n in totals.items() if answer == asked) for asked in ("yes", "no"))
     opened = sum(n for (_, answer), n in totals.items() if answer == "open")
     print(f"{used} packages: confirmed {yes}, not confirmed {no}, text cannot tell {opened}")
-    print(
-        f"precision {yes / max(1, yes + no):.4f}; of those that are sure {sure['yes'] / max(1, sure['yes'] + sure['no']):.4f}"
-    )
+    share, share_sure = (n["yes"] / max(1, n["yes"] + n["no"]) for n in ({"yes": yes, "no": no}, sure))
+    print(f"precision {share:.4f}; of those that are sure {share_sure:.4f}")
     for row in wrong[:listed]:
         print(row)
     return 0
@@ -337,12 +336,11 @@ def precision(folder: Path, count: int, listed: int) -> int:
 def recall(folder: Path, table: Path, listed: int) -> int:
     import yaml
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.targets.clones import Clone, Clones, VersionError
+    from rosimpact.impact.targets.clones import Clone, VersionError
     from rosimpact.impact.targets.surface import State, compare_states
     from rosimpact.impact.tree import TreeError
 
     entries = [e for e in yaml.safe_load(table.read_text()) if str(e["verified"]).startswith("git")]
-    clones = Clones(folder)
     answers: Counter[tuple[str, str]] = Counter()
     rows: list[str] = []
     states: dict[tuple[str, str], State | None] = {}
@@ -383,9 +381,8 @@ def recall(folder: Path, table: Path, listed: int) -> int:
     for kind in sorted({kind for kind, _ in answers}):
         print(f"{kind:20}", {answer: n for (k, answer), n in answers.items() if k == kind})
     found, missed = (sum(n for (_, answer), n in answers.items() if answer == asked) for asked in ("found", "missed"))
-    print(
-        f"{len(entries)} entries, {found + missed} can be asked here: found {found} ({found / max(1, found + missed):.3f})"
-    )
+    share = found / max(1, found + missed)
+    print(f"{len(entries)} entries, {found + missed} can be asked here: found {found} ({share:.3f})")
     for row in rows[:listed]:
         print("missed", row)
     return 0

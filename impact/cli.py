@@ -344,6 +344,25 @@ def surface_diff(
     )  # fmt: skip
 
 
+@surface_app.command("build")
+def surface_build(
+    distro: Annotated[list[str], typer.Option(help="Read what this distro has. May be repeated.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="File to write, such as surfaces.sqlite.")],
+    repos: Annotated[Path, typer.Option(help=_REPOS_HELP)] = Path("."),
+    packages: Annotated[list[str] | None, typer.Option(help="Only these packages.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to work with.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+) -> None:
+    """Write what the released versions of packages offer to a file. A run that is stopped goes on the next time."""
+    from . import run
+
+    raise typer.Exit(
+        run.surface_build(
+            distros=_names(distro), repos=repos, packages=_names(packages), output=output, jobs=jobs, quiet=quiet
+        )
+    )
+
+
 @data_app.command("status")
 def data_status(
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",

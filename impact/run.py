@@ -466,6 +466,40 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
     return _of_surfaces(answer, format, output)
 
 
+def surface_build(*, distros, repos, packages, output, jobs, quiet) -> int:
+    """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
+    try:
+        with told(output):
+            from .targets.build_surfaces import all_distros, build
+            from .targets.clones import Clones, VersionError
+
+            if not distros:
+                raise Failed("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
+            report = None if quiet else steps()
+            try:
+                built = build(
+                    Clones(repos), all_distros(distros), output, packages, jobs,
+                    report,
+                )  # fmt: skip
+            except VersionError as error:
+                raise Failed(str(error)) from None
+            if not built.packages:
+                raise Failed(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")
+            for line in built.failed:
+                say(f"rosimpact: {line}")
+            told_of = f"{counted(built.packages, 'package')}, {counted(built.versions, 'version')}"
+            print(
+                f"{output}: {told_of}, {output.stat().st_size:,} bytes; "
+                f"{built.approximate} with a branch for a missing tag, {len(built.missing)} without a clone"
+            )
+    except Failed as error:
+        return failed(str(error))
+    except KeyboardInterrupt:
+        say("rosimpact: interrupted; what was read is kept, and the next run goes on from there")
+        return 130
+    return 0
+
+
 def _source(version, asked: str):
     from .report.surface import Source
 

@@ -146,3 +146,29 @@ def test_errors_are_one_line(repos, arguments, said):
     assert result.exit_code == 2
     assert result.stderr.startswith("rosimpact: ") and result.stderr.count("\n") == 1
     assert said in result.stderr
+
+
+def test_build(repos, tmp_path):
+    from rosimpact.impact.targets.surface_store import Surfaces
+
+    file = tmp_path / "surfaces.sqlite"
+    result = run("build", "--distro", "humble", "--packages", "rclcpp", "--repos", repos, "-o", file, "--jobs", 1)
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.startswith(f"{file}: 1 package, 1 version, ")
+    assert result.stdout.endswith("; 1 with a branch for a missing tag, 0 without a clone\n")
+    assert Surfaces(file).history("rclcpp").names()["rclcpp::Node"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--distro", "jazy"), "`jazy` is no distro; known are "),
+        (("--distro", "noetic"), "no clone has a package asked for"),
+        (("--distro", "humble", "--repos", "REPOS/none"), "no such folder"),
+    ],
+)
+def test_errors_of_build_are_one_line(repos, tmp_path, arguments, said):
+    given = (argument.replace("REPOS", str(repos)) for argument in arguments)
+    result = run("build", "--repos", repos, "-o", tmp_path / "x.sqlite", "--packages", "rclcpp", *given)
+    assert result.exit_code == 2
+    assert said in result.stderr and result.stderr.count("\n") == 1

@@ -76,8 +76,12 @@ class Clone:
 
     def surfaces(self, revision: str, store: Store, jobs: int | None = None) -> dict[str, Surface]:
         """The surfaces of all packages at a revision. Raises TreeError."""
+        return of_tree(self.tree(revision), store, self.folder_id(revision), jobs)
+
+    def tree(self, revision: str) -> GitTree:
+        """The files of a revision; folders that revisions share are read once. Raises TreeError."""
         self._tree = GitTree(self.place, revision) if self._tree is None else self._tree.at(revision)
-        return of_tree(self._tree, store, self.folder_id(revision), jobs)
+        return self._tree
 
     def folder_id(self, revision: str) -> str:
         """Git's id of all that a revision holds. Raises TreeError."""

@@ -1,0 +1,310 @@
+"""Surfaces of many versions in one file: facts only (names, signatures, versions), each kept once with its versions.
+
+An SQLite file with a row for each package, packed by itself, so that one package is read in milliseconds and the
+others not at all. What is packed: the versions in order, and rows of (kind, scope, value, the first and last versions
+that have it, over and over). Lines, comments, and names of C++ parameters are left out.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import zstandard
+
+from ..facts.cpp import Include
+from ..facts.interface import Interface
+from ..facts.surface import Entity, HeaderSurface
+from ..facts.surface_python import Bound, ModuleSurface, Taken
+from .surface import Surface
+from .surface_build import BuildSurface
+from .surface_python import Module, PythonSurface
+from .version import parts
+
+_SCHEMA = "CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL) WITHOUT ROWID"
+_LEVEL = 19
+# (kind, scope, value as JSON-like data)
+_Row = tuple[str, str, Any]
+
+
+class StoredSurfacesError(Exception):
+    """The file cannot be read; the message names it and says what to do."""
+
+
+class Stored(NamedTuple):
+    """One version of a package. approximate: a branch stood for its tag."""
+
+    version: str
+    approximate: bool
+    surface: Surface
+
+
+class History:
+    """All stored versions of one package, oldest first. approximate: those that a branch stood for."""
+
+    def __init__(self, package: str, data: bytes):
+        self.package = package
+        versions, approximate, self._rows = _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
+        self.versions: tuple[str, ...] = tuple(versions)
+        self.approximate = frozenset(approximate)
+
+    def surface(self, version: str) -> Surface | None:
+        """What a version offers; None for one that is not stored."""
+        if version not in self.versions:
+            return None
+        place = self.versions.index(version)
+        return _surface(self.package, version, ((k, s, v) for k, s, v, spans in self._rows if _there(spans, place)))
+
+    def names(self) -> dict[str, tuple[str, ...]]:
+        """Headers, C++ names and Python modules and names that any version had, with the versions that have them."""
+        found: dict[str, set[int]] = {}
+        for kind, scope, value, spans in self._rows:
+            if kind == "header":
+                name = scope
+            elif kind == "entity":
+                name = value[1]
+            elif kind == "bound":
+                name = f"{scope}.{value[0]}"
+            elif kind == "module":
+                name = scope
+            else:
+                continue
+            found.setdefault(name, set()).update(_places(spans, len(self.versions)))
+        return {name: tuple(self.versions[place] for place in sorted(places)) for name, places in found.items()}
+
+    def stored(self) -> Iterator[Stored]:
+        """Every version."""
+        for version in self.versions:
+            surface = self.surface(version)
+            assert surface is not None
+            yield Stored(version, version in self.approximate, surface)
+
+
+_decoder = msgspec.msgpack.Decoder(tuple[list[str], list[str], list[tuple[str, str, Any, list[int]]]])
+
+
+def _there(spans: Sequence[int], place: int) -> bool:
+    return not spans or any(spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2))
+
+
+def _places(spans: Sequence[int], count: int) -> Iterator[int]:
+    for at in range(0, len(spans), 2):
+        yield from range(spans[at], spans[at + 1] + 1)
+    if not spans:
+        yield from range(count)
+
+
+# -- packing -----------------------------------------------------------------------------------------------------------
+
+
+def pack(versions: Iterable[Stored]) -> bytes:
+    """Versions of one package as they are stored. Of one version told twice, the first that has a tag counts."""
+    known: dict[str, Stored] = {}
+    for one in sorted(versions, key=lambda one: one.approximate):
+        known.setdefault(one.version, one)
+    order = sorted(known, key=parts)
+    having: dict[bytes, list[int]] = {}
+    values: dict[bytes, _Row] = {}
+    for place, version in enumerate(order):
+        for row in _rows(known[version].surface):
+            key = _encoder.encode(row)
+            values[key] = row
+            places = having.setdefault(key, [])
+            if not places or places[-1] != place:
+                places.append(place)
+    rows = [(*values[key], _spans(places, len(order))) for key, places in having.items()]
+    rows.sort(key=lambda row: (row[0], row[1]))  # stable: what is declared first comes first
+    approximate = [version for version in order if known[version].approximate]
+    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode((order, approximate, rows)))
+
+
+_encoder = msgspec.msgpack.Encoder()
+
+
+def _spans(places: Sequence[int], count: int) -> list[int]:
+    """First and last places of each run; nothing for all of them."""
+    if len(places) == count:
+        return []
+    runs: list[int] = []
+    for place in places:
+        if runs and runs[-1] == place - 1:
+            runs[-1] = place
+        else:
+            runs += [place, place]
+    return runs
+
+
+def _rows(surface: Surface) -> Iterator[_Row]:
+    plain = msgspec.to_builtins
+    for path, header in surface.headers:
+        yield "header", path, [header.inline, header.deprecated, header.instead, header.lost]
+        for one in header.entities:
+            parameters = one.parameters
+            if parameters is not None:
+                parameters = tuple(msgspec.structs.replace(p, name="") for p in parameters)
+            yield "entity", path, _short(plain(msgspec.structs.replace(one, line=0, parameters=parameters)), _ENTITY)
+        for include in header.includes:
+            yield "include", path, plain(msgspec.structs.replace(include, line=0, column=0))
+    for module in surface.python.modules:
+        told = module.surface
+        yield "module", module.name, [module.path, module.package, told.all, told.all_open, told.open, told.deprecated,
+                                      told.parsed]  # fmt: skip
+        for bound in told.names:
+            yield "bound", module.name, _short(plain(msgspec.structs.replace(bound, line=0)), _BOUND)
+        for taken in told.imports:
+            yield "taken", module.name, plain(msgspec.structs.replace(taken, line=0))
+    for what, listed in (("unknown", surface.python.unknown), ("unresolved", surface.python.unresolved)):
+        yield from (("python", what, text) for text in listed)
+    for name, definition in surface.interfaces:
+        yield "interface", name, plain(_without_lines(definition))
+    for field in msgspec.structs.fields(BuildSurface):
+        value = getattr(surface.build, field.name)
+        if field.name in ("package", "version"):
+            continue
+        if isinstance(value, tuple):
+            yield from (("build", field.name, plain(item)) for item in value)
+        else:
+            yield "build", field.name, value
+    yield "surface", "", [surface.guessed, surface.runs_with]
+
+
+def _without_lines(definition: Interface) -> Interface:
+    sections = tuple(
+        msgspec.structs.replace(
+            section,
+            fields=tuple(msgspec.structs.replace(f, line=0, column=0) for f in section.fields),
+            constants=tuple(msgspec.structs.replace(c, line=0, column=0) for c in section.constants),
+        )
+        for section in definition.sections
+    )
+    return msgspec.structs.replace(definition, sections=sections, problems=())
+
+
+def _short(values: list[Any], defaults: list[Any]) -> list[Any]:
+    """The values up to the last that is not what it is by default."""
+    end = len(values)
+    while end and values[end - 1] == defaults[end - 1]:
+        end -= 1
+    return values[:end]
+
+
+_ENTITY = msgspec.to_builtins(Entity("\0", "\0", -1))
+_BOUND = msgspec.to_builtins(Bound("\0", "\0", -1))
+
+
+def _surface(package: str, version: str, rows: Iterable[_Row]) -> Surface:
+    headers: dict[str, list[Any]] = {}
+    modules: dict[str, list[Any]] = {}
+    inside: dict[tuple[str, str], list[Any]] = {}
+    interfaces: list[tuple[str, Interface]] = []
+    build: dict[str, Any] = {}
+    guessed, runs_with = False, ()
+    for kind, scope, value in rows:
+        if kind == "header":
+            headers[scope] = value
+        elif kind == "module":
+            modules[scope] = value
+        elif kind == "interface":
+            interfaces.append((scope, msgspec.convert(value, Interface)))
+        elif kind == "build":
+            build.setdefault(scope, []).append(value)
+        elif kind == "surface":
+            guessed, runs_with = value[0], tuple(value[1])
+        else:
+            inside.setdefault((kind, scope), []).append(value)
+    known = {field.name: field.type for field in msgspec.structs.fields(BuildSurface)}
+    given = {
+        name: msgspec.convert(values, known[name]) if isinstance(getattr(_EMPTY, name), tuple) else values[-1]
+        for name, values in build.items()
+    }
+
+    def read(kind: str, scope: str, type_: Any) -> Any:
+        return msgspec.convert(inside.get((kind, scope), []), tuple[type_, ...])
+
+    return Surface(
+        package,
+        version,
+        BuildSurface(package, version, **given),
+        PythonSurface(
+            package,
+            tuple(
+                Module(
+                    name,
+                    path,
+                    is_package,
+                    ModuleSurface(
+                        read("bound", name, Bound),
+                        read("taken", name, Taken),
+                        None if all_ is None else tuple(all_),
+                        all_open,
+                        tuple((scope, why) for scope, why in open_),
+                        deprecated,
+                        parsed,
+                    ),
+                )
+                for name, (path, is_package, all_, all_open, open_, deprecated, parsed) in sorted(modules.items())
+            ),
+            read("python", "unknown", str),
+            read("python", "unresolved", str),
+        ),
+        tuple(
+            (
+                path,
+                HeaderSurface(
+                    read("entity", path, Entity),
+                    read("include", path, Include),
+                    tuple(inline),
+                    deprecated,
+                    instead,
+                    lost,
+                ),
+            )
+            for path, (inline, deprecated, instead, lost) in sorted(headers.items())
+        ),
+        tuple(sorted(interfaces, key=lambda item: item[0])),
+        guessed,
+        runs_with,
+    )
+
+
+_EMPTY = BuildSurface("")
+
+
+# -- the file ----------------------------------------------------------------------------------------------------------
+
+
+class Surfaces:
+    """A file of surfaces. Raises StoredSurfacesError when it cannot be opened."""
+
+    def __init__(self, file: Path):
+        self.file = file
+        try:
+            self._db = sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
+            self.packages = frozenset(name for (name,) in self._db.execute("SELECT name FROM package"))
+        except sqlite3.Error as error:
+            raise StoredSurfacesError(f"{file}: {error}; make it anew with `rosimpact surface build`") from None
+
+    @lru_cache(maxsize=64)  # noqa: B019  (one of them lives as long as the program)
+    def history(self, package: str) -> History | None:
+        """All versions of a package, None when it is not there."""
+        row = self._db.execute("SELECT data FROM package WHERE name = ?", (package,)).fetchone()
+        return History(package, row[0]) if row else None
+
+
+def write(file: Path, packages: Mapping[str, bytes]) -> None:
+    """Writes packed packages; a file that is there is replaced as a whole."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    fresh = file.with_name(f"{file.name}.new")
+    fresh.unlink(missing_ok=True)
+    with closing(sqlite3.connect(fresh)) as db:
+        db.execute("PRAGMA page_size=4096")
+        db.execute(_SCHEMA)
+        db.executemany("INSERT INTO package VALUES(?, ?)", sorted(packages.items()))
+        db.commit()
+        db.execute("VACUUM")
+    fresh.replace(file)

@@ -1,0 +1,124 @@
+"""Building a file of surfaces from clones: which states are read, what a stopped run keeps, what is missing."""
+
+import pickle
+import subprocess
+
+import pytest
+from rosimpact.impact.targets import build_surfaces
+from rosimpact.impact.targets.build_surfaces import Job, all_distros, build, plan, run
+from rosimpact.impact.targets.clones import Clones
+from rosimpact.impact.targets.distro import DistroTarget, TargetError
+from rosimpact.impact.targets.surface_store import History, Surfaces
+
+MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
+<maintainer email="a@b.c">m</maintainer><license>l</license><buildtool_depend>ament_cmake</buildtool_depend>
+<export><build_type>ament_cmake</build_type></export></package>"""
+CMAKE = """cmake_minimum_required(VERSION 3.16)
+project({name})
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY include/ DESTINATION include)
+ament_package()
+"""
+
+
+def git(folder, *arguments):
+    identity = ("-c", "user.name=a", "-c", "user.email=a@b.c")
+    subprocess.run(["git", "-C", str(folder), *identity, *arguments], check=True, capture_output=True)
+
+
+def release(folder, name, tag, code):
+    """Commits a package with one header as a release, and tags it."""
+    if not (folder / ".git").exists():
+        folder.mkdir(parents=True)
+        git(folder, "init", "-q", "-b", "rolling")
+    (folder / name / "include" / name).mkdir(parents=True, exist_ok=True)
+    (folder / name / "package.xml").write_text(MANIFEST.format(name=name, version=tag))
+    (folder / name / "CMakeLists.txt").write_text(CMAKE.format(name=name))
+    (folder / name / "include" / name / "a.hpp").write_text(code)
+    git(folder, "add", "-A")
+    git(folder, "commit", "-qm", "x")
+    git(folder, "tag", tag)
+
+
+@pytest.fixture
+def clones(tmp_path, monkeypatch):
+    """Clones of two repositories, each with the versions that humble and jazzy have."""
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
+    for repository, name in (("ros2+rclcpp", "rclcpp"), ("ros-perception+vision_opencv", "cv_bridge")):
+        for distro in ("humble", "jazzy"):
+            version = DistroTarget(distro).version(name)
+            release(tmp_path / "clones" / repository, name, version, f"void of_{distro}();")
+    return Clones(tmp_path / "clones")
+
+
+def test_each_clone_is_one_job_that_can_be_sent_away(clones):
+    jobs, missing = plan(clones, ("humble", "jazzy"), ("rclcpp", "cv_bridge", "nav2_core"))
+    assert [(job.name, [(s.revision.rpartition("/")[2], s.approximate) for s in job.states]) for job in jobs] == [
+        (name, [(DistroTarget(distro).version(package), False) for distro in ("humble", "jazzy")])
+        for name, package in (("ros-perception/vision_opencv", "cv_bridge"), ("ros2/rclcpp", "rclcpp"))
+    ]
+    assert missing == ("nav2_core humble", "nav2_core jazzy")
+    again: Job = pickle.loads(pickle.dumps(jobs[1]))
+    assert again.key() == jobs[1].key()
+    assert run(again) == run(jobs[1])
+
+
+def test_what_is_written(clones, tmp_path):
+    file = tmp_path / "out" / "surfaces.sqlite"
+    seen = []
+    built = build(clones, ("humble", "jazzy"), file, jobs=1, progress=lambda *told: seen.append(told))
+    assert (built.packages, built.versions, built.approximate) == (2, 4, 0)
+    assert [told[1:] for told in seen] == [(1, 2), (2, 2)]
+    history = Surfaces(file).history("rclcpp")
+    old, new = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
+    assert history.names() == {"of_humble": (old,), "of_jazzy": (new,), "rclcpp/a.hpp": (old, new)}
+    assert [path.name for path in file.parent.iterdir()] == ["surfaces.sqlite"]
+    # Packages of the same repositories that this clone does not have are told.
+    assert any(line.startswith("rclcpp_action ") for line in built.failed)
+
+
+def test_processes_give_the_same(clones, tmp_path):
+    for name, jobs in (("one", 1), ("two", 2)):
+        build(clones, ("humble",), tmp_path / name, ("rclcpp", "cv_bridge"), jobs)
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
+
+
+def test_a_stopped_run_goes_on(clones, tmp_path, monkeypatch):
+    file = tmp_path / "surfaces.sqlite"
+    asked = (clones, ("humble",), file, ("rclcpp", "cv_bridge"), 1)
+
+    def stop(name, done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        build(*asked, progress=stop)
+    assert not file.exists()
+    done = []
+    monkeypatch.setattr(build_surfaces, "run", lambda job: done.append(job.name) or run(job))
+    assert build(*asked).packages == 2
+    assert len(done) == 1
+
+
+def test_a_moved_tag_is_read_again(clones, tmp_path):
+    file = tmp_path / "surfaces.sqlite"
+    build(clones, ("humble",), file, ("rclcpp",), 1)
+    version = DistroTarget("humble").version("rclcpp")
+    git(clones.folder / "ros2+rclcpp", "tag", "-f", version, "HEAD")
+    build(Clones(clones.folder), ("humble",), file, ("rclcpp",), 1)
+    assert "of_jazzy" in Surfaces(file).history("rclcpp").names()
+
+
+def test_versions_of_one_package_from_two_clones(clones, tmp_path):
+    jobs, _ = plan(clones, ("humble", "jazzy"), ("rclcpp",))
+    (job,) = jobs
+    parts = [
+        run(job._replace(states=(state,), trees=(tree,))) for state, tree in zip(job.states, job.trees, strict=True)
+    ]
+    merged = History("rclcpp", build_surfaces._merged("rclcpp", [part.packages["rclcpp"] for part in parts]))
+    whole = History("rclcpp", run(job).packages["rclcpp"])
+    assert (merged.versions, merged.names()) == (whole.versions, whole.names())
+
+
+def test_an_unknown_distro():
+    with pytest.raises(TargetError, match="`jazy` is no distro; known are "):
+        all_distros(("jazy",))

@@ -1,0 +1,99 @@
+"""Surfaces of many versions in one file: what is packed comes back, and only what is asked for is read."""
+
+import msgspec
+import pytest
+import zstandard
+from rosimpact.impact.facts.interface import extract as interface
+from rosimpact.impact.facts.surface_cpp import extract as header
+from rosimpact.impact.facts.surface_python import extract as module
+from rosimpact.impact.targets.surface import Surface, compare
+from rosimpact.impact.targets.surface_build import BuildSurface, ExportedTarget, Header, LaunchFile, Program
+from rosimpact.impact.targets.surface_python import Module, PythonSurface
+from rosimpact.impact.targets.surface_store import History, Stored, StoredSurfacesError, Surfaces, pack, write
+
+CODE = """#pragma once
+#include <vector>
+namespace arm { template<typename T = int>
+class A : public B { public: [[deprecated("no")]] virtual void f(int) const; };
+enum class E { one, two = 5 }; using Alias = std::vector<int>; }
+#define ARM_MAX 3
+"""
+
+
+PYTHON = "def f(a, *, b=1): ...\nclass C(Base):\n    x = 1\n"
+
+
+def surface(version, code=CODE):
+    build = BuildSurface(
+        "arm",
+        version,
+        "ament_cmake",
+        ("arm",),
+        (ExportedTarget("arm::core", "shared", 17),),
+        headers=(Header("a.hpp", "include/a.hpp", "a.hpp"),),
+        programs=(Program("drive", "lib/arm", "binary"),),
+        launches=(LaunchFile("launch/a.launch.py", (("x", None), ("y", "1"))),),
+        unknown=(("headers", "why"),),
+        standard=17,
+    )
+    modules = (Module("arm", "arm/__init__.py", True, module(PYTHON.encode())),)
+    definitions = (("msg/M", interface(b"int8 a 1\nint8 B=2\n", "msg")),)
+    python = PythonSurface("arm", modules, ("arm.msg",))
+    return Surface("arm", version, build, python, (("a.hpp", header(code.encode())),), definitions, False, ("rclcpp",))
+
+
+def stored(*surfaces):
+    return History("arm", pack([Stored(one.version, False, one) for one in surfaces]))
+
+
+def test_what_comes_back_is_what_was_packed():
+    one = surface("1.0.0")
+    back = stored(one).surface("1.0.0")
+    assert compare(one, back) == compare(back, one) == ()
+    assert (back.build, back.runs_with) == (one.build, one.runs_with)
+    entities = [msgspec.structs.replace(e, line=0) for _, h in one.headers for e in h.entities]
+    nameless = [
+        msgspec.structs.replace(e, parameters=tuple(msgspec.structs.replace(p, name="") for p in e.parameters))
+        if e.parameters is not None
+        else e
+        for e in entities
+    ]
+    assert [e for _, h in back.headers for e in h.entities] == nameless
+
+
+def test_each_version_has_what_it_had():
+    history = stored(surface("2.0.0", CODE.replace("f(int)", "g(int)")), surface("10.0.0"), surface("1.0.0"))
+    assert history.versions == ("1.0.0", "2.0.0", "10.0.0")
+    assert history.names()["arm::A::f"] == ("1.0.0", "10.0.0")
+    assert history.names()["arm::A"] == history.versions
+    changes = compare(history.surface("1.0.0"), history.surface("2.0.0"))
+    assert [(c.kind, c.name) for c in changes] == [("removed", "arm::A::f"), ("added", "arm::A::g")]
+    assert history.surface("3.0.0") is None
+
+
+def test_a_tag_counts_more_than_a_branch():
+    one, other = surface("1.0.0"), surface("1.0.0", "void other();")
+    history = History("arm", pack([Stored("1.0.0", True, other), Stored("1.0.0", False, one)]))
+    assert "arm::A" in history.names() and not history.approximate
+
+
+def test_nothing_but_facts_is_stored():
+    code = "// secret\n/// told\nvoid f(int count_of_things) { secret(); }"
+    data = pack([Stored("1.0.0", False, surface("1.0.0", code))])
+    plain = zstandard.ZstdDecompressor().decompress(data)
+    assert b"secret" not in plain and b"told" not in plain and b"count_of_things" not in plain
+
+
+def test_a_file_of_packages(tmp_path):
+    file = tmp_path / "surfaces.sqlite"
+    write(file, {"arm": pack([Stored("1.0.0", True, surface("1.0.0"))]), "broken": b"not packed"})
+    surfaces = Surfaces(file)
+    assert surfaces.packages == {"arm", "broken"}
+    assert surfaces.history("arm").approximate == {"1.0.0"}  # the other one is not looked at
+    assert surfaces.history("leg") is None
+
+
+def test_a_file_that_is_none(tmp_path):
+    (tmp_path / "x").write_text("hello, I am no database, however long this text may be")
+    with pytest.raises(StoredSurfacesError, match="surface build"):
+        Surfaces(tmp_path / "x")
