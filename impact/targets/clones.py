@@ -154,7 +154,12 @@ class Clones:
             version, url, branch, distro = self._released(package, asked)
             # Another owner's repository of the same name may be another project: geometry2 of ROS 1 and of ROS 2.
             own = [clone for clone in clones if url and clone.name.lower() == plain_url(url)]
-        clones = own or clones
+            last = plain_url(url).rpartition("/")[2] if url else ""
+            clones = own or [clone for clone in clones if not last or clone.name.lower().rpartition("/")[2] == last]
+            if not clones:
+                raise VersionError(
+                    f"{asked} has `{package}` from {url}, of which there is no clone in {self.folder}; clone it there"
+                )
         for clone in clones:
             tag = clone.tag(version, package, distro)
             if tag is not None:

@@ -61,7 +61,7 @@ class History:
         return _surface(self.package, version, ((k, s, v) for k, s, v, spans in self._rows if _there(spans, place)))
 
     def names(self) -> dict[str, tuple[str, ...]]:
-        """Headers, C++ names and Python modules and names that any version had, with the versions that have them."""
+        """Headers, interfaces, C++ names, Python modules and names that any version had, with the versions that do."""
         found: dict[str, set[int]] = {}
         for kind, scope, value, spans in self._rows:
             if kind == "header":
@@ -72,6 +72,8 @@ class History:
                 name = f"{scope}.{value[0]}"
             elif kind == "module":
                 name = scope
+            elif kind == "interface":
+                name = f"{self.package}/{scope}"
             else:
                 continue
             found.setdefault(name, set()).update(_places(spans, len(self.versions)))

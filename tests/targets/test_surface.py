@@ -7,6 +7,7 @@ import pytest
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.gather import kinds
 from rosimpact.impact.targets.clones import Clone, Clones, VersionError
+from rosimpact.impact.targets.distro import DistroTarget
 from rosimpact.impact.targets.surface import State, compare, compare_states, surfaces_of
 from rosimpact.impact.tree import WorkingTree
 
@@ -305,6 +306,19 @@ def test_a_version_is_found_by_its_tag(clone, store):
 def test_a_branch_stands_for_a_tag_that_is_missing(clone, store):
     version, _ = Clones(clone.parent).surface("rclcpp", "humble", store, 1)
     assert (version.revision, version.approximate) == ("refs/heads/humble", True)
+
+
+def test_the_same_tag_of_another_repository_that_once_had_the_package_is_not_taken(tmp_path, store):
+    # topic_tools came from ros_comm in ROS 1 and has a repository of its own in ROS 2.
+    place = tmp_path / "clones" / "ros+ros_comm"
+    place.mkdir(parents=True)
+    git(place, "init", "-q")
+    write(place, files("topic_tools"))
+    git(place, "add", "-A")
+    git(place, "commit", "-qm", "x")
+    git(place, "tag", DistroTarget("humble").version("topic_tools"))
+    with pytest.raises(VersionError, match="of which there is no clone"):
+        Clones(place.parent).surface("topic_tools", "humble", store, 1)
 
 
 def test_tags_of_release_repositories(clone):
