@@ -477,8 +477,12 @@ class Code:
         owner = self.owner_of(fn)
         if owner is None:
             return Variable("member", fn.facts.owner, name)
-        declaring = [cls for cls in self.bases(owner) if name in self.members(cls)]
-        return Variable("member", (declaring[-1] if declaring else owner).name, name)
+        return Variable("member", self._declaring(owner, name).name, name)
+
+    def _declaring(self, cls: Cls, name: str) -> Cls:
+        """The class that declares a member which a class has, as far as the code tells."""
+        declaring = [one for one in self.bases(cls) if name in self.members(one)]
+        return declaring[-1] if declaring else cls
 
     def identity(self, path: str, fn: Fn, depth: int = 0) -> Variable:
         """The variable that a whole path means: that of its last part, in the class of what stands before it.
@@ -493,7 +497,8 @@ class Code:
         for part in rest:
             kind = self.type_of_variable(found, fn, depth)
             cls = self.class_of(kind.name, fn.source, fn.scope) if kind.name else None
-            found = Variable("member", cls.name if cls else f"{found.owner}.{found.name}", part)
+            owner = self._declaring(cls, part).name if cls else f"{found.owner}.{found.name}"
+            found = Variable("member", owner, part)
         if depth == 0:
             fn.identities[path] = found
         return found
