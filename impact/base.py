@@ -115,7 +115,8 @@ def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     gathered = gather(tree, opened.store, jobs=jobs, second=second)
     workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.watched(opened.store), jobs)
     views = [View(workspace, view.target, view.providers, view.config) for view in opened.views]
-    return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views)
+    # What is installed is of no revision.
+    return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())
 
 
 def compare(path: str | os.PathLike[str], base: str | os.PathLike[str], options: Options | None = None) -> Report:

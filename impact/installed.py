@@ -377,7 +377,11 @@ def _folders(folder: Path) -> list[Path]:
 
 
 def _underlays(folder: Path) -> Iterator[str]:
-    """Prefixes that an install space was built on, as its own setup files name them."""
+    """Prefixes that an install space was built on, as its own setup files name them; for the prefix of one package the
+    install space around it."""
+    if any((folder / mark / folder.name).exists() for mark in ("share", "share/colcon-core/packages")):
+        yield str(folder.parent)
+        yield from _underlays(folder.parent)
     for name, pattern, parted in (
         ("setup.sh", _PREFIX_OF_COLCON, ""),
         ("_setup_util.py", _PREFIXES_OF_CATKIN, ";"),

@@ -194,6 +194,27 @@ def test_every_format_takes_a_finding_on_this_machine(tmp_path, made_elf, say, f
     assert said.status == 1 and "libropes.so.7" in said.out and "failed" not in said.err
 
 
+def test_what_lies_beside_the_prefix_of_one_package_is_there(tmp_path, made_elf, check):
+    ws = workspace(tmp_path, "winch")
+    machine = own_machine()
+    put(ws / "install", "winch/share/winch/package.xml")
+    put(ws / "install", "crane/lib/libcrane.so.1", made_elf(machine, soname="libcrane.so.1"))
+    put(ws / "install", "winch/lib/winch/run", made_elf(machine, ["libcrane.so.1", "libhook.so.1"]))
+    _, findings, _ = check(ws, "--install", ws / "install/winch", "--target", "jazzy")
+    assert [finding["subject"] for finding in findings] == ["libhook.so.1"]
+
+
+def test_with_a_base_a_stale_file_is_still_said(tmp_path, made_elf, check):
+    ws = workspace(tmp_path, "winch")
+    put(ws, ".gitignore", b"install\n")
+    for command in (["init", "-q"], ["add", "-A"], ["commit", "-qm", "All"]):
+        identity = ["-c", "user.name=Robots", "-c", "user.email=robots@example.org"]
+        subprocess.run(["git", *identity, *command], cwd=ws, check=True)
+    put(ws / "install", "winch/lib/winch/run", made_elf("EM_RISCV", ["libpcl_common.so.1.12"]))
+    status, findings, _ = check(ws, "--install", ws / "install", "--target", "jazzy", "--base", "HEAD")
+    assert (status, [finding["new"] for finding in findings]) == (1, [True])
+
+
 # What cannot be read
 
 WRONG = {

@@ -42,6 +42,11 @@ class Loader:
         self._heads: dict[str, tuple[str, int] | None] = {}
         self._offers: dict[str, frozenset[str]] = {}
 
+    @property
+    def knows_prefixes(self) -> bool:
+        """Whether any folder besides the system's is searched: that of ROS, when it is sourced."""
+        return bool(self._folders)
+
     @cached_property
     def standard(self) -> list[str]:
         """The system's library folders that are there."""

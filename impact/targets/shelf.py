@@ -68,6 +68,9 @@ class MachineShelf:
     def has(self, soname: str, asker: Elf, folder: str) -> bool | None:
         if self._loader.find(soname, asker, folder):
             return True
+        # A library without a version is of ROS or of one's own, and may be in a prefix that nobody named.
+        if not stem_and_version(soname)[1] and not self._loader.knows_prefixes:
+            return None
         return None if self._loader.lies_about(soname) else False
 
     def instead(self, soname: str) -> str:

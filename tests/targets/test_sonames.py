@@ -163,6 +163,12 @@ def test_what_this_machine_has(root, soname, machine, there):
     assert shelf.has(soname, Elf(machine=machine, bits=64), "") is there
 
 
+def test_a_library_without_a_version_is_missed_where_prefixes_are_known(root):
+    alone, sourced = (Loader(folders, root, {}, lambda command: "") for folders in ((), (str(root / "opt/ros/lib"),)))
+    shelves = [MachineShelf("robot", loader, "EM_X86_64", "debian bookworm", SONAMES) for loader in (alone, sourced)]
+    assert [shelf.has("librclcpp.so", ASKER, "") for shelf in shelves] == [None, False]
+
+
 def test_the_files_own_search_folders_count(root, made_elf):
     (root / "ws/lib").mkdir(parents=True)
     (root / "ws/bin").mkdir()

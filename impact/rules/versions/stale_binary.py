@@ -22,9 +22,10 @@ Use instead
 
 Not reported
     Libraries that the install space or an underlay holds; those that some ROS package of a target may bring in; a
-    library that lies outside of the folders that the loader searches, where a program may know of it; on a target whose
-    files are not known (DATA.md says which are), libraries whose version does not tell the name of their files; files
-    built for another kind of machine.
+    library that lies outside of the folders that the loader searches, where a program may know of it; on this machine
+    without ROS sourced, libraries without a version; on a target whose files are not known (DATA.md says which are),
+    libraries whose version does not tell the name of their files; files built for another kind of machine; symbols
+    without a version that a library lost.
 """
 
 from __future__ import annotations
