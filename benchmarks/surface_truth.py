@@ -224,7 +224,7 @@ def _python(change, old: Text, new: Text) -> str:
         if owner and owner != last:
             block = re.search(rf"(?ms)^class\s+{owner}\b.*?(?=^\S|\Z)", mine)
             return "yes" if block is None or not re.search(define, block[0]) else "no"
-        return "yes" if not re.search(define, mine) else "no"
+        return "yes" if not re.search(define.replace(r"^\s*", "^"), mine) else "no"  # of the module: not indented
     if change.kind in ("signature", "default"):
         name = change.name.partition("(")[0].split(".")[-2] if last == "__init__" else last
 
