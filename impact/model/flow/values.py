@@ -405,7 +405,8 @@ class Values:
                     yielded = True
                     yield one
         if not yielded:
-            yield Value(None, "unresolved", f"the parameter `{name or '?'}` has no default here", name)
+            reason = f"the parameter `{name}` has no default here" if name else "which parameter it is, is not known"
+            yield Value(None, "unresolved", reason, name)
 
     @cached_property
     def declared(self) -> dict[str, list[Use]]:
