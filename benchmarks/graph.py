@@ -4,9 +4,9 @@ usage: graph.py [--list] REPOSITORY[@REV] ...
 
 The regular expression looks for calls by their names in C++ sources whose comments and literals are blanked, and leaves
 out what has a type or a class before it as a declaration has; it knows nothing of receivers. `found` are its sites at
-whose line (or two beside it) the graph has one; `extra` are the graph's own that it has not, other than what a framework
-makes by itself (/rosout, /tf). With --list, the sites that the graph lacks and its extra ones are printed, to be read by
-a person.
+whose line (or two beside it) the graph has one; `extra` are the graph's own that it has not, other than what a
+framework makes by itself (/rosout, /tf). With --list, the sites that the graph lacks and its extra ones are printed, to
+be read by a person.
 Cold: with an empty cache; warm: again; beside both the time of a bare tree-sitter parse of the same C++ bytes.
 """
 
