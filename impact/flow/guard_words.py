@@ -9,6 +9,7 @@ from .guard_terms import Piece, Term, names_in
 
 _LONGEST = 100
 _MOST = 4
+_MOST_WAYS = 3
 _AROUND = 3
 _BLOCKS = ("macro ", "catch ")
 
@@ -50,8 +51,39 @@ def words_of_ways(before: Sequence[Sequence[Piece]], after: Sequence[Sequence[Pi
     added = [way for way in after if _terms(way) not in old_ways]
     if len(removed) == len(added) == 1:
         return words(removed[0], added[0], asked)
-    clauses = [f"also {_when(way)}" for way in added] + [f"no longer {_when(way)}" for way in removed]
+    if removed and added:
+        in_old, in_new = (frozenset.intersection(*map(_terms, ways)) for ways in (removed, added))
+        if {_terms(way) - in_old for way in removed} == {_terms(way) - in_new for way in added}:
+            # All ways changed alike.
+            return words(_those(removed[0], in_old), _those(added[0], in_new), asked)
+        # What all of them ask for is not what changed.
+        shared = frozenset.intersection(*map(_terms, (*removed, *added)))
+        removed, added = ([[p for p in way if p.term not in shared] for way in ways] for ways in (removed, added))
+        if removed == [[]]:
+            return f"only when {_either(added)} too"
+        if added == [[]]:
+            return f"no longer asks for {_either(removed)}"
+    clauses = [*_each_once("also", added), *_each_once("no longer", removed)]
     return ", ".join(clauses)
+
+
+def _those(way: Sequence[Piece], terms: frozenset[Term]) -> list[Piece]:
+    return [piece for piece in way if piece.term in terms]
+
+
+def _either(ways: Sequence[Sequence[Piece]]) -> str:
+    listed = list(dict.fromkeys(_listed(way) for way in ways))
+    if len(listed) > _MOST:
+        listed = [*listed[: _MOST - 1], f"{len(listed) - _MOST + 1} more"]
+    return ", or ".join(listed) if any(len(way) > 1 for way in ways) else " or ".join(listed)
+
+
+def _each_once(verb: str, ways: Sequence[Sequence[Piece]]) -> list[str]:
+    """Clauses about ways; of many the first, and how many more there are."""
+    said = list(dict.fromkeys(f"{verb} {_when(way)}" for way in ways))
+    if len(said) > _MOST_WAYS:
+        said = [*said[: _MOST_WAYS - 1], f"{verb} on {len(said) - _MOST_WAYS + 1} more ways"]
+    return said
 
 
 def _when(way: Sequence[Piece]) -> str:
@@ -116,7 +148,7 @@ def _is_block(piece: Piece) -> bool:
 
 
 def _listed(pieces: Sequence[Piece]) -> str:
-    quoted = [_quoted(piece) for piece in pieces]
+    quoted = list(dict.fromkeys(_quoted(piece) for piece in pieces))
     if len(quoted) > _MOST:
         quoted = [*quoted[: _MOST - 1], f"{len(quoted) - _MOST + 1} more"]
     return " and ".join(([", ".join(quoted[:-1])] if quoted[:-1] else []) + quoted[-1:])

@@ -263,6 +263,32 @@ def test_words_of_ways():
     assert explain_ways((a,), (a, ())) == "also without any condition"
 
 
+def on(*names: str) -> tuple[GuardAt, ...]:
+    return cpp(*(f"if: {name}" for name in names))
+
+
+def test_of_ways_that_ask_for_more_or_for_less_only_that_is_told():
+    a, ab, ac, acd = (on(*names) for names in ("a", "ab", "ac", "acd"))
+    assert explain_ways((a,), (ab, ac)) == "only when `b` or `c` too"
+    assert explain_ways((ab, ac), (a,)) == "no longer asks for `b` or `c`"
+    assert explain_ways((a,), (ab, acd)) == "only when `b`, or `c` and `d` too"
+    assert explain_ways((ab, ac), (on(*"ad"),)) == "also when `d`, no longer when `b`, no longer when `c`"
+
+
+def test_of_ways_that_changed_alike_the_change_is_told_once():
+    old = (on(*"ab"), on(*"ac"))
+    assert explain_ways(old, (on(*"abd"), on(*"acd"))) == "only when `d` too"
+    assert explain_ways(old, (on("b"), on("c"))) == "no longer asks for `a`"
+
+
+def test_of_many_ways_the_first_are_told():
+    ways = [on("a", name) for name in "bcdef"]
+    assert explain_ways((on("z"),), (on("z"), *ways)) == (
+        "also when `a` and `b`, also when `a` and `c`, also on 3 more ways"
+    )
+    assert explain_ways((on("a"),), tuple(ways)) == "only when `b` or `c` or `d` or 2 more too"
+
+
 def test_words_of_long_conditions_show_what_differs():
     most = " || ".join(f"encoding == enc::KIND{number}" for number in range(9))
     clause = explain(cpp(f"if: {most}"), cpp(f"if: {most} || encoding == enc::LAST"))
