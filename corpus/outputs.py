@@ -25,9 +25,9 @@ def need_folder(folder: Path) -> None:
 
 def unwritable(path: Path) -> str:
     """Why a file or folder cannot be written, or made where it is not there, in the system's words; else empty."""
-    if os.path.isfile(path):
-        return "" if os.access(path, os.W_OK) else os.strerror(errno.EACCES)
     nearest = next((place for place in (path, *path.parents) if os.path.exists(place)), None)
+    if nearest == path and os.path.isfile(path):
+        return "" if os.access(path, os.W_OK) else os.strerror(errno.EACCES)
     if nearest is None or not os.path.isdir(nearest):
         return os.strerror(errno.ENOTDIR) if nearest is not None else os.strerror(errno.ENOENT)
     return "" if os.access(nearest, os.W_OK | os.X_OK) else os.strerror(errno.EACCES)
