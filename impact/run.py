@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -23,6 +23,7 @@ from .tree import TreeError, WorkingTree, shown
 
 FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
 FAIL_ON = ("error", "warning", "note", "never")
+_TEXT_OR_JSON = ("text", "json")
 _OUR_ERRORS = (CheckError, ConfigError, SettingsError, TargetError, SnapshotError, TreeError, InstallError)
 
 
@@ -61,6 +62,41 @@ def failed(message: str, format: str = "text", output: Path | None = None) -> in
     return 2
 
 
+def _answered(
+    answer: Callable[[], str],
+    format: str = "text",
+    known: Sequence[str] = ("text",),
+    output: Path | None = None,
+    path: object = "",
+) -> int:
+    """Delivers what a command says, its errors as one line. Returns the exit status: 0, 2 (failed), 130 (interrupted).
+
+    answer: makes the text. known: the formats that the command has. path: what an error without a file of its own is
+    about.
+    """
+    try:
+        with told(path):
+            _one_of("--format", format, known)
+            _deliver(answer(), output)
+    except Failed as error:
+        return failed(str(error))
+    except KeyboardInterrupt:
+        say("rosimpact: interrupted; what was read is kept, and the next run goes on from there")
+        return 130
+    return 0
+
+
+def _one_of(option: str, given: str, known: Sequence[str]) -> None:
+    """Raises Failed where an option is given a word that it does not know."""
+    if given not in known:
+        raise Failed(f"{option} {given}: unknown; choose one of {', '.join(known)}")
+
+
+def _say_notes(notes: Iterable[str]) -> None:
+    for note in notes:
+        say(f"rosimpact: {note}")
+
+
 def check(
     path: Path, *, targets, format, output, rev, base, select, ignore, fail_on, notes, preview, baseline,
     write_baseline, prune_baseline, fix, diff, config, jobs, quiet, install=None,
@@ -68,10 +104,8 @@ def check(
     """Runs the check and prints its report. Returns the exit status: 0, 1 (findings) or 2 (failed)."""
     try:
         with told(path):
-            if format not in FORMATS:
-                raise Failed(f"--format {format}: unknown; choose one of {', '.join(FORMATS)}")
-            if fail_on not in ("", *FAIL_ON):
-                raise Failed(f"--fail-on {fail_on}: unknown; choose one of {', '.join(FAIL_ON)}")
+            _one_of("--format", format, FORMATS)
+            _one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
             if prune_baseline and baseline is None:
                 raise Failed("--prune-baseline: needs the baseline to prune; give it with --baseline")
             known = _baseline(baseline)
@@ -278,39 +312,31 @@ def graph(
     jobs, quiet,
 ) -> int:  # fmt: skip
     """Draws the message-flow graph. Returns the exit status: 0, or 2 (failed)."""
-    try:
-        with told(path):
-            if format not in GRAPH_FORMATS:
-                raise Failed(f"--format {format}: unknown; choose one of {', '.join(GRAPH_FORMATS)}")
-            given = dict(argument.partition(":=")[::2] for argument in arguments)
-            if any(":=" not in argument for argument in arguments):
-                raise Failed("--set: write NAME:=VALUE")
-            if given and not launch:
-                raise Failed("--set: arguments belong to a launch file; name it with --launch")
-            from .flow.drawing import draw
-            from .flow.select import NothingSelected
-            from .graph import graphs
 
-            found = graphs(
-                path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
-                progress=None if quiet else _progress(),
+    def answer() -> str:
+        given = dict(argument.partition(":=")[::2] for argument in arguments)
+        if any(":=" not in argument for argument in arguments):
+            raise Failed("--set: write NAME:=VALUE")
+        if given and not launch:
+            raise Failed("--set: arguments belong to a launch file; name it with --launch")
+        from .flow.drawing import draw
+        from .flow.select import NothingSelected
+        from .graph import graphs
+
+        found = graphs(
+            path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
+            progress=None if quiet else _progress(),
+        )  # fmt: skip
+        _say_notes(found.notes)
+        try:
+            return draw(
+                found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
+                hops=hops, everything=everything, style=_style(output),
             )  # fmt: skip
-            for note in found.notes:
-                say(f"rosimpact: {note}")
-            try:
-                text = draw(
-                    found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
-                    hops=hops, everything=everything, style=_style(output),
-                )  # fmt: skip
-            except NothingSelected as error:
-                raise Failed(str(error)) from None
-            _deliver(text, output)
-    except Failed as error:
-        return failed(str(error))
-    except KeyboardInterrupt:
-        say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
-        return 130
-    return 0
+        except NothingSelected as error:
+            raise Failed(str(error)) from None
+
+    return _answered(answer, format, GRAPH_FORMATS, output, path)
 
 
 IMPACT_FORMATS = ("text", "json", "markdown")
@@ -328,34 +354,24 @@ def impact(
     path: Path, *, base, rev, packages, topics, nodes, format, output, everything, jobs, quiet
 ) -> int:  # fmt: skip
     """Prints what the changes since a base reach. Returns the exit status: 0, or 2 (failed)."""
-    try:
-        with told(path):
-            if format not in IMPACT_FORMATS:
-                raise Failed(f"--format {format}: unknown; choose one of {', '.join(IMPACT_FORMATS)}")
-            if not base:
-                raise Failed("--base: needed, the revision that the change is compared with, such as origin/main")
-            from .flow import impact_report
-            from .flow.impact import chosen
-            from .impact import reached
 
-            found = reached(path, base, rev=rev, jobs=jobs, progress=None if quiet else _progress())
-            for note in found.notes:
-                say(f"rosimpact: {note}")
-            part = chosen(found.impact, packages, topics, nodes)
-            if format == "json":
-                said = impact_report.Told(__version__, found.root, found.rev, found.base)
-                text = impact_report.as_json(part, said)
-            elif format == "markdown":
-                text = impact_report.markdown(part)
-            else:
-                text = impact_report.text(part, everything, _style(output))
-            _deliver(text, output)
-    except Failed as error:
-        return failed(str(error))
-    except KeyboardInterrupt:
-        say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
-        return 130
-    return 0
+    def answer() -> str:
+        if not base:
+            raise Failed("--base: needed, the revision that the change is compared with, such as origin/main")
+        from .flow import impact_report
+        from .flow.impact import chosen
+        from .impact import reached
+
+        found = reached(path, base, rev=rev, jobs=jobs, progress=None if quiet else _progress())
+        _say_notes(found.notes)
+        part = chosen(found.impact, packages, topics, nodes)
+        if format == "json":
+            return impact_report.as_json(part, impact_report.Told(__version__, found.root, found.rev, found.base))
+        if format == "markdown":
+            return impact_report.markdown(part)
+        return impact_report.text(part, everything, _style(output))
+
+    return _answered(answer, format, IMPACT_FORMATS, output, path)
 
 
 LOGIC_FORMATS = ("text", "json", "html")
@@ -365,39 +381,29 @@ def logic(
     path: Path, *, range, number, since, packages, topics, everything, format, output, jobs, quiet
 ) -> int:  # fmt: skip
     """Prints where the logic of publishing changed. Returns the exit status: 0, or 2 (failed)."""
-    try:
-        with told(path):
-            if format not in LOGIC_FORMATS:
-                raise Failed(f"--format {format}: unknown; choose one of {', '.join(LOGIC_FORMATS)}")
-            from .facts.store import Store
-            from .flow import logic as history
-            from .flow import logic_report, timeline
 
-            with Store() as store:
-                try:
-                    asked = history.Range(range, number, since)
-                    found = history.read(os.fspath(path), asked, store, jobs, None if quiet else steps())
-                except ValueError as error:
-                    raise Failed(f"--since: {error}") from None
-                for note in store.notes:
-                    say(f"rosimpact: {note}")
-            all_of_it, found = found, history.chosen(found, packages, topics, everything)
-            missed = logic_report.missed(all_of_it, found, packages, topics)
-            if missed:
-                say(f"rosimpact: {missed}")
-            if format == "html":
-                text = timeline.render(found, __version__)
-            elif format == "json":
-                text = logic_report.as_json(found, __version__)
-            else:
-                text = logic_report.text(found, _style(output))
-            _deliver(text, output)
-    except Failed as error:
-        return failed(str(error))
-    except KeyboardInterrupt:
-        say("rosimpact: interrupted; what was read is kept, and the next run goes on from there")
-        return 130
-    return 0
+    def answer() -> str:
+        from .facts.store import Store
+        from .flow import logic as history
+        from .flow import logic_report, timeline
+
+        with Store() as store:
+            try:
+                asked = history.Range(range, number, since)
+                found = history.read(os.fspath(path), asked, store, jobs, None if quiet else steps())
+            except ValueError as error:
+                raise Failed(f"--since: {error}") from None
+            _say_notes(store.notes)
+        all_of_it, found = found, history.chosen(found, packages, topics, everything)
+        missed = logic_report.missed(all_of_it, found, packages, topics)
+        _say_notes([missed] if missed else [])
+        if format == "html":
+            return timeline.render(found, __version__)
+        if format == "json":
+            return logic_report.as_json(found, __version__)
+        return logic_report.text(found, _style(output))
+
+    return _answered(answer, format, LOGIC_FORMATS, output, path)
 
 
 def _style(output: Path | None) -> Style:
@@ -468,36 +474,28 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
 
 def surface_build(*, distros, repos, packages, output, jobs, quiet) -> int:
     """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
-    try:
-        with told(output):
-            from .targets.build_surfaces import all_distros, build
-            from .targets.clones import Clones, VersionError
 
-            if not distros:
-                raise Failed("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
-            report = None if quiet else steps()
-            try:
-                built = build(
-                    Clones(repos), all_distros(distros), output, packages, jobs,
-                    report,
-                )  # fmt: skip
-            except VersionError as error:
-                raise Failed(str(error)) from None
-            if not built.packages:
-                raise Failed(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")
-            for line in built.failed:
-                say(f"rosimpact: {line}")
-            told_of = f"{counted(built.packages, 'package')}, {counted(built.versions, 'version')}"
-            print(
-                f"{output}: {told_of}, {output.stat().st_size:,} bytes; "
-                f"{built.approximate} with a branch for a missing tag, {len(built.missing)} without a clone"
-            )
-    except Failed as error:
-        return failed(str(error))
-    except KeyboardInterrupt:
-        say("rosimpact: interrupted; what was read is kept, and the next run goes on from there")
-        return 130
-    return 0
+    def answer() -> str:
+        from .targets.build_surfaces import all_distros, build
+        from .targets.clones import Clones, VersionError
+
+        if not distros:
+            raise Failed("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
+        report = None if quiet else steps()
+        try:
+            built = build(Clones(repos), all_distros(distros), output, packages, jobs, report)
+        except VersionError as error:
+            raise Failed(str(error)) from None
+        if not built.packages:
+            raise Failed(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")
+        _say_notes(built.failed)
+        told_of = f"{counted(built.packages, 'package')}, {counted(built.versions, 'version')}"
+        return (
+            f"{output}: {told_of}, {output.stat().st_size:,} bytes; "
+            f"{built.approximate} with a branch for a missing tag, {len(built.missing)} without a clone"
+        )
+
+    return _answered(answer, path=output)
 
 
 def _source(version, asked: str):
@@ -508,30 +506,22 @@ def _source(version, asked: str):
 
 
 def _of_surfaces(answer: Callable, format: str, output: Path | None) -> int:
-    """Delivers what a command on surfaces says, its errors as one line."""
+    """Delivers what a command on surfaces says."""
     from .report.surface import FORMATS as known
 
-    try:
-        with told():
-            if format not in known:
-                raise Failed(f"--format {format}: unknown; choose one of {', '.join(known)}")
-            from .facts.store import Store
-            from .targets.clones import VersionError
+    def with_store() -> str:
+        from .facts.store import Store
+        from .targets.clones import VersionError
 
-            with Store() as store:
-                try:
-                    text = answer(store)
-                except VersionError as error:
-                    raise Failed(str(error)) from None
-                for note in store.notes:
-                    say(f"rosimpact: {note}")
-            _deliver(text, output)
-    except Failed as error:
-        return failed(str(error))
-    except KeyboardInterrupt:
-        say("rosimpact: interrupted; what was read is kept, and the next run goes on from there")
-        return 130
-    return 0
+        with Store() as store:
+            try:
+                text = answer(store)
+            except VersionError as error:
+                raise Failed(str(error)) from None
+            _say_notes(store.notes)
+        return text
+
+    return _answered(with_store, format, known, output)
 
 
 def explain(name: str | None) -> int:
@@ -584,7 +574,7 @@ def env_diff(first: str, second: str, path: Path | None, format: str) -> int:
 
     try:
         with told(path or ""):
-            _text_or_json(format)
+            _one_of("--format", format, _TEXT_OR_JSON)
             config = load(path if path is not None else Path())
             a, b = parse_target(first, config), parse_target(second, config)
             used = _used(path, (first, second)) if path is not None else {}
@@ -614,11 +604,6 @@ def env_diff(first: str, second: str, path: Path | None, format: str) -> int:
     return 0
 
 
-def _text_or_json(format: str) -> None:
-    if format not in ("text", "json"):
-        raise Failed(f"--format {format}: unknown; choose text or json")
-
-
 def _used(path: Path, targets: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
     """Names the workspace declares or uses, to the packages that do."""
     used: dict[str, set[str]] = {}
@@ -639,47 +624,45 @@ def why(name: str, path: Path, targets: tuple[str, ...], format: str) -> int:
     """Prints who provides a name on each target, in which version, since when, and who in the workspace uses it.
 
     Returns 1 when nobody provides it on some target."""
-    from .why import answers, as_text
+    unanswered = False
 
-    try:
-        with told(path):
-            _text_or_json(format)
-            found = answers(name, path, targets)
-    except Failed as error:
-        return failed(str(error))
-    if format == "json":
+    def answer() -> str:
+        nonlocal unanswered
+        from .why import answers, as_text
+
+        found = answers(name, path, targets)
+        answered = {a.target for a in found if any(offer.kind != "absent" for offer in a.offers)}
+        unanswered = answered != {a.target for a in found}
+        if format == "text":
+            return as_text(name, found)
         import json
 
         rows = [answer._asdict() | {"offers": [offer._asdict() for offer in answer.offers]} for answer in found]
-        _write(json.dumps(rows, indent=1))
-    else:
-        _write(as_text(name, found))
-    answered = {a.target for a in found if any(offer.kind != "absent" for offer in a.offers)}
-    return int(answered != {a.target for a in found})
+        return json.dumps(rows, indent=1)
+
+    return _answered(answer, format, _TEXT_OR_JSON, path=path) or int(unanswered)
 
 
 def data_status(format: str = "text") -> int:
     """Prints date, origin and contents of the distro data in use."""
-    from .targets.build_data import status
 
-    try:
-        with told():
-            _text_or_json(format)
-            found = status()
-    except Failed as error:
-        return failed(str(error))
-    if format == "json":
-        import json
+    def answer() -> str:
+        from .targets.build_data import status
 
-        _write(json.dumps(found._asdict(), indent=1, default=str))
-        return 0
-    origin = "updated" if found.updated else "shipped with rosimpact"
-    lines = [f"distro data of {found.date}, {origin}, {found.packed / 1e6:.1f} MB, in {found.folder}"]
-    lines += [f"from {name} {commit}" for name, commit in found.sources.items()]
-    if found.last_syncs:
-        lines.append("newest syncs: " + ", ".join(f"{name} {day}" for name, day in sorted(found.last_syncs.items())))
-    _write("\n".join(lines))
-    return 0
+        found = status()
+        if format == "json":
+            import json
+
+            return json.dumps(found._asdict(), indent=1, default=str)
+        origin = "updated" if found.updated else "shipped with rosimpact"
+        lines = [f"distro data of {found.date}, {origin}, {found.packed / 1e6:.1f} MB, in {found.folder}"]
+        lines += [f"from {name} {commit}" for name, commit in found.sources.items()]
+        if found.last_syncs:
+            newest = ", ".join(f"{name} {day}" for name, day in sorted(found.last_syncs.items()))
+            lines.append(f"newest syncs: {newest}")
+        return "\n".join(lines)
+
+    return _answered(answer, format, _TEXT_OR_JSON)
 
 
 def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path | None) -> int:
