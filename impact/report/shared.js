@@ -17,6 +17,26 @@ function make(tag, attributes, ...children) {
 const withCode = (text) => text.split(/(`[^`]+`)/).filter(Boolean).map(
   (part) => (part.length > 2 && part[0] === "`" ? make("code", null, part.slice(1, -1)) : part));
 
+// Filters live in the address, so that a link to a part of a page can be kept. fields, boxes: ids of inputs, and of
+// boxes to tick; more: what else is kept, by name. recall() gives all that the address holds.
+function remember(fields, boxes, more) {
+  const state = new URLSearchParams();
+  for (const id of fields) if (at(id).value) state.set(id, at(id).value);
+  for (const id of boxes) if (at(id).checked !== at(id).defaultChecked) state.set(id, at(id).checked ? "1" : "0");
+  for (const [name, value] of Object.entries(more || {})) if (value) state.set(name, value);
+  try { history.replaceState(null, "", `#${state}`); } catch { /* some viewers forbid it */ }
+}
+function recall(fields, boxes) {
+  const state = new URLSearchParams(location.hash.slice(1));
+  for (const id of fields) {
+    const value = state.get(id) || "";
+    at(id).value = value;
+    if (at(id).value !== value) at(id).value = "";
+  }
+  for (const id of boxes) at(id).checked = state.has(id) ? state.get(id) === "1" : at(id).defaultChecked;
+  return state;
+}
+
 const typing = () => /^(INPUT|SELECT|TEXTAREA)$/.test(document.activeElement.tagName);
 addEventListener("keydown", (event) => {
   if (event.key !== "/" || event.ctrlKey || event.metaKey || event.altKey || typing()) return;

@@ -273,7 +273,7 @@
       list.toggle("hit", found.has(one));
     }
     at("panel").replaceChildren(...(chosen?.nodeBox ? edgePanel(chosen) : chosen?.kind === "node" ? nodePanel(chosen) : chosen ? namePanel(chosen) : summary()));
-    remember();
+    keep();
   }
 
   function search() {
@@ -411,23 +411,12 @@
   }
 
   const FIELDS = ["search", "package"], BOXES = [...KINDS, "changed", "alone"];
-  // The filters and what is chosen live in the address, so that a link to a part of the graph can be kept.
-  function remember() {
-    const state = new URLSearchParams();
-    for (const id of FIELDS) if (at(id).value) state.set(id, at(id).value);
-    for (const id of BOXES) if (at(id).checked !== at(id).defaultChecked) state.set(id, at(id).checked ? "1" : "0");
-    if (chosen) state.set("show", chosen.nodeBox ? `${chosen.nodeBox.key} ${chosen.role} ${chosen.nameBox.key}` : chosen.key);
-    if (near) state.set("near", near.key);
-    try { history.replaceState(null, "", `#${state}`); } catch { /* some viewers forbid it */ }
+  function keep() {
+    const shown = chosen && (chosen.nodeBox ? `${chosen.nodeBox.key} ${chosen.role} ${chosen.nameBox.key}` : chosen.key);
+    remember(FIELDS, BOXES, { show: shown, near: near?.key });
   }
-  function recall() {
-    const state = new URLSearchParams(location.hash.slice(1));
-    for (const id of FIELDS) {
-      const value = state.get(id) || "";
-      at(id).value = value;
-      if (at(id).value !== value) at(id).value = "";
-    }
-    for (const id of BOXES) at(id).checked = state.has(id) ? state.get(id) === "1" : at(id).defaultChecked;
+  function comeBack() {
+    const state = recall(FIELDS, BOXES);
     near = boxes.find((box) => box.key === state.get("near")) || null;
     const wanted = state.get("show");
     chosen = !wanted ? null : boxes.find((box) => box.key === wanted) || edges.find((edge) => edge.nodeBox && `${edge.nodeBox.key} ${edge.role} ${edge.nameBox.key}` === wanted) || null;
@@ -452,7 +441,7 @@
   at("alone").defaultChecked = at("alone").checked = loners > 0 && !edges.some((edge) => edge.nodeBox);
   at("changed-label").hidden = graph.base === null;
   legend();
-  recall();
+  comeBack();
   update();
   if (chosen) reveal(chosen.nodeBox || chosen);
   performance.mark("rosimpact graph drawn");
@@ -473,7 +462,7 @@
     world.removeAttribute("transform");
   });
   addEventListener("afterprint", () => { stage.removeAttribute("viewBox"); move(); });
-  addEventListener("hashchange", () => { recall(); update(); });
+  addEventListener("hashchange", () => { comeBack(); update(); });
   addEventListener("resize", () => { if (!chosen && !hits.length) start(); });
   addEventListener("keydown", (event) => {
     if (event.key === "Escape") {
