@@ -19,6 +19,7 @@ from ..targets.distro import known_distros
 from ..targets.fields import History, before, default_fields, there
 from ..targets.includes import Machine, machine_of
 from ..targets.library import include_roots, standard_year
+from ..targets.offers import Offers
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
 from .build import At, Found, for_tests
@@ -223,6 +224,11 @@ class View:
         """The headers that the target has, see targets/includes.py."""
         target = self.target
         return Machine(target.ros, lambda name, library: target.library(name) if library else target.version(name))
+
+    @cached_property
+    def offers(self) -> Offers:
+        """What the released packages offer here, beside what other versions of them do."""
+        return Offers(self.target)
 
     @cached_property
     def later_machine(self) -> Machine | None:

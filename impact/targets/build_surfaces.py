@@ -16,21 +16,24 @@ from typing import Any, NamedTuple
 
 from ..facts.store import Store
 from ..tree import TreeError
+from .build_surface_changes import Lines
 from .clones import Clone, Clones, VersionError
 from .distro import DistroTarget, TargetError, known_distros
 from .snapshot import Snapshot, default
-from .surface import Surface, surfaces_of
-from .surface_store import History, Stored, pack, write
+from .surface import State, surfaces_of
+from .surface_changes import unpack
+from .surface_store import History, Packed, Stored, pack, write
 from .version import parts
 
 
 class Wanted(NamedTuple):
-    """A state of a clone. packages: those whose version it stands for."""
+    """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it."""
 
     version: str
     revision: str
     approximate: bool
     packages: tuple[str, ...]
+    generations: tuple[int, ...]
 
 
 class Job(NamedTuple):
@@ -52,7 +55,7 @@ class Job(NamedTuple):
 class Result(NamedTuple):
     """packages: packed versions by package. failed: what could not be read, a line each."""
 
-    packages: dict[str, bytes]
+    packages: dict[str, Packed]
     failed: tuple[str, ...]
 
 
@@ -75,6 +78,7 @@ def plan(
     data = data or default()
     asked = frozenset(packages)
     states: dict[str, dict[tuple[str, str, bool], set[str]]] = {}
+    generations: dict[tuple[str, str], set[int]] = {}
     opened: dict[str, Clone] = {}
     missing: list[str] = []
     by_repository: dict[tuple[str, str, str], tuple[Clone, str, bool] | None] = {}
@@ -99,11 +103,16 @@ def plan(
                 continue
             clone, revision, approximate = known
             opened[clone.name] = clone
-            states.setdefault(clone.name, {}).setdefault((version, revision, approximate), set()).add(package)
+            state = version, revision, approximate
+            states.setdefault(clone.name, {}).setdefault(state, set()).add(package)
+            generations.setdefault((clone.name, revision), set()).add(target.ros)
     jobs = []
     for name in sorted(states):
         order = sorted(states[name], key=lambda state: (parts(state[0]), state))
-        wanted = tuple(Wanted(*state, tuple(sorted(states[name][state]))) for state in order)
+        wanted = tuple(
+            Wanted(*state, tuple(sorted(states[name][state])), tuple(sorted(generations[name, state[1]])))
+            for state in order
+        )
         trees = tuple(opened[name].folder_id(state.revision) for state in wanted)
         jobs.append(Job(str(opened[name].place), name, wanted, trees))
     return jobs, tuple(missing)
@@ -114,23 +123,28 @@ def run(job: Job) -> Result:
     clone = Clone(Path(job.place), job.name)
     found: dict[str, list[Stored]] = {}
     failed: list[str] = []
-    read: dict[str, dict[str, Surface]] = {}
+    read: dict[str, State] = {}
+    lines = Lines()
     with Store() as store:
         for state, tree in zip(job.states, job.trees, strict=True):
             if tree not in read:
                 read.clear()  # one state at a time is enough
                 try:
-                    read[tree] = surfaces_of(clone.tree(state.revision), store, 1)
+                    read[tree] = State(surfaces_of(clone.tree(state.revision), store, 1))
                 except (TreeError, OSError) as error:
                     failed.append(f"{job.name} {state.version}: {error}")
                     continue
             for package in state.packages:
-                surface = read[tree].get(package)
+                surface = read[tree].surfaces.get(package)
                 if surface is not None:
                     found.setdefault(package, []).append(Stored(state.version, state.approximate, surface))
+                    lines.add(package, state.version, state.generations, read[tree], state.approximate)
                 elif not state.approximate:
                     failed.append(f"{package} {state.version}: not in {job.name} at its tag")
-    return Result({package: pack(versions) for package, versions in found.items()}, tuple(failed))
+    changes = lines.packed()
+    return Result(
+        {package: Packed(pack(versions), changes[package]) for package, versions in found.items()}, tuple(failed)
+    )
 
 
 def build(
@@ -150,28 +164,31 @@ def build(
     failed: list[str] = []
     with closing(sqlite3.connect(work)) as db:
         db.execute("CREATE TABLE IF NOT EXISTS done(key TEXT PRIMARY KEY, failed TEXT)")
-        db.execute("CREATE TABLE IF NOT EXISTS part(key TEXT, package TEXT, data BLOB, PRIMARY KEY(key, package))")
+        db.execute(
+            "CREATE TABLE IF NOT EXISTS part"
+            "(key TEXT, package TEXT, data BLOB, changes BLOB, PRIMARY KEY(key, package))"
+        )
         keys = {job.key(): job for job in todo}
         done = {key for (key,) in db.execute("SELECT key FROM done") if key in keys}
         left = [job for key, job in keys.items() if key not in done]
         left.sort(key=lambda job: -len(job.states))
         for number, (job, result) in enumerate(_results(left, jobs), len(done) + 1):
-            rows = ((job.key(), package, data) for package, data in result.packages.items())
-            db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?)", rows)
+            rows = ((job.key(), package, *packed) for package, packed in result.packages.items())
+            db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?, ?)", rows)
             db.execute("INSERT OR REPLACE INTO done VALUES(?, ?)", (job.key(), "\n".join(result.failed)))
             db.commit()
             if progress is not None:
                 progress(job.name, number, len(todo))
-        found: dict[str, list[bytes]] = {}
+        found: dict[str, list[Packed]] = {}
         for key in keys:
-            for package, data in db.execute("SELECT package, data FROM part WHERE key = ?", (key,)):
-                found.setdefault(package, []).append(data)
+            for package, *packed in db.execute("SELECT package, data, changes FROM part WHERE key = ?", (key,)):
+                found.setdefault(package, []).append(Packed(*packed))
             (why,) = db.execute("SELECT failed FROM done WHERE key = ?", (key,)).fetchone()
             failed += why.split("\n") if why else []
     written = {package: _merged(package, each) for package, each in found.items()}
     write(output, written)
     work.unlink()
-    histories = [History(package, data) for package, data in written.items()]
+    histories = [History(package, packed.data) for package, packed in written.items()]
     versions = sum(len(history.versions) for history in histories)
     approximate = sum(bool(history.approximate) for history in histories)
     return Built(len(written), versions, missing, approximate, tuple(failed))
@@ -192,11 +209,22 @@ def _with_job(job: Job) -> tuple[Job, Result]:
     return job, run(job)
 
 
-def _merged(package: str, packed: list[bytes]) -> bytes:
+def _merged(package: str, packed: list[Packed]) -> Packed:
     """The versions of a package that several clones gave, as one."""
     if len(packed) == 1:
         return packed[0]
-    return pack([one for data in packed for one in History(package, data).stored()])
+    generations: dict[str, set[int]] = {}
+    for one in packed:
+        for generation, line in unpack(one.changes).items():
+            for version in line.versions:
+                generations.setdefault(version, set()).add(generation)
+    stored = {one.version: one for each in packed for one in History(package, each.data).stored()}
+    lines = Lines()
+    for version in sorted(stored, key=parts):
+        one = stored[version]
+        state = State({package: one.surface})  # what went to another package counts as gone
+        lines.add(package, version, sorted(generations.get(version, ())), state, one.approximate)
+    return Packed(pack(stored.values()), lines.packed()[package])
 
 
 def all_distros(names: Sequence[str]) -> tuple[str, ...]:

@@ -562,7 +562,7 @@ class _Comparison:
                 self.both(name, entry, found)
         for name, entry in self.new.offered.items():
             if self.old.find(name) is None and name not in self.moved_to:
-                self.add("added", name, entry.kind, now=_shown(entry), breaks=False)
+                self.add("added", name, entry.kind, now=shown(entry), breaks=False)
         return tuple(sorted(self.changes.values(), key=lambda c: (c.name, c.kind)))
 
     @cached_property
@@ -602,9 +602,9 @@ class _Comparison:
         inside = any(name.startswith(f"{module}.") for module in gone)
         if target:
             if not inside or (("moved", name.rpartition(".")[0]) not in self.changes):
-                self.add("moved", name, entry.kind, old=_shown(entry), now=target, sure=not entry.conditional)
+                self.add("moved", name, entry.kind, old=shown(entry), now=target, sure=not entry.conditional)
         elif not inside:
-            self.add("removed", name, entry.kind, old=_shown(entry), sure=not entry.conditional)
+            self.add("removed", name, entry.kind, old=shown(entry), sure=not entry.conditional)
 
     def elsewhere(self, name: str, entry: Entry) -> str:
         """Where else the thing can be imported from, empty where nowhere or where several things are like it."""
@@ -663,14 +663,14 @@ class _Comparison:
                 continue
             if has is None:
                 if member != "__init__":
-                    self.add("removed", dotted, had.kind, old=_shown(had), sure=not had.conditional)
+                    self.add("removed", dotted, had.kind, old=shown(had), sure=not had.conditional)
                 elif had.bound is not None and had.bound.parameters:
-                    self.add("signature", dotted, "method", old=_shown(had), now="()", sure=not had.conditional)
+                    self.add("signature", dotted, "method", old=shown(had), now="()", sure=not had.conditional)
             else:
                 self.both(dotted, had, has)
         for member, has in mine.items():
             if member != "__init__" and self.old.member(old, member) is None:
-                self.add("added", f"{name}.{member}", has.kind, now=_shown(has), breaks=False)
+                self.add("added", f"{name}.{member}", has.kind, now=shown(has), breaks=False)
 
     def signatures(self, name: str, old: Entry, new: Entry, sure: bool) -> None:
         assert old.bound is not None and new.bound is not None
@@ -680,7 +680,7 @@ class _Comparison:
         # Which keywords `**kwargs` stood for cannot be told.
         sure = sure and not (problem.startswith("`**"))
         if problem or [(p.name, p.kind) for p in had] != [(p.name, p.kind) for p in has]:
-            self.add("signature", name, old.kind, old=_shown(old), now=_shown(new), breaks=bool(problem), sure=sure)
+            self.add("signature", name, old.kind, old=shown(old), now=shown(new), breaks=bool(problem), sure=sure)
         before = {p.name: p.default for p in had}
         for parameter in has:
             value, now = before.get(parameter.name), parameter.default
@@ -724,7 +724,8 @@ def _nature(entry: Entry) -> str:
     return "value" if entry.kind == "property" else "call" if _callable(entry.kind) else entry.kind
 
 
-def _shown(entry: Entry) -> str:
+def shown(entry: Entry) -> str:
+    """What stands behind a name where it is defined: parameters, bases or a value."""
     bound = entry.bound
     if bound is None:
         return entry.where

@@ -7,10 +7,12 @@ that have it, over and over). Lines, comments, and names of C++ parameters are l
 
 from __future__ import annotations
 
+import hashlib
+import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from functools import lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,12 +23,19 @@ from ..facts.cpp import Include
 from ..facts.interface import Interface
 from ..facts.surface import Entity, HeaderSurface
 from ..facts.surface_python import Bound, ModuleSurface, Taken
+from .snapshot import DATA, SnapshotError
 from .surface import Surface
 from .surface_build import BuildSurface
+from .surface_changes import Line, unpack
 from .surface_python import Module, PythonSurface
 from .version import parts
 
-_SCHEMA = "CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL) WITHOUT ROWID"
+_SCHEMA = """
+CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL) WITHOUT ROWID;
+CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
+"""
+"""package: what its versions offer, and what changed between them (see surface_changes.py). elsewhere: names that some
+version of a package lost, and the packages, space separated, that have or had one of that name."""
 _LEVEL = 19
 # (kind, scope, value as JSON-like data)
 _Row = tuple[str, str, Any]
@@ -42,6 +51,13 @@ class Stored(NamedTuple):
     version: str
     approximate: bool
     surface: Surface
+
+
+class Packed(NamedTuple):
+    """A package as it is stored: what its versions offer, and what changed between them."""
+
+    data: bytes
+    changes: bytes
 
 
 class History:
@@ -285,28 +301,79 @@ class Surfaces:
 
     def __init__(self, file: Path):
         self.file = file
-        try:
-            self._db = sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
-            self.packages = frozenset(name for (name,) in self._db.execute("SELECT name FROM package"))
-        except sqlite3.Error as error:
-            raise StoredSurfacesError(f"{file}: {error}; make it anew with `rosimpact surface build`") from None
+        self._reader = 0  # the process that opened it
+        self.packages = frozenset(name for (name,) in self._rows("SELECT name FROM package"))
 
     @lru_cache(maxsize=64)  # noqa: B019  (one of them lives as long as the program)
     def history(self, package: str) -> History | None:
         """All versions of a package, None when it is not there."""
-        row = self._db.execute("SELECT data FROM package WHERE name = ?", (package,)).fetchone()
+        row = next(self._rows("SELECT data FROM package WHERE name = ?", package), None)
         return History(package, row[0]) if row else None
 
+    @lru_cache(maxsize=1024)  # noqa: B019
+    def lines(self, package: str) -> dict[int, Line]:
+        """What changed in a package from version to version, by ROS generation; empty when it is not there."""
+        row = next(self._rows("SELECT changes FROM package WHERE name = ?", package), None)
+        return unpack(row[0]) if row else {}
 
-def write(file: Path, packages: Mapping[str, bytes]) -> None:
+    def elsewhere(self, name: str) -> tuple[str, ...]:
+        """The packages that have, or had, a name that some package lost."""
+        row = next(self._rows("SELECT packages FROM elsewhere WHERE name = ?", name), None)
+        return tuple(row[0].split()) if row else ()
+
+    @cached_property
+    def stamp(self) -> str:
+        """Differs whenever the file does."""
+        return hashlib.sha1(self.file.read_bytes()).hexdigest()[:16]
+
+    def _rows(self, query: str, *values: str) -> Iterator[tuple]:
+        try:
+            if self._reader != os.getpid():
+                # No other process may go on with a connection of this one.
+                self._db = sqlite3.connect(f"{self.file.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
+                self._reader = os.getpid()
+            yield from self._db.execute(query, values)
+        except sqlite3.Error as error:
+            raise StoredSurfacesError(f"{self.file}: {error}; make it anew with `rosimpact surface build`") from None
+
+
+@cache
+def shipped() -> Surfaces:
+    """The surfaces that come with the program. Raises SnapshotError when they cannot be read."""
+    try:
+        return Surfaces(DATA / "surfaces.sqlite")
+    except StoredSurfacesError as error:
+        raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
+
+
+def write(file: Path, packages: Mapping[str, Packed]) -> None:
     """Writes packed packages; a file that is there is replaced as a whole."""
     file.parent.mkdir(parents=True, exist_ok=True)
     fresh = file.with_name(f"{file.name}.new")
     fresh.unlink(missing_ok=True)
     with closing(sqlite3.connect(fresh)) as db:
         db.execute("PRAGMA page_size=4096")
-        db.execute(_SCHEMA)
-        db.executemany("INSERT INTO package VALUES(?, ?)", sorted(packages.items()))
+        db.executescript(_SCHEMA)
+        db.executemany(
+            "INSERT INTO package VALUES(?, ?, ?)", ((name, *packed) for name, packed in sorted(packages.items()))
+        )
+        db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_elsewhere(packages).items()))
         db.commit()
         db.execute("VACUUM")
     fresh.replace(file)
+
+
+def _elsewhere(packages: Mapping[str, Packed]) -> dict[str, str]:
+    """Names that a package lost and others have or had, with those packages."""
+    lost: dict[str, set[str]] = {}
+    for package, packed in packages.items():
+        for line in unpack(packed.changes).values():
+            for side in ("c++", "header", "python"):
+                for name in line.events.get(side, ()):
+                    lost.setdefault(name, set()).add(package)
+    found: dict[str, set[str]] = {}
+    for package, packed in packages.items():
+        for name in History(package, packed.data).names().keys() & lost.keys():
+            if lost[name] != {package}:
+                found.setdefault(name, set()).add(package)
+    return {name: " ".join(sorted(those)) for name, those in found.items()}

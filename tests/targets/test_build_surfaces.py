@@ -8,6 +8,7 @@ from rosimpact.impact.targets import build_surfaces
 from rosimpact.impact.targets.build_surfaces import Job, all_distros, build, plan, run
 from rosimpact.impact.targets.clones import Clones
 from rosimpact.impact.targets.distro import DistroTarget, TargetError
+from rosimpact.impact.targets.surface_changes import unpack
 from rosimpact.impact.targets.surface_store import History, Surfaces
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
@@ -114,8 +115,10 @@ def test_versions_of_one_package_from_two_clones(clones, tmp_path):
     parts = [
         run(job._replace(states=(state,), trees=(tree,))) for state, tree in zip(job.states, job.trees, strict=True)
     ]
-    merged = History("rclcpp", build_surfaces._merged("rclcpp", [part.packages["rclcpp"] for part in parts]))
-    whole = History("rclcpp", run(job).packages["rclcpp"])
+    packed = build_surfaces._merged("rclcpp", [part.packages["rclcpp"] for part in parts])
+    merged = History("rclcpp", packed.data)
+    assert list(unpack(packed.changes)[2].events["c++"]) == ["of_humble", "of_jazzy"]
+    whole = History("rclcpp", run(job).packages["rclcpp"].data)
     assert (merged.versions, merged.names()) == (whole.versions, whole.names())
 
 

@@ -6,10 +6,11 @@ import zstandard
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.facts.surface_python import extract as module
-from rosimpact.impact.targets.surface import Surface, compare
+from rosimpact.impact.targets.build_surface_changes import Lines
+from rosimpact.impact.targets.surface import State, Surface, compare
 from rosimpact.impact.targets.surface_build import BuildSurface, ExportedTarget, Header, LaunchFile, Program
 from rosimpact.impact.targets.surface_python import Module, PythonSurface
-from rosimpact.impact.targets.surface_store import History, Stored, StoredSurfacesError, Surfaces, pack, write
+from rosimpact.impact.targets.surface_store import History, Packed, Stored, StoredSurfacesError, Surfaces, pack, write
 
 CODE = """#pragma once
 #include <vector>
@@ -87,10 +88,15 @@ def test_nothing_but_facts_is_stored():
 
 def test_a_file_of_packages(tmp_path):
     file = tmp_path / "surfaces.sqlite"
-    write(file, {"arm": pack([Stored("1.0.0", True, surface("1.0.0"))]), "broken": b"not packed"})
+    one = surface("1.0.0")
+    lines = Lines()
+    lines.add("arm", "1.0.0", (2,), State({"arm": one}))
+    write(file, {"arm": Packed(pack([Stored("1.0.0", True, one)]), lines.packed()["arm"])})
     surfaces = Surfaces(file)
-    assert surfaces.packages == {"arm", "broken"}
-    assert surfaces.history("arm").approximate == {"1.0.0"}  # the other one is not looked at
+    assert surfaces.packages == {"arm"}
+    assert surfaces.history("arm").approximate == {"1.0.0"}
+    assert {generation: line.versions for generation, line in surfaces.lines("arm").items()} == {2: ("1.0.0",)}
+    assert surfaces.lines("leg") == {}
     assert surfaces.history("leg") is None
 
 

@@ -1,0 +1,169 @@
+"""What a target's version of a package offers beside what others do: gone, not there yet, changed, on its way out."""
+
+from types import SimpleNamespace
+
+import pytest
+from rosimpact.impact.facts.surface_cpp import extract as header
+from rosimpact.impact.facts.surface_python import extract as module
+from rosimpact.impact.targets.build_surface_changes import Lines
+from rosimpact.impact.targets.offers import Offers
+from rosimpact.impact.targets.surface import State, Surface
+from rosimpact.impact.targets.surface_build import BuildSurface, Header, Program
+from rosimpact.impact.targets.surface_python import Module, PythonSurface
+from rosimpact.impact.targets.surface_store import Packed, Stored, Surfaces, pack, write
+
+
+def surface(package, version, code="", python="", programs=(), path=""):
+    path = path or f"{package}/a.hpp"
+    build = BuildSurface(
+        package,
+        version,
+        headers=(Header(path, f"include/{path}", path),),
+        programs=tuple(Program(name, f"lib/{package}", "binary") for name in programs),
+    )
+    modules = (Module(package, f"{package}/__init__.py", True, module(python.encode())),) if python else ()
+    return Surface(package, version, build, PythonSurface(package, modules), ((path, header(code.encode())),))
+
+
+def target(ros=2, **versions):
+    return SimpleNamespace(ros=ros, version=versions.get)
+
+
+@pytest.fixture
+def store(tmp_path):
+    """A function that stores surfaces, each of a state of its own unless several are given as one, in order."""
+
+    def made(*states, generations=(2,), approximate=()):
+        lines, stored = Lines(), {}
+        for state in states:
+            together = State({one.package: one for one in (state if isinstance(state, tuple) else (state,))})
+            for one in together.surfaces.values():
+                branch = one.version in approximate
+                lines.add(one.package, one.version, generations, together, branch)
+                stored.setdefault(one.package, []).append(Stored(one.version, branch, one))
+        changes = lines.packed()
+        file = tmp_path / "surfaces.sqlite"
+        write(file, {package: Packed(pack(each), changes[package]) for package, each in stored.items()})
+        return Surfaces(file)
+
+    return made
+
+
+def test_gone_not_there_yet_and_everywhere(store):
+    surfaces = store(
+        surface("arm", "1.0.0", "void always(); void old();"),
+        surface("arm", "2.0.0", "void always(); void old();"),
+        surface("arm", "3.0.0", "void always(); void fresh();"),
+    )
+    early, late = (Offers(target(arm=v), surfaces).package("arm") for v in ("2.0.0", "3.0.0"))
+    gone = late.get("c++", "old")
+    assert (gone.state, gone.last, gone.first, gone.version, gone.sure) == ("removed", "2.0.0", "3.0.0", "3.0.0", True)
+    assert (early.get("c++", "old").state, early.get("c++", "old").gone_in) == ("changed", "3.0.0")
+    awaited = early.get("c++", "fresh")
+    assert (awaited.state, awaited.first, awaited.here) == ("absent", "3.0.0", None)
+    assert early.get("c++", "always") is None and early.get("c++", "never") is None
+    assert [one.name for one in late.every("c++")] == ["fresh", "old"]
+
+
+def test_what_goes_and_comes_back_is_there(store):
+    surfaces = store(
+        *(surface("arm", f"{n}.0.0", code) for n, code in enumerate(("", "void f();", "", "void f();"), 1))
+    )
+    states = [Offers(target(arm=f"{n}.0.0"), surfaces).package("arm").get("c++", "f").state for n in (1, 2, 3, 4)]
+    assert states == ["absent", "changed", "removed", "changed"]
+
+
+def test_forms_say_how_a_function_is_called(store):
+    surfaces = store(
+        surface("arm", "1.0.0", "struct A { void f(int a, double b = 0); };"),
+        surface("arm", "2.0.0", "struct A { void f(int a, double b, bool c); };"),
+    )
+    old, new = (Offers(target(arm=v), surfaces).package("arm").get("c++", "A::f") for v in ("1.0.0", "2.0.0"))
+    assert [(o.fewest, o.most, o.types) for o in new.here.overloads] == [(3, 3, ("int", "double", "bool"))]
+    assert [(o.fewest, o.most) for o in new.before.overloads] == [(1, 2)]
+    assert old.here == new.before and old.after == new.here and (old.coming, new.last) == ("2.0.0", "1.0.0")
+    package = Offers(target(arm="2.0.0"), surfaces).package("arm")
+    assert package.declarations("c++", "A::f", "1.0.0") == ("void A::f(int, double = 0)",)
+
+
+def test_an_overload_that_goes_leaves_the_name(store):
+    surfaces = store(surface("arm", "1.0.0", "void f(); void f(int);"), surface("arm", "2.0.0", "void f(int);"))
+    found = Offers(target(arm="2.0.0"), surfaces).package("arm").get("c++", "f")
+    assert (found.state, [o.fewest for o in found.here.overloads]) == ("changed", [1])
+
+
+def test_a_member_is_told_by_its_class(store):
+    surfaces = store(surface("arm", "1.0.0", "namespace n { struct A { void f(); }; }"), surface("arm", "2.0.0"))
+    offers = Offers(target(arm="2.0.0"), surfaces)
+    assert offers.find("c++", "n::A::f", ("leg", "arm")).name == "n::A"
+    assert offers.find("c++", "n::B", ("arm",)) is None
+
+
+def test_deprecated_until_it_goes(store):
+    warning = '[[deprecated("use g")]] void f(); void g();'
+    surfaces = store(
+        surface("arm", "1.0.0", "void f(); void g();"),
+        surface("arm", "2.0.0", warning),
+        surface("arm", "3.0.0", "void g();"),
+    )
+    found = Offers(target(arm="2.0.0"), surfaces).package("arm").get("c++", "f")
+    assert (found.state, found.here.deprecated, found.gone_in) == ("deprecated", "use g", "3.0.0")
+
+
+def test_python_and_programs(store):
+    surfaces = store(
+        surface("arm", "1.0.0", python="def move(x): ...\ndef rest(): ...\n", programs=("drive",)),
+        surface("arm", "2.0.0", python="def move(x, *, speed): ...\n", programs=()),
+    )
+    package = Offers(target(arm="2.0.0"), surfaces).package("arm")
+    assert package.get("python", "arm.rest").state == "removed"
+    moved = package.get("python", "arm.move")
+    assert [p.name for p in moved.here.parameters] == ["x", "speed"] and [p.name for p in moved.before.parameters] == [
+        "x"
+    ]
+    assert package.get("executable", "drive").state == "removed"
+    assert package.declarations("python", "arm.move", "2.0.0") == ("arm.move(x, *, speed)",)
+
+
+def test_what_another_package_has_now_is_moved(store):
+    surfaces = store(
+        (surface("arm", "1.0.0", "void f();"), surface("leg", "1.0.0")),
+        (surface("arm", "2.0.0"), surface("leg", "2.0.0", "void f();")),
+    )
+    found = Offers(target(arm="2.0.0", leg="2.0.0"), surfaces).package("arm").get("c++", "f")
+    assert (found.state, found.moved_to) == ("moved", "leg")
+
+
+def test_what_another_repository_has_is_moved_where_the_target_has_that(store):
+    surfaces = store(
+        surface("arm", "1.0.0", "void f();"), surface("arm", "2.0.0"), surface("leg", "5.0.0", "void f();")
+    )
+    with_leg, without = target(arm="2.0.0", leg="5.0.0"), target(arm="2.0.0")
+    assert Offers(with_leg, surfaces).package("arm").get("c++", "f").moved_to == "leg"
+    assert Offers(without, surfaces).package("arm").get("c++", "f").state == "removed"
+
+
+def test_a_version_that_is_not_stored_is_sure_only_between_equal_ones(store):
+    surfaces = store(
+        surface("arm", "1.0.0", "void f(); void g();"),
+        surface("arm", "2.0.0", "void g();"),
+        surface("arm", "4.0.0"),
+    )
+    package = Offers(target(arm="3.0.0"), surfaces).package("arm")
+    assert (package.stored, package.exact) == ("2.0.0", False)
+    assert (package.get("c++", "f").state, package.get("c++", "f").sure) == ("removed", True)
+    assert not package.get("c++", "g").sure
+    newer = Offers(target(arm="5.0.0"), surfaces).package("arm")
+    assert not newer.get("c++", "f").sure
+    assert Offers(target(arm="0.1.0"), surfaces).package("arm") is None
+
+
+def test_a_branch_is_not_sure(store):
+    surfaces = store(surface("arm", "1.0.0", "void f();"), surface("arm", "2.0.0"), approximate=("2.0.0",))
+    assert not Offers(target(arm="2.0.0"), surfaces).package("arm").get("c++", "f").sure
+
+
+def test_generations_of_ros_have_lines_of_their_own(store):
+    surfaces = store(surface("arm", "1.0.0", "void f();"), surface("arm", "2.0.0"), generations=(1,))
+    assert Offers(target(ros=1, arm="2.0.0"), surfaces).package("arm").get("c++", "f").state == "removed"
+    assert Offers(target(ros=2, arm="2.0.0"), surfaces).package("arm") is None
