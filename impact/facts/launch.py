@@ -58,10 +58,13 @@ class _Found:
         self.place = place
         self.references: list[Reference] = []
         self.unresolved: list[Problem] = []
+        # What the include that is being read gives.
+        self.arguments: tuple[str, ...] | None = None
 
     def add(self, kind: str, package: str, name: str, offset: int, conditional: bool) -> None:
         line, column = self.place(offset)
-        self.references.append(Reference(kind, package, name, line, column, conditional))
+        arguments = self.arguments if kind == "file" else None
+        self.references.append(Reference(kind, package, name, line, column, conditional, arguments))
 
     def mentions(self, text: str, offset: int, conditional: bool) -> None:
         """All substitutions and resource URLs of a text; offset: where it starts in the file."""
@@ -209,8 +212,10 @@ NODES = frozenset({"node", "test", "node_container", "lifecycle_node", "composab
 def _launch_xml(data: bytes) -> ReferenceFile:
     document = scan(data)
     found = _Found(document.place)
-    for element, conditional in zip(document.elements, _conditional(document), strict=True):
+    given = _given_to_includes(document)
+    for at, (element, conditional) in enumerate(zip(document.elements, _conditional(document), strict=True)):
         name = element.name
+        found.arguments = given.get(at)
         if name in NODES:
             _node(found, element, conditional)
         elif name in ("composable_node", "load_composable_node"):
@@ -231,6 +236,19 @@ def _launch_xml(data: bytes) -> ReferenceFile:
         if name == "rosparam" and element.text and "plugin" in element.text:
             _plugin_values(found, element.text, element.text_offset, conditional)
     return found.file(*document.problems)
+
+
+def _given_to_includes(document: Document) -> dict[int, tuple[str, ...]]:
+    """Names of the arguments that each `<include>` gives, by its place among the elements; those that give all that
+    they know themselves are left out."""
+    given: dict[int, list[str]] = {
+        at: [] for at, element in enumerate(document.elements)
+        if element.name == "include" and element.get("pass_all_args").strip().lower() not in ("true", "1")
+    }  # fmt: skip
+    for element in document.elements:
+        if element.name in ("arg", "let") and element.parent in given:
+            given[element.parent].append(element.get("name"))
+    return {at: tuple(names) for at, names in given.items() if not any("$" in name for name in names)}
 
 
 def _node(found: _Found, element: Element, conditional: bool) -> None:

@@ -32,6 +32,8 @@ class Reference(msgspec.Struct, frozen=True, array_like=True, gc=False):
     `ros2 run`), `file` (a launch or data file inside `package`), `plugin` (class name), `command` (shell).
     package: its name, empty when only `name` is known. name: executable, file, class or command, empty for `package`.
     conditional: stands under if/unless/try, so it may never run.
+    arguments: names of the launch arguments that an include of the file gives; None for what is no include, or where
+    they cannot all be told.
     """
 
     kind: str
@@ -40,3 +42,4 @@ class Reference(msgspec.Struct, frozen=True, array_like=True, gc=False):
     line: int
     column: int = 0
     conditional: bool = False
+    arguments: tuple[str, ...] | None = None

@@ -11,6 +11,7 @@ import msgspec
 
 from . import python2
 from .place import Problem, Reference
+from .python_objects import PythonUse
 from .python_tree import TRY, Attribute, Import, Reader
 
 
@@ -21,7 +22,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     the file does not parse, and `print >>f`, which parses and then fails. needs: the highest minor version of Python 3
     its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
     has and Python 2 has not), or None. interpreter: the first line when it is a `#!` that names python. main: has an
-    `if __name__ == '__main__'` block.
+    `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes.
     """
 
     imports: tuple[Import, ...]
@@ -32,6 +33,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     interpreter: str = ""
     main: bool = False
     problems: tuple[Problem, ...] = ()
+    uses: tuple[PythonUse, ...] = ()
 
 
 class Source(NamedTuple):
@@ -150,6 +152,7 @@ def extract(data: bytes) -> PythonFile:
                 interpreter=interpreter,
                 main=reader.main,
                 problems=problems,
+                uses=reader.object_uses(reader.column),
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))

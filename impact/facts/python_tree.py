@@ -8,7 +8,8 @@ import msgspec
 
 from .condition import Condition
 from .place import Problem, Reference
-from .python_values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, VALUED, WRAPPERS, PackagePath, Scope, Values
+from .python_objects import SURE_TO_RUN, Objects
+from .python_values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, VALUED, WRAPPERS, PackagePath, Scope
 
 
 class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -27,12 +28,13 @@ class Attribute(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The first use of a dotted name whose head is an imported module or name, import aliases resolved
     (`import time as t; t.clock()` gives `time.clock`), per distinct set of conditions. The conditions are those of the
     import and those of the use that tell about the interpreter or the machine, not every `if`. A `try` whose except
-    covers AttributeError counts."""
+    covers AttributeError counts. lazy: only functions that may not run use it."""
 
     text: str
     line: int
     column: int
     conditions: tuple[Condition, ...] = ()
+    lazy: bool = False
 
 
 TRY = Condition("python", "try")
@@ -90,7 +92,7 @@ def _children() -> dict[type, tuple[str, ...]]:
 _CHILDREN = _children()
 
 
-class Reader(Values):
+class Reader(Objects):
     """One walk over a syntax tree, in the order of the source."""
 
     def __init__(self, text: str, original: str) -> None:
@@ -101,9 +103,12 @@ class Reader(Values):
         self.lines = text.split("\n")
         self.has_paths = "package://" in text or "$(find" in text
         self.imports: list[Import] = []
-        self.uses: dict[tuple[Scope, str, tuple[Condition, ...]], tuple[int, int]] = {}
+        # Line, offset, and whether only functions that may not run have it.
+        self.uses: dict[tuple[Scope, str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
         self.imported_names: list[Attribute] = []
         self.references: dict[Reference, None] = {}
+        # What the include around gives.
+        self.included: tuple[str, ...] | None = None
         # Functions that look up the package named by one of their own parameters, and all calls by a plain name.
         self.lookups: dict[tuple[Scope, str], tuple[int, str]] = {}
         self.calls: list[tuple[Scope, str, ast.Call, bool]] = []
@@ -113,8 +118,6 @@ class Reader(Values):
         self.main = False
         self.function = False
         self.conditions: tuple[Condition, ...] = ()
-        self.use_conditions: tuple[Condition, ...] = ()
-        self.conditional = False
         self.consumed: set[int] = set()
 
     def read(self, tree: ast.Module) -> None:
@@ -190,30 +193,36 @@ class Reader(Values):
     def name(self, node: ast.Name) -> None:
         if node.ctx.__class__ is ast.Store:
             self.scope.bound.add(node.id)
+            self.hold(node.id, "")
 
-    def attribute(self, node: ast.Attribute) -> None:
+    def attribute(self, node: ast.Attribute, call: ast.Call | None = None) -> None:
         parts = [node.attr]
         value = node.value
         while value.__class__ is ast.Attribute:
             parts.append(value.attr)  # type: ignore[attr-defined]
             value = value.value  # type: ignore[attr-defined]
         if value.__class__ is not ast.Name:
+            self.use_of_value(value, parts[-1], call if len(parts) == 1 else None, node)
             self.visit(value)
             return
         head = value.id  # type: ignore[attr-defined]
+        parts.reverse()
+        if node.ctx.__class__ is ast.Load:
+            self.use_member(head, parts, call, node)
         if head == "self" or head == "cls":
             return
-        parts.append(head)
-        parts.reverse()
-        key = (self.scope, ".".join(parts), self.use_conditions)
-        if key not in self.uses:
-            self.uses[key] = (value.lineno, value.col_offset)
+        key = (self.scope, f"{head}.{'.'.join(parts)}", self.use_conditions)
+        known = self.uses.get(key)
+        if known is None:
+            self.uses[key] = (value.lineno, value.col_offset, self.may_not_run)
+        elif known[2] and not self.may_not_run:
+            self.uses[key] = (*known[:2], False)
 
     def attributes(self) -> tuple[Attribute, ...]:
-        found: dict[tuple[str, tuple[Condition, ...]], tuple[int, int]] = {}
+        found: dict[tuple[str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
         for attribute in self.imported_names:
-            found.setdefault((attribute.text, attribute.conditions), (attribute.line, attribute.column))
-        for (scope, text, conditions), (line, offset) in self.uses.items():
+            found.setdefault((attribute.text, attribute.conditions), (attribute.line, attribute.column, attribute.lazy))
+        for (scope, text, conditions), (line, offset, lazy) in self.uses.items():
             head, _, rest = text.partition(".")
             for dotted, extra in self.imported(head, scope):
                 if dotted.startswith("."):
@@ -221,11 +230,14 @@ class Reader(Values):
                 both = conditions if not extra else (*extra, *(c for c in conditions if c not in extra))
                 key = (f"{dotted}.{rest}", both)
                 place = (line, self.column(line, offset))
-                if key not in found or place < found[key]:
-                    found[key] = place
+                known = found.get(key)
+                if known is None:
+                    found[key] = (*place, lazy)
+                else:
+                    found[key] = (*min(place, known[:2]), lazy and known[2])
         return tuple(
-            Attribute(text, line, column, conditions)
-            for (text, conditions), (line, column) in sorted(found.items(), key=lambda item: item[1])
+            Attribute(text, line, column, conditions, lazy)
+            for (text, conditions), (line, column, lazy) in sorted(found.items(), key=lambda item: item[1][:2])
         )
 
     def bind_import(self, name: str, dotted: str, relevant: tuple[Condition, ...]) -> None:
@@ -257,7 +269,7 @@ class Reader(Values):
             if not node.level:
                 column = self.column(alias.lineno, alias.col_offset)
                 self.imported_names.append(
-                    Attribute(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions)
+                    Attribute(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions, self.may_not_run)
                 )
 
     # Conditions
@@ -324,6 +336,7 @@ class Reader(Values):
                 self.visit(handler.type)
             if handler.name:
                 self.scope.bound.add(handler.name)
+                self.hold(handler.name, "")
             self.under(handler.body, EXCEPT if covers_import else None, EXCEPT if covers_use else None)
         self.under(node.orelse, TRY if covers_import else None, TRY if covers_use else None)
         self.block(node.finalbody)
@@ -386,13 +399,25 @@ class Reader(Values):
         if node.returns is not None:
             self.need(0, node, "annotations")
             self.visit(node.returns)
-        before = self.scope, self.function, self.defining
+        before = self.scope, self.function, self.defining, self.lazy, self.me
         self.defining = (self.scope, node.name)
+        self.lazy = self.lazy or self.scope.parent is not None or node.name not in SURE_TO_RUN
+        if self.scope.is_class:
+            self.enter_method(node)
+            static = any(getattr(decorator, "id", "") == "staticmethod" for decorator in node.decorator_list)
+            first = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)][:1]
+            self.me = "" if static else "".join(first)
+        types = [
+            (argument.arg, type_)
+            for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)
+            if argument.annotation is not None and (type_ := self.annotated(argument.annotation))
+        ]
         self.scope = Scope(self.scope, False)
+        self.scope.objects.update(types)
         self.function = True
         self.parameters(arguments)
         self.block(node.body)
-        self.scope, self.function, self.defining = before
+        self.scope, self.function, self.defining, self.lazy, self.me = before
 
     def async_function(self, node) -> None:
         self.need(5, node, "async functions")
@@ -419,12 +444,12 @@ class Reader(Values):
 
     def lambda_(self, node: ast.Lambda) -> None:
         self.arguments(node.args)
-        outer, was_function = self.scope, self.function
-        self.scope = Scope(outer, False)
-        self.function = True
+        before = self.scope, self.function, self.lazy
+        self.scope = Scope(self.scope, False)
+        self.function = self.lazy = True
         self.parameters(node.args)
         self.visit(node.body)
-        self.scope, self.function = outer, was_function
+        self.scope, self.function, self.lazy = before
 
     def class_(self, node: ast.ClassDef) -> None:
         self.scope.bound.add(node.name)
@@ -434,10 +459,12 @@ class Reader(Values):
             self.visit(keyword.value)
         if getattr(node, "type_params", None):
             self.need(12, node, "type parameters")
-        outer = self.scope
-        self.scope = Scope(outer, True)
+        before = self.scope, self.inside_class, self.me
+        self.inside_class, self.me = self.enter_class(node), ""
+        self.scope = Scope(self.scope, True)
         self.block(node.body)
-        self.scope = outer
+        self.inside_class.members |= self.scope.bound
+        self.scope, self.inside_class, self.me = before
 
     def global_(self, node: ast.Global) -> None:
         # An import or assignment here binds the module's name.
@@ -449,7 +476,7 @@ class Reader(Values):
         for target in node.targets:
             if target.__class__ is ast.Name:
                 self.remember(target.id, node.value)  # type: ignore[attr-defined]
-            else:
+            elif target.__class__ is not ast.Attribute or not self.hold_own(target, self.type_of(node.value)):  # type: ignore
                 self.visit(target)
 
     def annotated_assign(self, node: ast.AnnAssign) -> None:
@@ -460,6 +487,8 @@ class Reader(Values):
             if isinstance(node.target, ast.Name):
                 self.remember(node.target.id, node.value)
                 return
+        if isinstance(node.target, ast.Attribute) and self.hold_own(node.target, self.annotated(node.annotation)):
+            return
         self.visit(node.target)
 
     def remember(self, name: str, node: ast.expr) -> None:
@@ -469,6 +498,7 @@ class Reader(Values):
         if name in scope.values and scope.values[name] != value:
             value = None
         scope.values[name] = value
+        self.hold(name, self.type_of(node))
 
     def walrus(self, node: ast.NamedExpr) -> None:
         self.need(8, node, "assignment expression")
@@ -518,7 +548,8 @@ class Reader(Values):
 
     def refer(self, kind: str, package: str, name: str, node, conditional: bool = False) -> None:
         column = self.column(node.lineno, node.col_offset)
-        reference = Reference(kind, package, name, node.lineno, column, self.conditional or conditional)
+        arguments = self.included if kind == "file" else None
+        reference = Reference(kind, package, name, node.lineno, column, self.conditional or conditional, arguments)
         self.references[reference] = None
 
     def all_references(self) -> tuple[Reference, ...]:
@@ -607,9 +638,18 @@ class Reader(Values):
                 self.refer("package", told if named is not None else f"{told}_moveit_config", "", node)
         elif node.func.__class__ is ast.Name:
             self.calls.append((self.scope, node.func.id, node, self.conditional))  # type: ignore[attr-defined]
-        self.visit(node.func)
-        for argument in node.args:
-            self.visit(argument)
+        self.use_call(node)
+        if node.func.__class__ is ast.Attribute:
+            self.attribute(node.func, node)  # type: ignore[arg-type]
+        else:
+            self.visit(node.func)
+        if function == "IncludeLaunchDescription" and node.args:
+            self.included = _launch_arguments(keywords.get("launch_arguments"))
+            self.visit(node.args[0])
+            self.included = None
+            self.block(node.args[1:])
+        else:
+            self.block(node.args)
         for keyword in node.keywords:
             self.visit(keyword.value)
         self.conditional = before
@@ -683,6 +723,25 @@ class Reader(Values):
         package, name = words[0], words[1]
         if package and name and PACKAGE_NAME.fullmatch(package):
             self.refer(kind, package, name, node)
+
+
+def _launch_arguments(node: ast.expr | None) -> tuple[str, ...] | None:
+    """Names of the arguments that `launch_arguments=` of an include gives; None where they cannot all be told."""
+    if node is None:
+        return ()
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
+        node = node.func.value
+    if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "dict" and not node.args:
+        names: list[object] = [keyword.arg for keyword in node.keywords]
+    elif isinstance(node, ast.Dict):
+        names = [getattr(key, "value", None) for key in node.keys]
+    elif isinstance(node, (ast.List, ast.Tuple)):
+        names = [getattr(pair.elts[0], "value", None) if isinstance(pair, ast.Tuple) and pair.elts else None
+                 for pair in node.elts]  # fmt: skip
+    else:
+        return None
+    found = tuple(name for name in names if isinstance(name, str))
+    return found if len(found) == len(names) else None
 
 
 def _last_name(node) -> str:

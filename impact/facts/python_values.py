@@ -59,7 +59,7 @@ class PackagePath(NamedTuple):
 class Scope:
     """Names of a module, class or function: imported, otherwise bound, and bound to a known value."""
 
-    __slots__ = ("bound", "imports", "is_class", "module", "parameters", "parent", "values")
+    __slots__ = ("bound", "imports", "is_class", "module", "objects", "parameters", "parent", "values")
 
     def __init__(self, parent: "Scope | None", is_class: bool) -> None:
         # A class body is no scope for the functions in it.
@@ -70,6 +70,8 @@ class Scope:
         self.imports: dict[str, list[tuple[str, tuple[Condition, ...]]]] = {}
         self.bound: set[str] = set()
         self.values: dict[str, object] = {}
+        # Types of what variables hold, see python_objects.py.
+        self.objects: dict[str, str] = {}
         self.parameters: list[str] = []
         self.module: Scope = self if parent is None else parent.module
 

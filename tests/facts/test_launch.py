@@ -60,7 +60,7 @@ def test_places_are_those_of_the_value():
     text += '  <node type="b" pkg="é"/><node type="b" pkg="a"/>\n'
     references = extract(text.encode(), "launch_xml").references
     assert references == (
-        Reference("file", "nav", "a.launch", 3, 13, False),
+        Reference("file", "nav", "a.launch", 3, 13, False, ()),
         Reference("executable", "a", "b", 4, 47, False),
     )
 
