@@ -95,13 +95,14 @@ class Offers:
 
 
 class Offer:
-    """One package on one target. stored: the version that stands for the target's; exact: it is the same."""
+    """One package on one target. stored: the version that stands for the target's; exact: it is the same, read at its
+    tag."""
 
     def __init__(self, offers: Offers, package: str, version: str, line: Line, place: int):
         self._offers, self.package, self.version = offers, package, version
         self.line, self.place = line, place
         self.stored = line.versions[place]
-        self.exact = self.stored == version
+        self.exact = self.stored == version and self.stored not in line.approximate
         self._known: dict[tuple[str, str], Offered | None] = {}
 
     def get(self, side: str, name: str) -> Offered | None:
@@ -139,11 +140,11 @@ class Offer:
         else:
             state = "removed" if past else "absent"
         sure = all(t.sure >= 1 for event in deciding for t in event.told)
-        if self.stored in self.line.approximate or any(versions[e.place] in self.line.approximate for e in deciding):
+        if any(versions[event.place] in self.line.approximate for event in deciding):
             sure = False
-        if not self.exact:
+        if not self.exact and future and future[0].place == self.place + 1:
             # Which of the versions between the two stored ones made the next change is not known.
-            sure = sure and self.place + 1 < len(versions) and not any(e.place == self.place + 1 for e in future)
+            sure = False
         first = versions[past[-1].place] if past else versions[future[0].place] if state == "absent" else ""
         coming = future[0] if future and there else None
         instead = next((t.instead for t in told if t.instead), "")
