@@ -30,11 +30,12 @@ Not reported
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from ....corpus.told import counted
 from ...model.build import At
+from ...model.build_order import build_order
 from ...model.view import View
 from ..rule import Hit, rule
 
@@ -60,9 +61,11 @@ def stale_binary(view: View, installed: Installed, shelf: Shelf):
         for missing in _missing(view, binary, installed, shelf):
             askers.setdefault(missing, {}).setdefault(binary.package, []).append(binary)
     stale = {package for by_package in askers.values() for package in by_package if package}
-    order = {package: place for place, package in enumerate(_in_build_order(view, stale))}
+    order = {package: place for place, package in enumerate(build_order(view))} if len(stale) > 1 else {}
+    # What is not in the workspace comes first.
+    ordered = sorted(stale, key=lambda package: (order.get(package, -1), package))
     for missing, by_package in askers.items():
-        packages = sorted((package for package in by_package if package), key=order.__getitem__)
+        packages = [package for package in ordered if package in by_package]
         for package, binaries in by_package.items():
             at = _place(view, package, binaries, installed)
             yield Hit(at, missing.subject, _message(missing, binaries, shelf), _help(missing, packages, shelf), package)
@@ -111,18 +114,3 @@ def _place(view: View, package: str, binaries: list[Binary], installed: Installe
     if known is not None:
         return At(known.digest.manifest_path, 0)
     return At(f"{installed.label}/{min(binary.path for binary in binaries)}", 0)
-
-
-def _in_build_order(view: View, packages: Iterable[str]) -> list[str]:
-    """Packages, those first that others of them are built with; what is not in the workspace comes first."""
-    left = sorted(packages)
-    closures = {
-        name: view.closure(view.workspace.packages[name]) if name in view.workspace.packages else frozenset()
-        for name in left
-    }
-    ordered: list[str] = []
-    while left:
-        free = next((name for name in left if not any(o in closures[name] for o in left if o != name)), left[0])
-        ordered.append(free)
-        left.remove(free)
-    return ordered
