@@ -99,36 +99,52 @@ def run(
 ) -> Checked:
     """check(), with the configuration and the tree that it was made with. Raises as check() does."""
     started = time.perf_counter()
+    with open_workspace(path, options, progress, lambda config: chosen_rules(options, config)) as opened:
+        return judged(path, options, opened, base_tree=base_tree, started=started)
+
+
+def judged(
+    path: str | os.PathLike[str],
+    options: Options,
+    opened: Opened,
+    *,
+    base_tree: Tree | None = None,
+    started: float | None = None,
+) -> Checked:
+    """The check of a workspace that is read already. Raises as check() does.
+
+    base_tree: as for check(). started: when the work began, by time.perf_counter(); now when None.
+    """
+    started = time.perf_counter() if started is None else started
     rules = all_rules()
-    with open_workspace(path, options, progress, lambda config: _chosen(rules, options, config)) as opened:
-        tree, store, gathered, workspace, targets, views, config, installed, shelves = opened
-        chosen = _chosen(rules, options, config)
-        settings = _settings(rules, config)
-        sources = Sources(reader(tree))
-        crashed: Crashes = {}
-        reached: Impact | None = None
-        notes: list[str] = []
-        if options.base or base_tree is not None:
-            from . import base as bases
+    tree, store, gathered, workspace, targets, views, config, installed, shelves = opened
+    chosen = chosen_rules(options, config)
+    settings = _settings(rules, config)
+    sources = Sources(reader(tree))
+    crashed: Crashes = {}
+    reached: Impact | None = None
+    notes: list[str] = []
+    if options.base or base_tree is not None:
+        from . import base as bases
 
-            if base_tree is None:
-                base_tree, notes = bases.base_tree(tree, options.base)
-            before = bases.at_base(base_tree, opened, jobs=options.jobs)
-            old = judge(before, chosen, settings, Sources(reader(base_tree)), crashed, jobs=options.jobs)
-            now = judge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
-            found: Sequence[Finding] = after.marked_new(now.kept, old.kept)
-            reached = _reached(workspace, before.workspace, crashed)
-        else:
-            now = judge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
-            found = now.kept
-        if any(finding.fix for finding in found):
-            from . import fix
+        if base_tree is None:
+            base_tree, notes = bases.base_tree(tree, options.base)
+        before = bases.at_base(base_tree, opened, jobs=options.jobs)
+        old = judge(before, chosen, settings, Sources(reader(base_tree)), crashed, jobs=options.jobs)
+        now = judge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
+        found: Sequence[Finding] = after.marked_new(now.kept, old.kept)
+        reached = _reached(workspace, before.workspace, crashed)
+    else:
+        now = judge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
+        found = now.kept
+    if any(finding.fix for finding in found):
+        from . import fix
 
-            found = fix.made(found, reader(tree))
-        known: Sequence[Finding] = ()
-        if options.baseline:
-            found, known = after.without_known(found, after.known_from(options.baseline))
-        notes += store.notes
+        found = fix.made(found, reader(tree))
+    known: Sequence[Finding] = ()
+    if options.baseline:
+        found, known = after.without_known(found, after.known_from(options.baseline))
+    notes += store.notes
     failures = [] if workspace.packages else [nothing_analysed(path, opened)]
     failures += [f"the rule {rule} failed{on(crashed[rule, why])}: {why}" for rule, why in crashed]
     report = Report(
@@ -208,6 +224,11 @@ class Opened(NamedTuple):
     config: Config
     installed: Installed | None = None
     shelves: Sequence[Shelf] = ()
+
+    def one_by_one(self) -> Iterator[Opened]:
+        """The same workspace on each of its targets alone."""
+        for chosen, view in zip(self.targets, self.views, strict=True):
+            yield self._replace(targets=[chosen], views=[view])
 
 
 @contextmanager
@@ -324,8 +345,12 @@ def _alone(names: Container[str], shelves: Iterable[Shelf]) -> Iterator[Reported
             yield ReportedTarget(shelf.target, "", "", shelf.platform, "where --install lies", (note,))
 
 
-def _chosen(rules: Mapping[str, Rule], options: Options, config: Config) -> dict[str, Rule]:
-    """The rules to run. What is asked for on the command line goes over the configuration, list by list."""
+def chosen_rules(options: Options, config: Config) -> dict[str, Rule]:
+    """The rules to run. What is asked for on the command line goes over the configuration, list by list.
+
+    Raises SettingsError for a name that is neither a rule nor a family.
+    """
+    rules = all_rules()
     select, ignore = options.select or config.select, options.ignore or config.ignore
     try:
         return after.chosen(rules, select=select, ignore=ignore, preview=options.preview)

@@ -24,6 +24,11 @@ _TOKEN = re.compile(r"`[^`]*`|[,;:](?=\s|$)|[^\s,;:`]+(?:[,;:]+[^\s,;:`]+)*|\S")
 _LONGEST_PART = 60
 
 
+def rank(severity: str) -> int:
+    """A severity as a number, the graver the greater; 0 for one that is not known."""
+    return _RANK.get(severity, 0)
+
+
 class Suppression(NamedTuple):
     """What allow comments did: findings left, findings silenced, and (path, line, rule) of comments without effect."""
 
@@ -121,7 +126,7 @@ def _finding(
 
 
 def _sort_key(finding: Finding) -> tuple:
-    return (finding.path, finding.line, finding.column, finding.rule, finding.subject, -_RANK.get(finding.severity, 0),
+    return (finding.path, finding.line, finding.column, finding.rule, finding.subject, -rank(finding.severity),
             finding.message)  # fmt: skip
 
 
@@ -220,7 +225,7 @@ def marked_new(findings: Iterable[Finding], base: Iterable[Finding]) -> list[Fin
 
 
 def _covers(old: Finding, finding: Finding) -> bool:
-    return _RANK.get(old.severity, 0) >= _RANK.get(finding.severity, 0) and set(finding.targets) <= set(old.targets)
+    return rank(old.severity) >= rank(finding.severity) and set(finding.targets) <= set(old.targets)
 
 
 def chosen(
@@ -459,7 +464,7 @@ def fails(findings: Iterable[Finding], fail_on: str = "error") -> bool:
     if fail_on == "never":
         return False
     least = _RANK[fail_on]
-    return any(finding.new and _RANK.get(finding.severity, 0) >= least for finding in findings)
+    return any(finding.new and rank(finding.severity) >= least for finding in findings)
 
 
 def printable(text: str) -> str:

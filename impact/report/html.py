@@ -50,7 +50,7 @@ def _data(report: Report) -> dict[str, Any]:
             if rule.documentation
         },
         "impact": _impact(report),
-        "findings": [_finding(report, finding, names) for finding in report.findings],
+        "findings": [as_row(report, finding, names) for finding in report.findings],
     }
 
 
@@ -70,7 +70,7 @@ def _impact(report: Report) -> dict[str, Any] | None:
     return {"summary": summary(report.impact), "rows": rows, "left": max(0, len(report.impact.effects) - len(rows))}
 
 
-def _finding(report: Report, finding: Finding, names: list[str]) -> list[Any]:
+def as_row(report: Report, finding: Finding, names: list[str]) -> list[Any]:
     """Rule, severity, package, path, line, column, subject, target numbers, message, help, new, excerpt."""
     code = None
     if finding.line:

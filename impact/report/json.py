@@ -24,7 +24,7 @@ def render(report: Report) -> str:
             | ({"notes": list(target.notes)} if target.notes else {})
             for target in report.targets
         ],
-        "findings": [_finding(finding) for finding in report.findings],
+        "findings": [as_data(finding) for finding in report.findings],
         "coverage": {
             "packages": report.coverage.packages,
             "files": report.coverage.files,
@@ -44,6 +44,11 @@ def render(report: Report) -> str:
         from ..flow.impact_report import compact
 
         data["impact"] = compact(report.impact)
+    return dumped(data)
+
+
+def dumped(data: dict[str, Any]) -> str:
+    """Data as JSON text that ends in a line end, whatever bytes its texts hold."""
     return json.dumps(_printable(data), ensure_ascii=False, indent=1) + "\n"
 
 
@@ -57,7 +62,8 @@ def schema() -> str:
     return Path(__file__).with_name("findings.schema.json").read_text(encoding="utf-8")
 
 
-def _finding(finding: Finding) -> dict[str, Any]:
+def as_data(finding: Finding) -> dict[str, Any]:
+    """A finding as the schema has it."""
     return {
         "rule": finding.rule,
         "severity": finding.severity,

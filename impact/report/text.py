@@ -96,7 +96,7 @@ def _targets(report: Report, style: Style) -> list[str]:
         by_reason.setdefault(target.reason, []).append(target)
     groups = []
     for reason, targets in by_reason.items():
-        names = ", ".join(_described(target) for target in targets)
+        names = ", ".join(described(target) for target in targets)
         groups.append(f"{names}: {one_line(reason)}" if reason else names)
     base = f" (new against {one_line(report.base)})" if report.base else ""
     lines = [painted(style, "bold", "targets ") + "; ".join(groups) + base]
@@ -105,7 +105,8 @@ def _targets(report: Report, style: Style) -> list[str]:
     return lines
 
 
-def _described(target: ReportedTarget) -> str:
+def described(target: ReportedTarget) -> str:
+    """A target's name, with what is behind it."""
     parts = [target.distro if target.distro != target.name else "", target.date, target.platform]
     detail = ", ".join(part for part in parts if part)
     return one_line(f"{target.name} ({detail})" if detail else target.name)
@@ -130,7 +131,7 @@ def _packages(report: Report, findings: list[Finding], style: Style) -> list[str
             key = (finding.rule, finding.message)
             if shown[key] < style.excerpts:
                 shown[key] += 1
-                lines += ["", *_finding(report, finding, style)]
+                lines += ["", *finding_lines(report, finding, style)]
             else:
                 more.setdefault((*key, finding.severity, finding.targets), []).append(finding)
         for group in more.values():
@@ -147,7 +148,8 @@ def _head(report: Report, finding: Finding, style: Style) -> str:
     return f"{label}{one_line(where)}: {one_line(finding.message)}"
 
 
-def _finding(report: Report, finding: Finding, style: Style) -> list[str]:
+def finding_lines(report: Report, finding: Finding, style: Style) -> list[str]:
+    """A finding with its place, its code and its help."""
     place = one_line(finding.path)
     if finding.line:
         place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")

@@ -1,0 +1,41 @@
+// A finding as html.py writes it: its fields, and how its place, its lines of code and its help are shown.
+const [RULE, SEVERITY, PACKAGE, PATH, LINE, COLUMN, SUBJECT, TARGETS, MESSAGE, HELP, NEW, CODE] = Array(12).keys();
+const SEVERITIES = ["error", "warning", "note"];
+
+const placeOf = (finding) => finding[PATH] + (finding[LINE] ? `:${finding[LINE]}` + (finding[COLUMN] ? `:${finding[COLUMN]}` : "") : "");
+
+// Place and code, which several findings of one cause have each for itself.
+function whereOf(finding) {
+  const place = make("div", { class: "place" }, placeOf(finding));
+  if (!finding[CODE]) return [place];
+  const [first, lines, start, width] = finding[CODE];
+  const block = make("pre", { tabindex: "0", "aria-label": `lines of ${finding[PATH]}` });
+  lines.forEach((line, index) => {
+    const here = first + index === finding[LINE];
+    const row = make("div", here ? { class: "here" } : null, make("i", { "aria-hidden": "true" }, String(first + index)));
+    if (here && width) {
+      // Offsets count characters, as Python does; JavaScript counts UTF-16 units.
+      const signs = Array.from(line);
+      row.append(signs.slice(0, start).join(""), make("mark", null, signs.slice(start, start + width).join("")), signs.slice(start + width).join(""));
+    } else row.append(line);
+    block.append(row);
+  });
+  return [place, block];
+}
+
+const helpOf = (finding) => (finding[HELP] ? [make("p", { class: "help" }, make("b", null, "help: "), ...withCode(finding[HELP]))] : []);
+
+const wordsOf = (finding) => [RULE, PACKAGE, PATH, SUBJECT, MESSAGE, HELP].map((index) => finding[index]).join("\n").toLowerCase();
+
+function targetOf(target, reason) {
+  const detail = [target.distro === target.name ? "" : target.distro, target.date, target.platform];
+  const item = make("li", null, make("b", null, target.name), " ", make("span", null, detail.filter(Boolean).join(", ")));
+  for (const note of [reason, ...target.notes]) if (note) item.append(make("br"), make("span", null, note));
+  return item;
+}
+
+// The choices of a select: all, then pairs of value and text.
+function fill(id, all, entries) {
+  at(id).append(make("option", { value: "" }, all));
+  for (const [value, text] of entries) at(id).append(make("option", { value }, text));
+}
