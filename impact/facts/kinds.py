@@ -37,7 +37,7 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "action": ("interface", "Interface", 2),
     "idl": ("interface", "Interface", 2),
     "cpp": ("cpp", "CppFile", 2),
-    "python": ("python", "PythonFile", 2),
+    "python": ("python", "PythonFile", 3),
     "launch_xml": ("launch", "ReferenceFile", 5),
     "launch_yaml": ("launch", "ReferenceFile", 5),
     "xacro": ("launch", "ReferenceFile", 5),

@@ -78,7 +78,7 @@ def find(text: str) -> tuple[tuple[Problem, ...], str]:
         if match.group(2):
             replace(match.start(2), match.end(2), "")
     for match in _EXCEPT.finditer(visible):
-        hits.append((match.start(), "`except X, e`"))
+        hits.append((match.start(), f"`{' '.join(match.group().rstrip(': ').split())}`"))
         replace(match.start(1), match.end(1), "")
     for match in _EXEC.finditer(visible):
         hits.append((match.start(1), "exec statement"))

@@ -44,6 +44,15 @@ class Found(msgspec.Struct, frozen=True, array_like=True, gc=False):
     via: str = ""
 
 
+class Defined(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A preprocessor macro that CMake defines (-DNAME=value) for one target, or, where that is empty, for all."""
+
+    name: str
+    value: str
+    target: str
+    conditions: tuple[Condition, ...] = ()
+
+
 class Link(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One item given to a target. how: `link` (target_link_libraries), `ament` (ament_target_dependencies),
     `include` (target_include_directories), `order` (add_dependencies), `interfaces` (rosidl_target_interfaces).
@@ -164,7 +173,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     place. standards: every one, with its place and conditions. standard_default_only: it is only set where the user or
     a toolchain has not chosen one. standard_by_flag: by -std= flags alone, so that CMake adds what linked targets ask
     for only where the compiler's default is lower. project_by_variable: its CMakeLists.txt calls targets after
-    ${PROJECT_NAME} rather than by the project's name. message_files: (path, at) of add_message_files and friends.
+    ${PROJECT_NAME} rather than by the project's name. macros: what is given to the compiler with -D. message_files: (path, at) of add_message_files and friends.
     unresolved: (place, reason) of what could not be told. files: the CMake files read, relative to the root."""
 
     project: str = ""
@@ -187,6 +196,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     message_files: tuple[tuple[str, At], ...] = ()
     project_by_variable: bool = False
     standards: tuple[tuple[int, At, tuple[Condition, ...]], ...] = ()
+    macros: tuple[Defined, ...] = ()
 
 
 class Declared(msgspec.Struct, frozen=True, gc=False):

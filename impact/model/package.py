@@ -23,6 +23,7 @@ from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, first_places, place_in, places_of_use, python_text
 from ..targets.fields import Fields
 from .build import At, Build
+from .macros import Macros
 from .members import Interface as Meant
 from .members import Scope, interface_named, interfaces_imported, interfaces_included
 from .members_cpp import CppUses, mentions
@@ -266,6 +267,7 @@ class _Join:
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
         self._scanned: dict[str, Scan] = {}
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
+        self.macros = Macros((), ())
 
     def inside(self, path: str) -> str:
         return path[len(self.prefix) :]
@@ -305,6 +307,7 @@ class _Join:
             else:
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
+        self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined})
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
@@ -401,7 +404,8 @@ class _Join:
                     reached[at] = (merged, known[1] or public, known[2] | set(names), kept)
                 for to, include in self.resolved.get(at, ()):
                     if to is not None:
-                        stack.append((to, under + include.conditions if include.conditions else under))
+                        around = self.macros.asked(include.conditions, names)
+                        stack.append((to, under + around if around else under))
 
         for source, targets in roots.items():
             inside = role_of_folder(self.inside(source))
@@ -447,7 +451,7 @@ class _Join:
                 if to is None:
                     includes.append(
                         IncludeUse(include.path, At(path, include.line, include.column), role, public,
-                                   conditions + include.conditions, targets)
+                                   conditions + self.macros.asked(include.conditions, targets), targets)
                     )  # fmt: skip
             reach = None
             for name in facts.qualified:
@@ -455,14 +459,14 @@ class _Join:
                 wanted = watched.meant(text)
                 if wanted:
                     names.append(NameUse(wanted, At(path, name.line, name.column), role, public, "cpp",
-                                         conditions + name.conditions, targets))  # fmt: skip
+                                         conditions + self.macros.asked(name.conditions, targets),
+                                         targets))  # fmt: skip
                 headers = watched.headers_of.get(text)
                 if headers is not None:
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in headers) and not self.declares(path, text):
-                        needed.append(
-                            NeededHeader(text, At(path, name.line, name.column), role, conditions + name.conditions)
-                        )
+                        around = conditions + self.macros.asked(name.conditions, targets)
+                        needed.append(NeededHeader(text, At(path, name.line, name.column), role, around))
             if facts.words:
                 words = facts.words.split(" ")
                 for word in sorted(watched.words.intersection(words) - defined):
@@ -480,7 +484,7 @@ class _Join:
             facts = self.cpp.get(path)
             for use in facts.uses if facts is not None else ():
                 yield NameUse(use.label, At(path, use.line, use.column), role, public, "cpp",
-                              conditions + use.conditions, targets,
+                              conditions + self.macros.asked(use.conditions, targets), targets,
                               f"<{use.types}>".join(_OPEN_TYPES.split(use.label)))  # fmt: skip
 
     def python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
@@ -506,7 +510,7 @@ class _Join:
             return
         short = {name for name in changing if len(name) < 4}
         scopes: dict[frozenset[Meant], Scope] = {}
-        for path, (role, _, _, conditions) in roles.items():
+        for path, (role, _, targets, conditions) in roles.items():
             facts = self.cpp.get(path)
             if facts is None:
                 continue
@@ -534,7 +538,7 @@ class _Join:
             seen = set()
             for found in (*uses.found(), *(() if unknown else uses.untold())):
                 line, column = scanned.place(found.offset)
-                around = scanned.under(found.offset) or ()
+                around = self.macros.asked(scanned.under(found.offset) or (), targets)
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
@@ -585,6 +589,7 @@ class _Join:
     def bare(self, word, path, role, public, targets, conditions) -> NameUse:
         """Where a bare word stands first, outside comments, with the preprocessor conditions around it."""
         line, column, around = place_of_word(self.read(path), word)
+        around = self.macros.asked(around, targets)
         return NameUse(word, At(path, line, column), role, public, "cpp", conditions + around, targets)
 
     def reach(self, path: str) -> set[str]:

@@ -24,10 +24,10 @@ READ = {
     ("ros-ros-comm", "1.15.15"): (
         32,
         """
-        note    python-version      topic_tools  tools/topic_tools/scripts/demux_add     `except X, e`
-        note    python-version      topic_tools  tools/topic_tools/scripts/demux_delete  `except X, e`
-        note    python-version      topic_tools  tools/topic_tools/scripts/demux_list    `except X, e`
-        note    python-version      topic_tools  tools/topic_tools/scripts/demux_select  `except X, e`
+        note    python-version topic_tools tools/topic_tools/scripts/demux_add  `except rospy.ServiceException, e`
+        note    python-version topic_tools tools/topic_tools/scripts/demux_delete  `except rospy.ServiceException, e`
+        note    python-version topic_tools tools/topic_tools/scripts/demux_list  `except rospy.ServiceException, e`
+        note    python-version topic_tools tools/topic_tools/scripts/demux_select  `except rospy.ServiceException, e`
         warning undeclared-package  rospy        clients/rospy/src/rospy/logger_level_service_caller.py  rosnode
         warning undeclared-package  rospy        clients/rospy/src/rospy/logger_level_service_caller.py  rosservice
         warning undeclared-package  topic_tools  tools/topic_tools/scripts/relay_field   rostopic

@@ -13,7 +13,7 @@ from msgspec import structs
 
 from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
-from ..build import At, Build, Declared, Exported, Found, GeneratedInterfaces, Install, Use
+from ..build import At, Build, Declared, Defined, Exported, Found, GeneratedInterfaces, Install, Use
 from . import conditions as tests
 from .blocks import Block, Call, blocks
 from .drafts import TargetDraft, Targets
@@ -114,6 +114,7 @@ class Interpreter:
         self.project = ""
         self.minimum: tuple[str, At] | None = None
         self.standards: list[tuple[int, At, bool, bool, tuple[Condition, ...]]] = []
+        self.macros: dict[Defined, None] = {}
         self.found: dict[Found, None] = {}
         self.targets = Targets()
         self.installs: dict[Install, None] = {}
@@ -202,6 +203,7 @@ class Interpreter:
             standard_default_only=default_only,
             standard_by_flag=by_flag,
             standards=tuple((number, at, conditions) for number, at, _, _, conditions in self.standards),
+            macros=tuple(self.macros),
             found=tuple(self.found),
             targets=self.targets.finish(),
             installs=tuple(self.installs),

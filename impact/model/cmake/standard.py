@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from .macros import note_flag_macros
 from .values import Word
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ def note_variable(run: Interpreter, name: str, text: str, item: Word) -> None:
         if text.isdigit() and len(text) == 2:
             run.add_standard(int(text), item.at, is_default(run), False)
     elif name.startswith("CMAKE_CXX_FLAGS"):
+        note_flag_macros(run, text)
         number = flag_standard(text)
         if number:
             run.add_standard(number, item.at, is_default(run), True)

@@ -9,6 +9,7 @@ from .blocks import Call
 from .drafts import TargetDraft
 from .genex import reduced, rejoin
 from .interpreter import Interpreter, handles
+from .macros import note_flag, note_macro
 from .standard import feature_standard, flag_standard, note_options
 from .values import Value, Word, following, position, split_words, word
 
@@ -212,6 +213,7 @@ def target_compile_definitions(run: Interpreter, call: Call, args: list[Word]) -
         for item in split_words(args[1:]):
             if item not in _VISIBILITY:
                 draft.definitions[item[2:] if item.startswith("-D") else str(item)] = None
+                note_macro(run, item, str(args[0]))
 
 
 @handles("target_compile_options", "target_compile_features")
@@ -231,6 +233,15 @@ def target_compile_options(run: Interpreter, call: Call, args: list[Word]) -> No
 def add_compile_options(run: Interpreter, call: Call, args: list[Word]) -> None:
     """add_compile_options() and add_definitions()."""
     note_options(run, args)
+    for item in split_words(args):
+        note_flag(run, item)
+
+
+@handles("add_compile_definitions")
+def add_compile_definitions(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """add_compile_definitions()."""
+    for item in split_words(args):
+        note_macro(run, item, "")
 
 
 @handles("set_target_properties")

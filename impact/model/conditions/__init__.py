@@ -18,6 +18,7 @@ __all__ = ["Environment", "all_hold", "holds"]
 _LANGUAGES = {
     "cmake": cmake.evaluate,
     "cpp": preprocessor.evaluate,
+    "macro": cmake.evaluate,
     "manifest": manifest.evaluate,
     "python": python.evaluate,
 }

@@ -11,8 +11,8 @@ Why it breaks
 
 Severity
     error for code that is built or run, tests of ROS 2 included; warning in tests of ROS 1 and in Python's, under CMake
-    conditions that are not known, and for the first call of a library that only the newest distro refuses, where that
-    is at most two long-term distros ahead; note in examples, under an `#if` that is not known, and for the rest.
+    conditions that are not known, and for the first call of a library, in tests too, that only the newest distro
+    refuses, where that is at most two long-term distros ahead; note in examples, under an `#if` that is not known, and for the rest.
 
 Example
     auto timeout = rclcpp::Duration(0.5);       // Humble's Duration takes no floating point number
@@ -68,7 +68,7 @@ def changed_signature(view: View):
             shown = use.shown or use.text
             certain = use.language == "cpp" and view.certain(use.conditions)
             if later is not None:
-                loud = view.horizon_is_near and certain and use.role == "build" and later.package not in warned
+                loud = view.horizon_is_near and certain and use.role != "aside" and later.package not in warned
                 if loud:
                     warned.add(later.package)
                 yield Hit(
@@ -92,7 +92,7 @@ def changed_signature(view: View):
 
 
 def _how_bad(view: View, use: NameUse, certain: bool) -> str:
-    if use.role == "aside" or (not certain and any(c.language == "cpp" for c in use.conditions)):
+    if use.role == "aside" or (not certain and any(c.language in ("cpp", "macro") for c in use.conditions)):
         return "note"  # an #if around it most likely tells the versions apart
     return "error" if certain and view.built(use.role) else "warning"
 

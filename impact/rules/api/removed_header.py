@@ -10,9 +10,10 @@ Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
-    error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for what only the
-    newest distro lacks, and for interfaces that go when a dated target's distro is updated; note for examples, for
-    installed headers that the package does not compile itself, and under conditions that are not known.
+    error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for the first
+    include of each header that only the newest distro lacks, and for interfaces that go when a dated target's distro is
+    updated; note for examples, for installed headers that the package does not compile itself, and under conditions
+    that are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -25,7 +26,12 @@ Not reported
     ROS 1 names in a package that also includes ROS 1 headers, as bridges do.
 """
 
+from collections.abc import Iterator
+
+from ...model.package import IncludeUse, is_header
 from ...model.view import View
+from ...model.workspace import Package
+from ...targets.target import Change
 from ..rule import Hit, rule
 from .moved_header import respelt
 
@@ -41,7 +47,7 @@ def removed_header(view: View):
     quiet: set[str] = set()  # paths of which nothing can be said, whoever includes them
     for package in view:
         dual = view.target.ros == 2 and any(i.path.startswith("ros/") for i in package.digest.includes)
-        coming = set()
+        coming: list[tuple[IncludeUse, Change, bool]] = []
         for include in package.digest.includes:
             path = include.path
             if path in quiet or not view.active(include.conditions):
@@ -88,16 +94,7 @@ def removed_header(view: View):
                 continue
             change = view.later.get(path)
             if change is not None and change.kind.startswith("header") and view.later_active(include.conditions):
-                yield Hit(
-                    include.at,
-                    path,
-                    f"`{path}` is there, and gone in {change.package} {change.version} of {view.horizon}",
-                    f"include `{change.new}`" if change.new else "",
-                    package.name,
-                    severity="warning" if severity == "error" and change.package not in coming else "note",
-                    fix=respelt(view, package, include, change),
-                )
-                coming.add(change.package)
+                coming.append((include, change, severity == "error"))
                 continue
             lost = view.lost_header(path)
             if lost is not None:
@@ -118,3 +115,26 @@ def removed_header(view: View):
                 quiet.add(path)
             if wrong and not dual:
                 yield Hit(include.at, path, wrong.message, wrong.help, package.name, severity=severity)
+        yield from _what_is_coming(view, package, coming)
+
+
+def _what_is_coming(view: View, package: Package, coming: list[tuple[IncludeUse, Change, bool]]) -> Iterator[Hit]:
+    """Of each header the first place loudly, one in a header before those in sources; the rest as notes."""
+    first: dict[str, IncludeUse] = {}
+    for include, _, loud in coming:
+        if loud and (include.path not in first or _rank(include) < _rank(first[include.path])):
+            first[include.path] = include
+    for include, change, _ in coming:
+        yield Hit(
+            include.at,
+            include.path,
+            f"`{include.path}` is there, and gone in {change.package} {change.version} of {view.horizon}",
+            f"include `{change.new}`" if change.new else "",
+            package.name,
+            severity="warning" if first.get(include.path) is include else "note",
+            fix=respelt(view, package, include, change),
+        )
+
+
+def _rank(include: IncludeUse) -> tuple[bool, str, int]:
+    return not is_header(include.at.path), include.at.path, include.at.line

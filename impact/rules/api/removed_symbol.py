@@ -20,12 +20,14 @@ Use instead
     cv::imread(path, cv::IMREAD_ANYDEPTH)       // there since OpenCV 3
 
 Not reported
-    Code that a version test excludes on the target; names that a header which the file includes brings back
-    (`cv_bridge` brings OpenCV's C constants); names that the package defines itself.
+    Code that a version test excludes on the target, or a `try` whose except catches the missing name; names that a
+    header which the file includes brings back (`cv_bridge` brings OpenCV's C constants); names that the package defines
+    itself.
 """
 
 from collections.abc import Iterator
 
+from ...facts.condition import Condition
 from ...model.package import NameUse, is_header
 from ...model.view import View
 from ...targets.changes import excuses, removed_in
@@ -38,6 +40,8 @@ from ..rule import Hit, rule
 _KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
 
 
+# What stands in a `try` whose except catches a missing name, or in that except, is for both versions.
+_TRIED = frozenset({Condition("python", "try"), Condition("python", "try", True)})
 # Namespaces of libraries whose names are in the table without them.
 _ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
 
@@ -90,6 +94,7 @@ def removed_symbol(view: View):
             if (
                 change is None
                 or (change.new and use.text.endswith(change.new))
+                or (use.language == "python" and _TRIED.intersection(use.conditions))
                 or not view.active(use.conditions)
                 or not view.concerned(package, change, use.at.path)
             ):
