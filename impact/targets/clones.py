@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -23,6 +23,16 @@ class VersionError(Exception):
     """A version that cannot be read from the clones; the message says why and what to do."""
 
 
+class Release(NamedTuple):
+    """A version that a distro has or had. urls: of its sources, those known. superseded: it has a newer one now."""
+
+    distro: str
+    version: str
+    urls: tuple[str, ...]
+    branch: str
+    superseded: bool = False
+
+
 class Version(NamedTuple):
     """A repository state that stands for a version. version: as released, empty where only a revision was asked for.
     approximate: there is no tag, so a branch stands for it."""
@@ -31,6 +41,9 @@ class Version(NamedTuple):
     revision: str
     version: str = ""
     approximate: bool = False
+
+
+_BLOOM = re.compile(r"release/([^/]+)/([^/]+)/([^/-]+)(?:-([^/]+))?")
 
 
 class Clone:
@@ -56,18 +69,37 @@ class Clone:
         return open_repository(self.place)
 
     def tag(self, version: str, package: str = "", distro: str = "") -> str | None:
-        """The ref of the tag of a version: as developers name them, else as bloom does in release repositories."""
+        """The ref of the tag of a version: as developers name them, else as bloom does in release repositories. Of the
+        latter one that holds the whole repository counts more than one that holds the package alone."""
         found = tag_of(self.tags, version, self.name.rpartition("/")[2])
         if found is not None:
             return found
-        ends = re.compile(rf"release/{distro or '[^/]+'}/{re.escape(package) or '[^/]+'}/{re.escape(version)}(?:-\d+)?")
-        return next((self.tags[name] for name in sorted(self.tags, reverse=True) if ends.fullmatch(name)), None)
+        released = self.released.get((package, version), {})
+        alone = released.get(distro) if distro else next(iter(released.values()), None)
+        return None if alone is None else self.tags.get(f"upstream/{version}", alone)
+
+    @cached_property
+    def released(self) -> dict[tuple[str, str], dict[str, str]]:
+        """Of a release repository of bloom (`release/humble/rclcpp/16.0.11-1`): package and version to distro to ref,
+        that of the last increment."""
+        found: dict[tuple[str, str], dict[str, tuple[tuple[int, ...], str]]] = {}
+        for name, ref in self.tags.items():
+            told = _BLOOM.fullmatch(name)
+            if told is not None:
+                distro, package, version, increment = told.groups()
+                each = found.setdefault((package, version), {})
+                each[distro] = max(each.get(distro, ((), "")), (parts(increment or ""), ref))
+        return {key: {distro: ref for distro, (_, ref) in each.items()} for key, each in found.items()}
 
     def branch(self, *names: str) -> str | None:
         """The ref of the first of these branches that there is."""
         known = set(self._repository.references)
         spelt = (f"{start}{name}" for name in names if name for start in ("refs/heads/", "refs/remotes/origin/"))
         return next((ref for ref in spelt if ref in known), None)
+
+    def is_one_of(self, urls: Iterable[str]) -> bool:
+        """Whether it is a clone from one of these addresses."""
+        return self.name.lower() in map(plain_url, urls)
 
     def is_older(self, version: str) -> bool:
         """Whether there are tags, all of them of versions before this one."""
@@ -93,6 +125,13 @@ class Clone:
             raise TreeError(f"{self.name}: there is no revision `{revision}`; `git tag` lists what there is") from None
 
 
+def _at_tags(clones: Iterable[Clone], package: str, version: str, distro: str = "") -> Iterator[Version]:
+    for clone in clones:
+        tag = clone.tag(version, package, distro)
+        if tag is not None:
+            yield Version(clone, tag, version)
+
+
 class Clones:
     """A folder of clones, called `OWNER+NAME` or by the repository's name (the git directory may lie below)."""
 
@@ -101,6 +140,7 @@ class Clones:
             raise VersionError(f"{folder}: no such folder; give one that holds clones of the repositories")
         self.folder, self._data = folder, data or default()
         self._clones: dict[str, Clone] = {}
+        self._known: dict[str, list[Clone]] = {}
 
     @cached_property
     def _places(self) -> dict[str, list[Path]]:
@@ -124,6 +164,11 @@ class Clones:
 
     def of(self, package: str) -> list[Clone]:
         """Clones of the repositories that ever released a package."""
+        if package not in self._known:
+            self._known[package] = self._of(package)
+        return self._known[package]
+
+    def _of(self, package: str) -> list[Clone]:
         urls = self._data.rows(
             "SELECT DISTINCT u.text FROM package p JOIN home h ON h.package = p.id JOIN source s ON"
             " s.distro = h.distro AND s.repository = h.repository JOIN url u ON u.id = s.url WHERE p.name = ?",
@@ -133,7 +178,17 @@ class Clones:
         found = [place for name in names for place in self._places.get(name.rpartition("/")[2], ())]
         # The clone of the very owner first; forks and moved repositories have the same tags.
         exact = [place for place in found if place.name.lower().replace("+", "/") in names]
-        return [self._open(place) for place in dict.fromkeys((*exact, *found))]
+        return [*(self._open(place) for place in dict.fromkeys((*exact, *found))), *self._releasing.get(package, ())]
+
+    @cached_property
+    def _releasing(self) -> dict[str, list[Clone]]:
+        """Release repositories of bloom by the packages that they have. Their names need not tell the repository's."""
+        found: dict[str, list[Clone]] = {}
+        for name, places in self._places.items():
+            for clone in map(self._open, places) if name.endswith("-release") else ():
+                for package in {package for package, _ in clone.released}:
+                    found.setdefault(package, []).append(clone)
+        return found
 
     def releases(self, clone: Clone) -> dict[str, dict[str, frozenset[str]]]:
         """What a repository released: distro to version, in order, to packages."""
@@ -148,31 +203,43 @@ class Clones:
         clones = self.of(package)
         if not clones:
             raise VersionError(f"no clone in {self.folder} has `{package}`; clone its repository there, with tags")
-        version, branch, distro = asked, "", ""
-        own: list[Clone] = []
-        if asked and not asked[0].isdigit():
-            version, url, branch, distro = self._released(package, asked)
-            # Another owner's repository of the same name may be another project: geometry2 of ROS 1 and of ROS 2.
-            own = [clone for clone in clones if url and clone.name.lower() == plain_url(url)]
-            last = plain_url(url).rpartition("/")[2] if url else ""
-            clones = own or [clone for clone in clones if not last or clone.name.lower().rpartition("/")[2] == last]
-            if not clones:
-                raise VersionError(
-                    f"{asked} has `{package}` from {url}, of which there is no clone in {self.folder}; clone it there"
-                )
+        if not asked or asked[0].isdigit():
+            yield from _at_tags(clones, package, asked)
+            return
+        release = self._released(package, asked)
+        if not self._having(package, release):
+            url = release.urls[0]
+            raise VersionError(
+                f"{asked} has `{package}` from {url}, of which there is no clone in {self.folder}; clone it there"
+            )
+        yield from self.standing_for(package, release)
+
+    def standing_for(self, package: str, release: Release) -> Iterator[Version]:
+        """States that may stand for a package of a release, best first."""
+        clones = self._having(package, release)
+        yield from _at_tags(clones, package, release.version, release.distro)
+        if release.superseded:
+            return  # a branch went on since
         for clone in clones:
-            tag = clone.tag(version, package, distro)
-            if tag is not None:
-                yield Version(clone, tag, version)
-        for clone in clones if distro else ():
-            tip = clone.branch(branch, distro, f"{distro}-devel")
-            if tip is None and own and clone.is_older(version):
+            tip = clone.branch(release.branch, release.distro, f"{release.distro}-devel")
+            if tip is None and clone.is_one_of(release.urls) and clone.is_older(release.version):
                 tip = "HEAD"  # released after all that the clone has a tag for
             if tip is not None:
-                yield Version(clone, tip, version, True)
+                yield Version(clone, tip, release.version, True)
 
-    def _released(self, package: str, asked: str) -> tuple[str, str, str, str]:
-        """Version, source URL, branch and name of a distro asked for."""
+    def _having(self, package: str, release: Release) -> list[Clone]:
+        """The clones that may have what a distro released."""
+        clones = self.of(package)
+        own = [clone for clone in clones if clone.is_one_of(release.urls)]
+        # A release repository says itself what it released for whom.
+        bloomed = [clone for clone in clones if release.distro in clone.released.get((package, release.version), ())]
+        # Another owner's repository of the same name may be another project: geometry2 of ROS 1 and of ROS 2.
+        names = {plain_url(url).rpartition("/")[2] for url in release.urls}
+        alike = [clone for clone in clones if not names or clone.name.lower().rpartition("/")[2] in names]
+        return list(dict.fromkeys((*own, *bloomed))) or alike
+
+    def _released(self, package: str, asked: str) -> Release:
+        """What a distro asked for has of a package."""
         name, _, date = asked.partition("@")
         try:
             target = DistroTarget(name, date or None, data=self._data)
@@ -184,7 +251,7 @@ class Clones:
             where = f"; released in {', '.join(having)}" if having else ", and no other distro either"
             raise VersionError(f"{asked} has no `{package}`{where}")
         _, url, branch = target.repository(package) or ("", "", "")
-        return version, url, branch, name
+        return Release(name, version, (url,) if url else (), branch)
 
     def newest(self, package: str) -> str:
         """The newest distro that has a package. Raises VersionError when none has it."""

@@ -322,9 +322,26 @@ def test_the_same_tag_of_another_repository_that_once_had_the_package_is_not_tak
 
 
 def test_tags_of_release_repositories(clone):
-    git(clone, "tag", "release/jazzy/rclcpp/28.0.1-1", "v28.1.0")
-    assert Clone(clone).tag("28.0.1", "rclcpp", "jazzy") == "refs/tags/release/jazzy/rclcpp/28.0.1-1"
+    for increment in ("9", "10"):
+        git(clone, "tag", f"release/jazzy/rclcpp/28.0.1-{increment}", "v28.1.0")
+    assert Clone(clone).tag("28.0.1", "rclcpp", "jazzy") == "refs/tags/release/jazzy/rclcpp/28.0.1-10"
+    assert Clone(clone).tag("28.0.1", "rclcpp", "humble") is None
     assert Clone(clone).tag("28.0.1", "rclpy", "jazzy") is None
+    # The tag of all that came from upstream has the other packages too.
+    git(clone, "tag", "upstream/28.0.1", "v28.1.0")
+    assert Clone(clone).tag("28.0.1", "rclcpp", "jazzy") == "refs/tags/upstream/28.0.1"
+    assert Clone(clone).tag("28.0.1", "rclpy", "jazzy") is None
+
+
+def test_a_release_repository_has_what_its_tags_say_whatever_it_is_called(clone, store):
+    version = DistroTarget("jazzy").version("rclcpp")
+    git(clone, "tag", f"release/jazzy/rclcpp/{version}-1", "v28.1.0")
+    clone.rename(clone.parent / "ros2-gbp+cpp_client-release")
+    found, state = Clones(clone.parent).surface("rclcpp", "jazzy", store, 1)
+    assert (found.clone.name, found.version, found.approximate) == ("ros2-gbp/cpp_client-release", version, False)
+    assert "rclcpp" in state.surfaces
+    with pytest.raises(VersionError, match="of which there is no clone"):
+        Clones(clone.parent).surface("rclcpp", "kilted", store, 1)
 
 
 @pytest.mark.parametrize(
