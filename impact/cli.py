@@ -350,6 +350,9 @@ def surface_build(
     output: Annotated[Path, typer.Option("--output", "-o", help="File to write, such as surfaces.sqlite.")],
     repos: Annotated[Path, typer.Option(help=_REPOS_HELP)] = Path("."),
     packages: Annotated[list[str] | None, typer.Option(help="Only these packages.")] = None,
+    all_versions: Annotated[
+        bool, typer.Option("--all-versions", help="All that the distros ever had, not only what they have now.")
+    ] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to work with.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
@@ -358,9 +361,10 @@ def surface_build(
 
     raise typer.Exit(
         run.surface_build(
-            distros=_names(distro), repos=repos, packages=_names(packages), output=output, jobs=jobs, quiet=quiet
+            distros=_names(distro), repos=repos, packages=_names(packages), all_versions=all_versions, output=output,
+            jobs=jobs, quiet=quiet,
         )
-    )
+    )  # fmt: skip
 
 
 @data_app.command("status")

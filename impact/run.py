@@ -472,7 +472,7 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
     return _of_surfaces(answer, format, output)
 
 
-def surface_build(*, distros, repos, packages, output, jobs, quiet) -> int:
+def surface_build(*, distros, repos, packages, all_versions, output, jobs, quiet) -> int:
     """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
 
     def answer() -> str:
@@ -483,7 +483,8 @@ def surface_build(*, distros, repos, packages, output, jobs, quiet) -> int:
             raise Failed("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
         report = None if quiet else steps()
         try:
-            built = build(Clones(repos), all_distros(distros), output, packages, jobs, report)
+            versions = "all" if all_versions else "newest"
+            built = build(Clones(repos), all_distros(distros), output, packages, jobs, report, versions=versions)
         except VersionError as error:
             raise Failed(str(error)) from None
         if not built.packages:

@@ -1,35 +1,40 @@
 """Builds a file of surfaces: what released versions of packages offer, read from clones at their tags.
 
-One job for each clone, in processes of joblib or whatever joblib is told to run. What a job gives is kept in a file
-beside the output, so that a run that was stopped goes on from there; a job is done anew when its tags, the packages
-asked for or the code have changed.
+One job for the clones that have versions of the same packages, in processes of joblib or whatever joblib is told to
+run. What a job gives is kept in a file beside the output, so that a run that was stopped goes on from there; a job is
+done anew when its tags, the packages asked for or the code have changed.
 """
 
 from __future__ import annotations
 
 import hashlib
 import sqlite3
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from ..facts.store import Store
 from ..tree import TreeError
 from .build_surface_changes import Lines
-from .clones import Clone, Clones, VersionError
+from .clones import Clone, Clones, Release, Version
 from .distro import DistroTarget, TargetError, known_distros
 from .snapshot import Snapshot, default
 from .surface import State, surfaces_of
-from .surface_changes import unpack
-from .surface_store import History, Packed, Stored, pack, write
+from .surface_store import History, Packed, Packer, Stored, write
 from .version import parts
+
+Versions = Literal["newest", "all"]
+"""Which versions are read: those that distros have, or all that they ever had."""
 
 
 class Wanted(NamedTuple):
-    """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it."""
+    """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it there."""
 
     version: str
+    place: str
+    clone: str
     revision: str
     approximate: bool
     packages: tuple[str, ...]
@@ -37,10 +42,9 @@ class Wanted(NamedTuple):
 
 
 class Job(NamedTuple):
-    """What one worker does: the states of one clone. Everything in it can be sent to another machine that sees the
-    same clones."""
+    """What one worker does: all states of some packages, oldest version first, and no other job's packages. Everything
+    in it can be sent to another machine that sees the same clones. name: of the clone that most of them are in."""
 
-    place: str
     name: str
     states: tuple[Wanted, ...]
     trees: tuple[str, ...]
@@ -71,57 +75,107 @@ class Built(NamedTuple):
 
 
 def plan(
-    clones: Clones, distros: Sequence[str], packages: Iterable[str] = (), data: Snapshot | None = None
+    clones: Clones,
+    distros: Sequence[str],
+    packages: Iterable[str] = (),
+    versions: Versions = "newest",
+    data: Snapshot | None = None,
 ) -> tuple[list[Job], tuple[str, ...]]:
-    """The jobs that read the newest versions of packages in distros, and what no clone has (`package distro`). Without
-    packages all that the distros released. Raises TargetError for an unknown distro."""
+    """The jobs that read what distros have (`newest`) or ever had (`all`) of packages, and what no clone has (`package
+    version distro`). Without packages all that the distros released. Raises TargetError for an unknown distro."""
     data = data or default()
     asked = frozenset(packages)
-    states: dict[str, dict[tuple[str, str, bool], set[str]]] = {}
+    found: dict[tuple[str, str], Version] = {}
     generations: dict[tuple[str, str], set[int]] = {}
-    opened: dict[str, Clone] = {}
     missing: list[str] = []
-    by_repository: dict[tuple[str, str, str], tuple[Clone, str, bool] | None] = {}
     for distro in distros:
         target = DistroTarget(distro, data=data)
-        for package in sorted(target.released_names()):
+        for package, release in (_released if versions == "all" else _newest)(target, data):
             if asked and package not in asked:
                 continue
-            home, version = target.repository(package), target.version(package)
-            if home is None or version is None:
-                continue
-            key = (distro, home[0], version)
-            if key not in by_repository:
-                try:
-                    found = next(clones.find(package, distro), None)
-                except VersionError:
-                    found = None
-                by_repository[key] = None if found is None else (found.clone, found.revision, found.approximate)
-            known = by_repository[key]
-            if known is None:
-                missing.append(f"{package} {distro}")
-                continue
-            clone, revision, approximate = known
-            opened[clone.name] = clone
-            state = version, revision, approximate
-            states.setdefault(clone.name, {}).setdefault(state, set()).add(package)
-            generations.setdefault((clone.name, revision), set()).add(target.ros)
-    jobs = []
-    for name in sorted(states):
-        order = sorted(states[name], key=lambda state: (parts(state[0]), state))
-        wanted = tuple(
-            Wanted(*state, tuple(sorted(states[name][state])), tuple(sorted(generations[name, state[1]])))
-            for state in order
+            key = package, release.version
+            if key not in found or found[key].approximate:
+                state = next(clones.standing_for(package, release), None)
+                if state is not None and (key not in found or not state.approximate):
+                    found[key] = state
+            if key in found:
+                generations.setdefault(key, set()).add(target.ros)
+            else:
+                missing.append(f"{package} {release.version} {distro}")
+    return _jobs(found, generations), tuple(missing)
+
+
+def _newest(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+    """What a distro has of each package."""
+    for package in sorted(target.released_names()):
+        home, version = target.repository(package), target.version(package)
+        if home is not None and version is not None:
+            _, url, branch = home
+            yield package, Release(target.distro, version, (url,) if url else (), branch)
+
+
+def _released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+    """What a distro ever had of each package."""
+    urls: dict[int, dict[str, None]] = {}
+    branches: dict[int, str] = {}
+    for repository, url, branch in data.rows(
+        "SELECT s.repository, u.text, s.branch FROM source s JOIN distro d ON d.id = s.distro"
+        " JOIN url u ON u.id = s.url WHERE d.name = ? ORDER BY s.ts DESC",
+        (target.distro,),
+    ):
+        urls.setdefault(repository, {})[url] = None
+        branches.setdefault(repository, branch or "")
+    told = set()
+    for repository, version, names in data.rows(
+        "SELECT r.repository, r.version, p.names FROM release r JOIN distro d ON d.id = r.distro"
+        " JOIN packages p ON p.id = r.packages WHERE d.name = ? AND r.version IS NOT NULL ORDER BY r.ts",
+        (target.distro,),
+    ):
+        plain = version.partition("-")[0]
+        for package in names.split(" "):
+            if (package, plain) not in told:
+                told.add((package, plain))
+                release = Release(target.distro, plain, tuple(urls.get(repository, ())), branches.get(repository, ""),
+                                  target.version(package) != plain)  # fmt: skip
+                yield package, release
+
+
+def _jobs(found: Mapping[tuple[str, str], Version], generations: Mapping[tuple[str, str], set[int]]) -> list[Job]:
+    """States of packages with their versions, each as often as it differs in who has it; one job has all states of a
+    package, and those of all that is in one of them."""
+    import networkx as nx
+
+    clones: dict[str, Clone] = {}
+    states: dict[Wanted, list[str]] = {}
+    together = nx.Graph()
+    for (package, version), (clone, revision, _, approximate) in found.items():
+        clones[clone.name] = clone
+        whose = tuple(sorted(generations[package, version]))
+        state = Wanted(version, str(clone.place), clone.name, revision, approximate, (), whose)
+        states.setdefault(state, []).append(package)
+        together.add_edge((clone.name, revision), package)
+    number_of = {
+        node: number
+        for number, nodes in enumerate(nx.connected_components(together))
+        for node in sorted(nodes, key=str)
+    }
+    grouped: dict[int, list[Wanted]] = {}
+    for state, packages in states.items():
+        grouped.setdefault(number_of[state.clone, state.revision], []).append(
+            state._replace(packages=tuple(sorted(packages)))
         )
-        trees = tuple(opened[name].folder_id(state.revision) for state in wanted)
-        jobs.append(Job(str(opened[name].place), name, wanted, trees))
-    return jobs, tuple(missing)
+    jobs = []
+    for group in grouped.values():
+        order = tuple(sorted(group, key=lambda state: (parts(state.version), state)))
+        name = Counter(state.clone for state in order).most_common(1)[0][0]
+        jobs.append(Job(name, order, tuple(clones[state.clone].folder_id(state.revision) for state in order)))
+    return sorted(jobs)
 
 
 def run(job: Job) -> Result:
     """Does a job, in whatever process: reads each state once and packs the versions of each package."""
-    clone = Clone(Path(job.place), job.name)
-    found: dict[str, list[Stored]] = {}
+    clones = {state.clone: Clone(Path(state.place), state.clone) for state in job.states}
+    packers: dict[str, Packer] = {}
     failed: list[str] = []
     read: dict[str, State] = {}
     lines = Lines()
@@ -130,20 +184,20 @@ def run(job: Job) -> Result:
             if tree not in read:
                 read.clear()  # one state at a time is enough
                 try:
-                    read[tree] = State(surfaces_of(clone.tree(state.revision), store, 1))
+                    read[tree] = State(surfaces_of(clones[state.clone].tree(state.revision), store, 1))
                 except (TreeError, OSError) as error:
-                    failed.append(f"{job.name} {state.version}: {error}")
+                    failed.append(f"{state.clone} {state.version}: {error}")
                     continue
             for package in state.packages:
                 surface = read[tree].surfaces.get(package)
                 if surface is not None:
-                    found.setdefault(package, []).append(Stored(state.version, state.approximate, surface))
+                    packers.setdefault(package, Packer()).add(Stored(state.version, state.approximate, surface))
                     lines.add(package, state.version, state.generations, read[tree], state.approximate)
                 elif not state.approximate:
-                    failed.append(f"{package} {state.version}: not in {job.name} at its tag")
+                    failed.append(f"{package} {state.version}: not in {state.clone} at its tag")
     changes = lines.packed()
     return Result(
-        {package: Packed(pack(versions), changes[package]) for package, versions in found.items()}, tuple(failed)
+        {package: Packed(packer.packed(), changes[package]) for package, packer in packers.items()}, tuple(failed)
     )
 
 
@@ -154,11 +208,13 @@ def build(
     packages: Iterable[str] = (),
     jobs: int | None = None,
     progress: Callable[[str, int, int], None] | None = None,
+    *,
+    versions: Versions = "newest",
 ) -> Built:
-    """Reads what is asked for and writes it. jobs: processes, all cores when None. progress: called with (clone, done,
-    total). What was done stays in `OUTPUT.work` when KeyboardInterrupt passes through; it is removed at the end.
-    Raises TargetError, OSError."""
-    todo, missing = plan(clones, distros, packages)
+    """Reads what is asked for, as plan() has it, and writes it. jobs: processes, all cores when None. progress: called
+    with (clone, done, total). What was done stays in `OUTPUT.work` when KeyboardInterrupt passes through; it is removed
+    at the end. Raises TargetError, OSError."""
+    todo, missing = plan(clones, distros, packages, versions)
     output.parent.mkdir(parents=True, exist_ok=True)
     work = output.with_name(f"{output.name}.work")
     failed: list[str] = []
@@ -179,19 +235,18 @@ def build(
             db.commit()
             if progress is not None:
                 progress(job.name, number, len(todo))
-        found: dict[str, list[Packed]] = {}
+        written: dict[str, Packed] = {}
         for key in keys:
             for package, *packed in db.execute("SELECT package, data, changes FROM part WHERE key = ?", (key,)):
-                found.setdefault(package, []).append(Packed(*packed))
+                written[package] = Packed(*packed)
             (why,) = db.execute("SELECT failed FROM done WHERE key = ?", (key,)).fetchone()
             failed += why.split("\n") if why else []
-    written = {package: _merged(package, each) for package, each in found.items()}
     write(output, written)
     work.unlink()
     histories = [History(package, packed.data) for package, packed in written.items()]
-    versions = sum(len(history.versions) for history in histories)
+    read = sum(len(history.versions) for history in histories)
     approximate = sum(bool(history.approximate) for history in histories)
-    return Built(len(written), versions, missing, approximate, tuple(failed))
+    return Built(len(written), read, missing, approximate, tuple(failed))
 
 
 def _results(todo: list[Job], jobs: int | None) -> Iterator[tuple[Job, Result]]:
@@ -207,24 +262,6 @@ def _results(todo: list[Job], jobs: int | None) -> Iterator[tuple[Job, Result]]:
 
 def _with_job(job: Job) -> tuple[Job, Result]:
     return job, run(job)
-
-
-def _merged(package: str, packed: list[Packed]) -> Packed:
-    """The versions of a package that several clones gave, as one."""
-    if len(packed) == 1:
-        return packed[0]
-    generations: dict[str, set[int]] = {}
-    for one in packed:
-        for generation, line in unpack(one.changes).items():
-            for version in line.versions:
-                generations.setdefault(version, set()).add(generation)
-    stored = {one.version: one for each in packed for one in History(package, each.data).stored()}
-    lines = Lines()
-    for version in sorted(stored, key=parts):
-        one = stored[version]
-        state = State({package: one.surface})  # what went to another package counts as gone
-        lines.add(package, version, sorted(generations.get(version, ())), state, one.approximate)
-    return Packed(pack(stored.values()), lines.packed()[package])
 
 
 def all_distros(names: Sequence[str]) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import posixpath
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -326,7 +326,8 @@ def compare(old: Surface, new: Surface, before: State | None = None, after: Stat
     to another package, or into a base class there, is not taken for gone."""
     before = before or State({old.package: old})
     after = after or State({new.package: new})
-    found = [*_headers_changed(old, new, after), *_cpp(old, new, before, after)]
+    changes = surface_diff.compare(dict(old.headers), dict(new.headers)) if old.headers != new.headers else ()
+    found = [*_headers_changed(old, new, after, changes), *_cpp(old, new, before, after, changes)]
     found += [*_python(old, new, after), *_messages(old, new, after), *_build(old, new, after)]
     order = {"message": 0, "c++": 1, "python": 2, "build": 3}
     return tuple(dict.fromkeys(sorted(found, key=lambda c: (order[c.side], c.what != "header", c.name, c.kind, c.old))))
@@ -397,12 +398,14 @@ def _request(stem: str, surface: Surface) -> bool:
     return stem in names or any(stem.endswith(end) and stem[: -len(end)] in names for end in ends)
 
 
-def _headers_changed(old: Surface, new: Surface, after: State) -> Iterator[Change]:
+def _headers_changed(
+    old: Surface, new: Surface, after: State, changes: Sequence[surface_diff.Change]
+) -> Iterator[Change]:
     had, has = _all_headers(old), _all_headers(new)
     open_ended = _open_ended(old, new)
     surfaces, news = dict(old.headers), dict(new.headers)
     moves: dict[str, Counter[str]] = defaultdict(Counter)
-    for change in surface_diff.compare(surfaces, news):
+    for change in changes:
         if change.kind == "moved":
             moves[change.old_header][change.new_header] += 1
     for path in sorted(had.keys() - has.keys()):
@@ -445,8 +448,9 @@ def _successor(path: str, had: Mapping[str, bool], has: Mapping[str, bool]) -> s
     return beside[0] if len(beside) == 1 else same[0] if len(same) == 1 else ""
 
 
-def _cpp(old: Surface, new: Surface, before: State, after: State) -> Iterator[Change]:
-    changes = surface_diff.compare(dict(old.headers), dict(new.headers))
+def _cpp(
+    old: Surface, new: Surface, before: State, after: State, changes: Sequence[surface_diff.Change]
+) -> Iterator[Change]:
     hints = {change.name: change for change in changes if change.kind == "renamed"}
     broken = {(c.old, c.new) for c in changes if c.kind == "signature" and not c.compatible}
     lost = {path for path, header in new.headers if header.lost or header.problems}

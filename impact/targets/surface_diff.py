@@ -192,6 +192,8 @@ def _other_kind(olds: Sequence[_Placed], name: str, after: Mapping[tuple[str, st
 
 def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[Change]:
     """Differences of the entities of one name, overloads paired."""
+    if len(olds) == len(news) and all(map(_as_before, olds, news)):
+        return []
     changes: list[Change] = []
     old_paths, new_paths = {path for path, _ in olds}, {path for path, _ in news}
     left = _distinct(news)
@@ -235,6 +237,12 @@ def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[Change]
         there, other = news[0]
         changes.append(Change("moved", one.name, one, other, path, there))
     return changes
+
+
+def _as_before(old: _Placed, new: _Placed) -> bool:
+    """Whether nothing changed but the line. Most entities of two versions are so, and no more is asked of them."""
+    (path, one), (there, other) = old, new
+    return path == there and (one == other or msgspec.structs.replace(one, line=other.line) == other)
 
 
 def _unlike(one: Entity, other: Entity) -> float:

@@ -120,25 +120,59 @@ def _places(spans: Sequence[int], count: int) -> Iterator[int]:
 # -- packing -----------------------------------------------------------------------------------------------------------
 
 
+class Packer:
+    """Packs the versions of one package as they come, oldest first. What is equal is kept once."""
+
+    def __init__(self) -> None:
+        self._versions: list[str] = []
+        self._approximate: list[str] = []
+        self._values: list[_Row] = []
+        self._places: list[list[int]] = []
+        self._numbers: dict[bytes, int] = {}
+        self._parts: dict[bytes, list[int]] = {}
+
+    def add(self, stored: Stored) -> None:
+        """The next version."""
+        place = len(self._versions)
+        self._versions.append(stored.version)
+        if stored.approximate:
+            self._approximate.append(stored.version)
+        for part in _parts(stored.surface):
+            whole = _encoder.encode(part)
+            numbers = self._parts.get(whole)
+            if numbers is None:
+                numbers = self._parts[whole] = [self._number(row) for row in _rows(*part)]
+            for number in numbers:
+                places = self._places[number]
+                if not places or places[-1] != place:
+                    places.append(place)
+
+    def _number(self, row: _Row) -> int:
+        key = _encoder.encode(row)
+        number = self._numbers.setdefault(key, len(self._values))
+        if number == len(self._values):
+            self._values.append(row)
+            self._places.append([])
+        return number
+
+    def packed(self) -> bytes:
+        """All versions as they are stored."""
+        count = len(self._versions)
+        rows = [(*value, _spans(places, count)) for value, places in zip(self._values, self._places, strict=True)]
+        rows.sort(key=lambda row: (row[0], row[1]))  # stable: what is declared first comes first
+        plain = _encoder.encode((self._versions, self._approximate, rows))
+        return zstandard.ZstdCompressor(level=_LEVEL).compress(plain)
+
+
 def pack(versions: Iterable[Stored]) -> bytes:
     """Versions of one package as they are stored. Of one version told twice, the first that has a tag counts."""
     known: dict[str, Stored] = {}
     for one in sorted(versions, key=lambda one: one.approximate):
         known.setdefault(one.version, one)
-    order = sorted(known, key=parts)
-    having: dict[bytes, list[int]] = {}
-    values: dict[bytes, _Row] = {}
-    for place, version in enumerate(order):
-        for row in _rows(known[version].surface):
-            key = _encoder.encode(row)
-            values[key] = row
-            places = having.setdefault(key, [])
-            if not places or places[-1] != place:
-                places.append(place)
-    rows = [(*values[key], _spans(places, len(order))) for key, places in having.items()]
-    rows.sort(key=lambda row: (row[0], row[1]))  # stable: what is declared first comes first
-    approximate = [version for version in order if known[version].approximate]
-    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode((order, approximate, rows)))
+    packer = Packer()
+    for version in sorted(known, key=parts):
+        packer.add(known[version])
+    return packer.packed()
 
 
 _encoder = msgspec.msgpack.Encoder()
@@ -157,38 +191,44 @@ def _spans(places: Sequence[int], count: int) -> list[int]:
     return runs
 
 
-def _rows(surface: Surface) -> Iterator[_Row]:
-    plain = msgspec.to_builtins
-    for path, header in surface.headers:
-        yield "header", path, [header.inline, header.deprecated, header.instead, header.lost]
-        for one in header.entities:
-            parameters = one.parameters
-            if parameters is not None:
-                parameters = tuple(msgspec.structs.replace(p, name="") for p in parameters)
-            yield "entity", path, _short(plain(msgspec.structs.replace(one, line=0, parameters=parameters)), _ENTITY)
-        for include in header.includes:
-            yield "include", path, plain(msgspec.structs.replace(include, line=0, column=0))
-    for module in surface.python.modules:
-        told = module.surface
-        yield "module", module.name, [module.path, module.package, told.all, told.all_open, told.open, told.deprecated,
-                                      told.parsed]  # fmt: skip
-        for bound in told.names:
-            yield "bound", module.name, _short(plain(msgspec.structs.replace(bound, line=0)), _BOUND)
-        for taken in told.imports:
-            yield "taken", module.name, plain(msgspec.structs.replace(taken, line=0))
+def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
+    """What a surface consists of: kind, name, value. Each gives rows of its own."""
+    yield from (("header", path, header) for path, header in surface.headers)
+    yield from (("module", module.name, module) for module in surface.python.modules)
     for what, listed in (("unknown", surface.python.unknown), ("unresolved", surface.python.unresolved)):
         yield from (("python", what, text) for text in listed)
-    for name, definition in surface.interfaces:
-        yield "interface", name, plain(_without_lines(definition))
+    yield from (("interface", name, definition) for name, definition in surface.interfaces)
     for field in msgspec.structs.fields(BuildSurface):
         value = getattr(surface.build, field.name)
         if field.name in ("package", "version"):
             continue
-        if isinstance(value, tuple):
-            yield from (("build", field.name, plain(item)) for item in value)
-        else:
-            yield "build", field.name, value
+        yield from (("build", field.name, item) for item in (value if isinstance(value, tuple) else (value,)))
     yield "surface", "", [surface.guessed, surface.runs_with]
+
+
+def _rows(kind: str, name: str, value: Any) -> Iterator[_Row]:
+    plain = msgspec.to_builtins
+    if kind == "header":
+        yield "header", name, [value.inline, value.deprecated, value.instead, value.lost]
+        for one in value.entities:
+            parameters = one.parameters
+            if parameters is not None:
+                parameters = tuple(msgspec.structs.replace(p, name="") for p in parameters)
+            yield "entity", name, _short(plain(msgspec.structs.replace(one, line=0, parameters=parameters)), _ENTITY)
+        for include in value.includes:
+            yield "include", name, plain(msgspec.structs.replace(include, line=0, column=0))
+    elif kind == "module":
+        told = value.surface
+        yield "module", name, [value.path, value.package, told.all, told.all_open, told.open, told.deprecated,
+                               told.parsed]  # fmt: skip
+        for bound in told.names:
+            yield "bound", name, _short(plain(msgspec.structs.replace(bound, line=0)), _BOUND)
+        for taken in told.imports:
+            yield "taken", name, plain(msgspec.structs.replace(taken, line=0))
+    elif kind == "interface":
+        yield kind, name, plain(_without_lines(value))
+    else:
+        yield kind, name, plain(value)
 
 
 def _without_lines(definition: Interface) -> Interface:

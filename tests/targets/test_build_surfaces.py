@@ -58,7 +58,9 @@ def test_each_clone_is_one_job_that_can_be_sent_away(clones):
         (name, [(DistroTarget(distro).version(package), False) for distro in ("humble", "jazzy")])
         for name, package in (("ros-perception/vision_opencv", "cv_bridge"), ("ros2/rclcpp", "rclcpp"))
     ]
-    assert missing == ("nav2_core humble", "nav2_core jazzy")
+    assert missing == tuple(
+        f"nav2_core {DistroTarget(distro).version('nav2_core')} {distro}" for distro in ("humble", "jazzy")
+    )
     again: Job = pickle.loads(pickle.dumps(jobs[1]))
     assert again.key() == jobs[1].key()
     assert run(again) == run(jobs[1])
@@ -109,17 +111,46 @@ def test_a_moved_tag_is_read_again(clones, tmp_path):
     assert "of_jazzy" in Surfaces(file).history("rclcpp").names()
 
 
-def test_versions_of_one_package_from_two_clones(clones, tmp_path):
-    jobs, _ = plan(clones, ("humble", "jazzy"), ("rclcpp",))
-    (job,) = jobs
-    parts = [
-        run(job._replace(states=(state,), trees=(tree,))) for state, tree in zip(job.states, job.trees, strict=True)
+def test_versions_of_one_package_in_two_clones_are_one_job(clones, tmp_path):
+    older, newer = (DistroTarget(distro).version("rclcpp") for distro in ("jazzy", "kilted"))
+    release(clones.folder / "ros2-gbp+any-release", "rclcpp", f"release/kilted/rclcpp/{newer}-1", "void of_kilted();")
+    (job,), missing = plan(Clones(clones.folder), ("jazzy", "kilted"), ("rclcpp",))
+    assert [(state.clone, state.version) for state in job.states] == [
+        ("ros2/rclcpp", older),
+        ("ros2-gbp/any-release", newer),
     ]
-    packed = build_surfaces._merged("rclcpp", [part.packages["rclcpp"] for part in parts])
-    merged = History("rclcpp", packed.data)
-    assert list(unpack(packed.changes)[2].events["c++"]) == ["of_humble", "of_jazzy"]
-    whole = History("rclcpp", run(job).packages["rclcpp"].data)
-    assert (merged.versions, merged.names()) == (whole.versions, whole.names())
+    packed = run(job).packages["rclcpp"]
+    assert History("rclcpp", packed.data).versions == (older, newer)
+    assert list(unpack(packed.changes)[2].events["c++"]) == ["of_jazzy", "of_kilted"]
+    assert missing == ()
+
+
+def test_all_versions_that_a_distro_ever_had(clones):
+    folder = clones.folder / "ros2+rclcpp"
+    had = list(dict.fromkeys(version for _, version in DistroTarget("humble").history("rclcpp")))
+    for version in had[:2]:
+        release(folder, "rclcpp", version, f"int of_{version.replace('.', '_')};")
+    git(folder, "branch", "humble")
+    (job,), missing = plan(Clones(clones.folder), ("humble",), ("rclcpp",), "all")
+    assert [state.version for state in job.states] == [*had[:2], had[-1]]
+    assert not any(state.approximate for state in job.states)
+    # What has no tag is missing, unless the distro has it still: then the branch stands for it, where there is one.
+    assert missing == tuple(f"rclcpp {version} humble" for version in had[2:-1])
+    git(folder, "tag", "-d", had[-1])
+    (job,), _ = plan(Clones(clones.folder), ("humble",), ("rclcpp",), "all")
+    assert [(state.version, state.approximate) for state in job.states] == [
+        (had[0], False),
+        (had[1], False),
+        (had[-1], True),
+    ]
+
+
+def test_a_version_belongs_to_the_generations_of_ros_that_had_it(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
+    for distro in ("noetic", "jazzy"):
+        release(tmp_path / "clones" / "ros+angles", "angles", DistroTarget(distro).version("angles"), "void f();")
+    (job,), _ = plan(Clones(tmp_path / "clones"), ("noetic", "jazzy"), ("angles",))
+    assert [state.generations for state in job.states] == [(1,), (2,)]
 
 
 def test_an_unknown_distro():
