@@ -132,6 +132,49 @@ def check(
     )  # fmt: skip
 
 
+def _print_upgrade_schema(value: bool) -> None:
+    if value:
+        from . import run
+
+        raise typer.Exit(run.upgrade_schema())
+
+
+@app.command()
+def upgrade(
+    from_: Annotated[str, typer.Option("--from", help="The target that is left, in any form that --target takes.")],
+    to: Annotated[str, typer.Option("--to", help="The target that is moved to.")],
+    path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
+    packages: Annotated[list[str] | None, typer.Option(help="Only these packages.")] = None,
+    rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
+    config: Annotated[Path | None, typer.Option(help="Another rosimpact.toml.")] = None,
+    format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, html.")] = "text",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
+    fail_on: Annotated[
+        str, typer.Option(help="Exit with 1 from this severity on: error (the default), warning, note, never.")
+    ] = "",
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema", callback=_print_upgrade_schema, is_eager=True, help="Print the JSON schema of --format json."
+        ),
+    ] = False,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
+) -> None:
+    """Say what moving from one target to another breaks, package by package in build order.
+
+    Exit status: 0 nothing that it brings is at or above --fail-on, 1 something breaks, 2 the tool failed.
+    """
+    from . import run
+
+    raise typer.Exit(
+        run.upgrade(
+            path, from_, to, packages=_names(packages), rev=rev, config=config, format=format, output=output,
+            fail_on=fail_on, jobs=jobs, quiet=quiet,
+        )
+    )  # fmt: skip
+
+
 @app.command()
 def why(
     name: Annotated[

@@ -374,6 +374,39 @@ def impact(
     return _answered(answer, format, IMPACT_FORMATS, output, path)
 
 
+def upgrade_schema() -> int:
+    """Prints the JSON schema of the JSON of `upgrade`."""
+    from .report.upgrade import schema as text
+
+    _write(text())
+    return 0
+
+
+def upgrade(
+    path: Path, old: str, new: str, *, packages, rev, config, format, output, fail_on, jobs, quiet
+) -> int:  # fmt: skip
+    """Prints what an upgrade breaks. Returns the exit status: 0 (safe), 1 (something breaks) or 2 (failed)."""
+    from .report import upgrade as report
+
+    breaks = False
+
+    def answer() -> str:
+        nonlocal breaks
+        _one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
+        from .upgrade import upgrade as compare
+
+        options = Options(rev=rev, config=config, jobs=jobs)
+        found = compare(path, old, new, options, packages, None if quiet else _progress())
+        breaks = fails(
+            (finding for item in found.breaks for finding in item.findings), fail_on or found.fail_on or "error"
+        )
+        if format == "json":
+            return report.as_json(found)
+        return report.as_html(found) if format == "html" else report.text(found, _style(output))
+
+    return _answered(answer, format, report.FORMATS, output, path) or int(breaks)
+
+
 LOGIC_FORMATS = ("text", "json", "html")
 
 

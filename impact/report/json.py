@@ -62,6 +62,18 @@ def schema() -> str:
     return Path(__file__).with_name("findings.schema.json").read_text(encoding="utf-8")
 
 
+def schema_with(name: str) -> str:
+    """A schema that lies beside this file, with the definitions in it that it shares with this report: of a finding,
+    a target, the tool and the coverage."""
+    ours, whole = json.loads(schema()), json.loads(Path(__file__).with_name(name).read_text(encoding="utf-8"))
+    shared = {key: ours["properties"][key] for key in ("tool", "coverage")}
+    shared["target"] = ours["properties"]["targets"]["items"]
+    for key in ("day", "count", "finding"):
+        shared[key] = ours["$defs"][key]
+    whole["$defs"] = whole.get("$defs", {}) | shared
+    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
 def as_data(finding: Finding) -> dict[str, Any]:
     """A finding as the schema has it."""
     return {

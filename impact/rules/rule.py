@@ -65,7 +65,7 @@ class Rule(NamedTuple):
 
     per_target: asked once for each target. compares: asked about a workspace and its base, and silent without one.
     flow: rests on the message flow, and on nothing that is not remembered with it. installed: asked about the built
-    files of an install space, on each machine, and silent without one."""
+    files of an install space, on each machine, and silent without one. deprecation: warns of what will go."""
 
     name: str
     family: str
@@ -77,6 +77,7 @@ class Rule(NamedTuple):
     compares: bool = False
     flow: bool = False
     installed: bool = False
+    deprecation: bool = False
 
 
 _RULES: dict[str, Rule] = {}
@@ -90,6 +91,7 @@ def rule(
     compares: bool = False,
     flow: bool = False,
     installed: bool = False,
+    deprecation: bool = False,
 ):
     """Registers the decorated generator as a rule. It is called as f(view), a workspace as one target sees it, and
     reports on the packages that the view iterates over, which may be a part of the workspace; or as f(workspace) when
@@ -102,7 +104,9 @@ def rule(
         name = parts[-1].replace("_", "-")
         per = per_target and not compares and not flow and not installed
         documentation = module.__doc__ or ""
-        _RULES[name] = Rule(name, parts[-2], severity, preview, per, function, documentation, compares, flow, installed)
+        _RULES[name] = Rule(
+            name, parts[-2], severity, preview, per, function, documentation, compares, flow, installed, deprecation
+        )
         return function
 
     return register

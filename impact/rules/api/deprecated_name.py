@@ -23,7 +23,7 @@ from ...model.view import View
 from ..rule import Hit, rule
 
 
-@rule(severity="note")
+@rule(severity="note", deprecation=True)
 def deprecated_name(view: View):
     old = {
         c.old: c

@@ -27,7 +27,7 @@ from ..cure import Replace
 from ..rule import Hit, rule
 
 
-@rule(severity="note")
+@rule(severity="note", deprecation=True)
 def moved_header(view: View):
     moved = {
         c.old: c

@@ -1,0 +1,272 @@
+"""What an upgrade breaks, as text, JSON (see upgrade.schema.json) and a page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import html, json
+from .page import page
+from .report import ReportedTarget, count_by_severity, counted, coverage_text, one_line
+from .text import Style, described, finding_lines, painted
+
+if TYPE_CHECKING:
+    from ..between import Item
+    from ..rules.rule import Finding
+    from ..upgrade import Upgrade
+
+FORMATS = ("text", "json", "html")
+SCHEMA = 1
+_PLACES = 5
+
+
+def verdict(found: Upgrade) -> str:
+    """One line: safe, or what breaks.
+
+    `humble → jazzy breaks 3 of 46 packages: 3 errors and 1 warning to work off, in 9 places`
+    """
+    way = f"{one_line(found.old.name)} → {one_line(found.new.name)}"
+    total = counted(len(found.packages), "package")
+    if not found.breaks:
+        return f"{way} is safe: nothing that is known breaks in {total}"
+    broken = {item.package for item in found.breaks if item.severity == "error"}
+    touched = broken or {item.package for item in found.breaks}
+    what = " and ".join(counted(n, severity) for severity, n in _severities(found.breaks).items() if n)
+    places = counted(sum(len(item.findings) for item in found.breaks), "place")
+    return f"{way} {'breaks' if broken else 'may break'} {len(touched):,} of {total}: {what} to work off, in {places}"
+
+
+def _severities(items: Iterable[Item]) -> dict[str, int]:
+    counts = {"error": 0, "warning": 0, "note": 0}
+    for item in items:
+        counts[item.severity] += 1
+    return counts
+
+
+def by_fixes(found: Upgrade) -> str:
+    """How much of the work can be done by the tool, empty without any."""
+    items = [item for item in (*found.breaks, *found.deprecations) if found.fixes(item)]
+    if not items:
+        return ""
+    whole = sum(found.fixes(item) == len(item.findings) for item in items)
+    part = f", {len(items) - whole} more in part" if whole < len(items) else ""
+    return f"{whole} of {len(found.breaks) + len(found.deprecations)} can be fixed{part}: {found.command}"
+
+
+def rest(found: Upgrade) -> list[str]:
+    """What is not the upgrade's, as clauses."""
+    old, new = one_line(found.old.name), one_line(found.new.name)
+    told = []
+    if found.both:
+        told.append(f"{_counts(found.both)} on {old} already: rosimpact check --target {old} lists them")
+    if found.over:
+        told.append(f"{_counts(found.over)} of {old} {'is' if len(found.over) == 1 else 'are'} not there on {new}")
+    return told
+
+
+def _counts(findings: Sequence[Finding]) -> str:
+    return ", ".join(counted(n, severity) for severity, n in count_by_severity(findings).items() if n)
+
+
+# -- text --------------------------------------------------------------------------------------------------------------
+
+
+def text(found: Upgrade, style: Style) -> str:
+    """The list of work for people at a terminal."""
+    role = "good" if not found.breaks else _worst(found.breaks)
+    lines = [painted(style, role, verdict(found).replace("→", style.symbols[3]))]
+    fixes = by_fixes(found)
+    lines += [f"  {painted(style, 'help', fixes)}"] if fixes else []
+    for word, target in (("from", found.old), ("to", found.new)):
+        lines.append(f"  {painted(style, 'dim', f'{word} {described(target)}')}")
+        lines += [f"    {one_line(note)}" for note in target.notes]
+    steps = _steps(found.breaks)
+    for number, (package, items) in enumerate(steps.items(), 1):
+        lines += ["", _title(f"{number} of {len(steps)}", package, found, style)]
+        for item in items:
+            lines += ["", *_item(found, item, style)]
+    if found.deprecations:
+        lines += ["", painted(style, "bold", f"deprecated on {one_line(found.new.name)}")]
+        for package, items in _steps(found.deprecations).items():
+            lines += ["", _title("", package, found, style)]
+            for item in items:
+                lines += _short(found, item, style)
+    parts = [*rest(found), coverage_text(found.report.coverage), f"{found.seconds:.2f} s"]
+    return "\n".join([*lines, "", f" {style.symbols[4]} ".join(parts)]) + "\n"
+
+
+def _worst(items: Iterable[Item]) -> str:
+    return "error" if any(item.severity == "error" for item in items) else "warning"
+
+
+def _steps(items: Iterable[Item]) -> dict[str, list[Item]]:
+    """Items by package, in the order in which they come."""
+    steps: dict[str, list[Item]] = {}
+    for item in items:
+        steps.setdefault(item.package, []).append(item)
+    return steps
+
+
+def _title(number: str, package: str, found: Upgrade, style: Style) -> str:
+    folders = {each.name: each.path for each in found.packages}
+    title = painted(style, "bold", one_line(package or "workspace"))
+    if folders.get(package, "") not in ("", ".", package):
+        title += painted(style, "dim", f" {style.symbols[4]} {one_line(folders[package])}")
+    return f"{painted(style, 'dim', f'{number}: ')}{title}" if number else title
+
+
+def _item(found: Upgrade, item: Item, style: Style) -> Iterator[str]:
+    """An item with the code of its first place, and once more where other words are said of another place."""
+    for findings in _by_message(item).values():
+        first, *others = finding_lines(found.report, findings[0], style)
+        yield first + _fixed(found, findings, style)
+        yield from others
+        yield from _places(findings[1:], style)
+
+
+def _short(found: Upgrade, item: Item, style: Style) -> Iterator[str]:
+    for findings in _by_message(item).values():
+        yield f"  {one_line(findings[0].message)}{_fixed(found, findings, style)}"
+        yield from _places(findings, style, "    ")
+        if findings[0].help:
+            yield f"    {painted(style, 'help', 'help:')} {one_line(findings[0].help)}"
+
+
+def _by_message(item: Item) -> dict[tuple[str, str], list[Finding]]:
+    groups: dict[tuple[str, str], list[Finding]] = {}
+    for finding in item.findings:
+        groups.setdefault((finding.message, finding.help), []).append(finding)
+    return groups
+
+
+def _fixed(found: Upgrade, findings: Sequence[Finding], style: Style) -> str:
+    number = sum(finding.fingerprint in found.fixable for finding in findings)
+    if not number:
+        return ""
+    word = "fixable" if number == len(findings) else f"fixable at {counted(number, 'place')}"
+    return painted(style, "good", f" [{word}]")
+
+
+def _places(findings: Sequence[Finding], style: Style, margin: str = "  ") -> Iterator[str]:
+    for finding in findings[:_PLACES]:
+        yield f"{margin}{painted(style, 'dim', style.symbols[3])} {_place(finding)}"
+    if len(findings) > _PLACES:
+        yield f"{margin}and {counted(len(findings) - _PLACES, 'more place')}"
+
+
+def _place(finding: Finding) -> str:
+    place = one_line(finding.path)
+    if finding.line:
+        place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")
+    return place
+
+
+# -- JSON --------------------------------------------------------------------------------------------------------------
+
+
+def as_json(found: Upgrade) -> str:
+    """The list of work for programs."""
+    broken = {item.package for item in found.breaks}
+    counts = _severities(found.breaks)
+    return json.dumped({
+        "schema": SCHEMA,
+        "tool": {"name": "rosimpact", "version": found.report.version, "data": found.report.data},
+        "from": _target(found.old),
+        "to": _target(found.new),
+        "verdict": {
+            "safe": not found.breaks,
+            "text": verdict(found),
+            "packages": len(broken),
+            "errors": counts["error"],
+            "warnings": counts["warning"],
+            "places": sum(len(item.findings) for item in found.breaks),
+        },
+        "fix": {
+            "items": sum(found.fixes(item) > 0 for item in (*found.breaks, *found.deprecations)),
+            "command": found.command,
+        },
+        "work": _work(found, found.breaks),
+        "deprecations": _work(found, found.deprecations),
+        "both": count_by_severity(found.both),
+        "over": count_by_severity(found.over),
+        "coverage": {
+            "packages": len(found.packages),
+            "files": found.report.coverage.files,
+            "parsed": found.report.coverage.parsed,
+            "unresolved": dict(sorted(found.report.coverage.unresolved.items())),
+        },
+    })  # fmt: skip
+
+
+def _target(target: ReportedTarget) -> dict[str, Any]:
+    data: dict[str, Any] = {
+        "name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform,
+    }  # fmt: skip
+    return data | ({"notes": list(target.notes)} if target.notes else {})
+
+
+def _work(found: Upgrade, items: Iterable[Item]) -> list[dict[str, Any]]:
+    folders = {package.name: package.path for package in found.packages}
+    return [
+        {
+            "package": package,
+            "path": folders.get(package, ""),
+            "items": [
+                {
+                    "rule": item.rule,
+                    "severity": item.severity,
+                    "subject": item.subject,
+                    "fixable": found.fixes(item),
+                    "findings": [json.as_data(finding) for finding in item.findings],
+                }
+                for item in items
+            ],
+        }
+        for package, items in _steps(items).items()
+    ]
+
+
+def schema() -> str:
+    """The published JSON schema as text (draft 2020-12); docs/upgrade.schema.json holds it."""
+    return json.schema_with("upgrade.schema.json")
+
+
+# -- page --------------------------------------------------------------------------------------------------------------
+
+
+def as_html(found: Upgrade) -> str:
+    """The list of work as one page that loads nothing."""
+    return page(Path(__file__).with_name("upgrade.html"), f"rosimpact: upgrade of {found.report.root}", _data(found))
+
+
+def _data(found: Upgrade) -> Mapping[str, Any]:
+    report = found.report
+    return {
+        "version": report.version,
+        "data": report.data,
+        "root": report.root,
+        "verdict": verdict(found),
+        "bad": _worst(found.breaks) if found.breaks else "",
+        "facts": [*rest(found), coverage_text(report.coverage)],
+        "fixes": by_fixes(found).partition(": ")[0],
+        "command": found.command,
+        "from": found.old._asdict(),
+        "to": found.new._asdict(),
+        "seconds": round(found.seconds, 2),
+        "folders": {package.name: package.path for package in found.packages},
+        "rules": {
+            rule.name: rule.documentation.strip().partition("\n")[0].partition(": ")[2]
+            for rule in report.rules
+            if rule.documentation
+        },
+        "items": [_row(found, item, group) for group, these in enumerate((found.breaks, found.deprecations))
+                  for item in these],
+    }  # fmt: skip
+
+
+def _row(found: Upgrade, item: Item, group: int) -> list[Any]:
+    """Group (0 breaks, 1 deprecated), package, rule, subject, severity, how many places are fixable, findings."""
+    names = [found.new.name]
+    findings = [html.as_row(found.report, finding, names) for finding in item.findings]
+    return [group, item.package, item.rule, item.subject, item.severity, found.fixes(item), findings]
