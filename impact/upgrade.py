@@ -23,8 +23,8 @@ class Upgrade(NamedTuple):
     old: the target that is left. report: the check on the target that is moved to, with all its findings. packages:
     those that were asked for, in build order. breaks: errors and warnings that the upgrade brings. deprecations: what
     will go next. both: errors and warnings that the old target has too. over: errors and warnings that hold on the old
-    target alone. fixable: fingerprints of findings that `check --fix` cures. command: which does that. fail_on: what
-    the configuration says, empty without.
+    target alone. fixable: fingerprints of findings that `check --fix` cures. command: which does that. check_old: the
+    command that lists what the old target has already. fail_on: what the configuration says, empty without.
     """
 
     old: ReportedTarget
@@ -36,6 +36,7 @@ class Upgrade(NamedTuple):
     over: tuple[Finding, ...]
     fixable: frozenset[str]
     command: str
+    check_old: str
     fail_on: str = ""
     seconds: float = 0.0
 
@@ -83,7 +84,9 @@ def upgrade(
         both=tuple(f for f in told.both if _grave(f) and f.rule not in warning),
         over=tuple(f for f in lost.new if _grave(f) and f.rule not in warning),
         fixable=_fixable(report.findings, reader(after.tree)),
-        command=_command(path, new, options),
+        # Of a revision, what would change is shown.
+        command=_command(path, new, options, "--diff" if options.rev else "--fix"),
+        check_old=_command(path, old, options),
         fail_on=after.config.fail_on,
         seconds=time.perf_counter() - started,
     )
@@ -100,8 +103,9 @@ def _fixable(findings: Iterable[Finding], read: Callable[[str], bytes | None]) -
     return frozenset(finding.fingerprint for finding in findings if refused.isdisjoint(finding.fix))
 
 
-def _command(path: Path, target: str, options: Options) -> str:
-    """The command that fixes what can be fixed; of a revision, the one that shows what would change."""
+def _command(path: Path, target: str, options: Options, *ends: str) -> str:
+    """The check of one of the targets, as one types it."""
     words = ["rosimpact", "check", str(path), "--target", target]
     words += ["--config", str(options.config)] if options.config else []
-    return shlex.join([*words, "--rev", options.rev, "--diff"] if options.rev else [*words, "--fix"])
+    words += ["--rev", options.rev] if options.rev else []
+    return shlex.join([*words, *ends])

@@ -631,8 +631,8 @@ class View:
         return sum(k.lts and k.ros == self.target.ros and k.released > here for k in known_distros()) <= 2
 
     def concerned(self, package: Package, change: Change, path: str) -> bool:
-        """True when a file can mean the changed package by a name: the package declares or includes something of it, and
-        the workspace does not hold it in a version of its own."""
+        """True when a file can mean the changed package by a name: the package declares or includes something of it,
+        and the workspace does not hold it in a version of its own."""
         head = change.package
         if head in self.workspace.packages:
             return False

@@ -46,12 +46,13 @@ def _severities(items: Iterable[Item]) -> dict[str, int]:
 
 def by_fixes(found: Upgrade) -> str:
     """How much of the work can be done by the tool, empty without any."""
-    items = [item for item in (*found.breaks, *found.deprecations) if found.fixes(item)]
-    if not items:
-        return ""
-    whole = sum(found.fixes(item) == len(item.findings) for item in items)
-    part = f", {len(items) - whole} more in part" if whole < len(items) else ""
-    return f"{whole} of {len(found.breaks) + len(found.deprecations)} can be fixed{part}: {found.command}"
+    told = []
+    for items, noun in ((found.breaks, "item"), (found.deprecations, "deprecation")):
+        some = [item for item in items if found.fixes(item)]
+        whole = sum(found.fixes(item) == len(item.findings) for item in some)
+        part = f" ({len(some) - whole:,} more in part)" if whole < len(some) else ""
+        told += [f"{whole:,} of {counted(len(items), noun)}{part}"] if some else []
+    return f"{' and '.join(told)} can be fixed: {found.command}" if told else ""
 
 
 def rest(found: Upgrade) -> list[str]:
@@ -59,7 +60,8 @@ def rest(found: Upgrade) -> list[str]:
     old, new = one_line(found.old.name), one_line(found.new.name)
     told = []
     if found.both:
-        told.append(f"{_counts(found.both)} on {old} already: rosimpact check --target {old} lists them")
+        them = "it" if len(found.both) == 1 else "them"
+        told.append(f"{_counts(found.both)} on {old} already: {found.check_old} lists {them}")
     if found.over:
         told.append(f"{_counts(found.over)} of {old} {'is' if len(found.over) == 1 else 'are'} not there on {new}")
     return told
