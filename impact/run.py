@@ -397,9 +397,7 @@ def upgrade(
 
         options = Options(rev=rev, config=config, jobs=jobs)
         found = compare(path, old, new, options, packages, None if quiet else _progress())
-        breaks = fails(
-            (finding for item in found.breaks for finding in item.findings), fail_on or found.fail_on or "error"
-        )
+        breaks = fails(found.brought, fail_on or found.fail_on or "error")
         if format == "json":
             return report.as_json(found)
         return report.as_html(found) if format == "html" else report.text(found, _style(output))

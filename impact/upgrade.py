@@ -22,7 +22,7 @@ class Upgrade(NamedTuple):
 
     old: the target that is left. report: the check on the target that is moved to, with all its findings. packages:
     those that were asked for, in build order. breaks: errors and warnings that the upgrade brings. deprecations: what
-    will go next. both: errors and warnings that the old target has too. over: errors and warnings that hold on the old
+    will go next. brought: the findings of both that the old target lacks. both: errors and warnings that the old target has too. over: errors and warnings that hold on the old
     target alone. fixable: fingerprints of findings that `check --fix` cures. command: which does that. check_old: the
     command that lists what the old target has already. fail_on: what the configuration says, empty without.
     """
@@ -32,6 +32,7 @@ class Upgrade(NamedTuple):
     packages: tuple[ReportedPackage, ...]
     breaks: tuple[Item, ...]
     deprecations: tuple[Item, ...]
+    brought: tuple[Finding, ...]
     both: tuple[Finding, ...]
     over: tuple[Finding, ...]
     fixable: frozenset[str]
@@ -81,6 +82,7 @@ def upgrade(
         packages=tuple(ReportedPackage(name, folders[name]) for name in order if name in wanted),
         breaks=tuple(items((f for f in told.new if _grave(f) and f.rule not in warning), order)),
         deprecations=tuple(items((f for f in now if f.rule in warning), order)),
+        brought=tuple(f for f in told.new if _grave(f) or f.rule in warning),
         both=tuple(f for f in told.both if _grave(f) and f.rule not in warning),
         over=tuple(f for f in lost.new if _grave(f) and f.rule not in warning),
         fixable=_fixable(report.findings, reader(after.tree)),

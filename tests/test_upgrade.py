@@ -154,6 +154,9 @@ def test_each_side_is_what_check_says_of_it_alone(say, ws):
         (("--to", "kilted", "--fail-on", "never"), 0),
         (("--to", "kilted", "--packages", "wheel,lid"), 0),
         (("--to", "kilted", "--packages", "zoom"), 1),
+        (("--to", "kilted", "--packages", "wheel", "--fail-on", "note"), 0),
+        (("--to", "iron", "--packages", "zoom"), 0),
+        (("--to", "iron", "--packages", "zoom", "--fail-on", "note"), 1),
     ],
 )
 def test_the_exit_status(say, ws, arguments, status):
