@@ -22,9 +22,10 @@ class Upgrade(NamedTuple):
 
     old: the target that is left. report: the check on the target that is moved to, with all its findings. packages:
     those that were asked for, in build order. breaks: errors and warnings that the upgrade brings. deprecations: what
-    will go next. brought: the findings of both that the old target lacks. both: errors and warnings that the old target has too. over: errors and warnings that hold on the old
-    target alone. fixable: fingerprints of findings that `check --fix` cures. command: which does that. check_old: the
-    command that lists what the old target has already. fail_on: what the configuration says, empty without.
+    will go next. brought: the findings of both that the old target lacks. both: errors and warnings that the old
+    target has too. over: those that hold on the old target alone. fixable: fingerprints of findings that `check --fix`
+    cures. command: which does that. check_old: the command that lists what the old target has already. fail_on: what
+    the configuration says, empty without.
     """
 
     old: ReportedTarget
