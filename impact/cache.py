@@ -33,3 +33,16 @@ def code_stamp() -> str:
                     f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape")
                 )
     return stamp.hexdigest()
+
+
+@cache
+def code_digest() -> str:
+    """The same on every machine that has the same tool: names and contents of its files."""
+    root = Path(__file__).parent
+    digest = hashlib.sha1()
+    for path in sorted(root.rglob("*")):
+        if path.suffix != ".pyc" and path.is_file():
+            data = path.read_bytes()
+            digest.update(f"{path.relative_to(root).as_posix()} {len(data)}\n".encode("utf-8", "surrogateescape"))
+            digest.update(data)
+    return digest.hexdigest()

@@ -397,6 +397,9 @@ def surface_build(
         bool, typer.Option("--all-versions", help="All that the distros ever had, not only what they have now.")
     ] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to work with.")] = None,
+    dask: Annotated[
+        str | None, typer.Option(help="Work on the cluster of this Dask scheduler, such as tcp://host:8786.")
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
     """Write what the released versions of packages offer to a file. A run that is stopped goes on the next time."""
@@ -405,7 +408,7 @@ def surface_build(
     raise typer.Exit(
         run.surface_build(
             distros=_names(distro), repos=repos, packages=_names(packages), all_versions=all_versions, output=output,
-            jobs=jobs, quiet=quiet,
+            jobs=jobs, dask=dask, quiet=quiet,
         )
     )  # fmt: skip
 

@@ -2,8 +2,8 @@
 
 What is made is stored chunk by chunk, so an interrupted run keeps all it has parsed. Facts are decoded when asked for.
 
-Workers are forked where that is safe (processes.py), loky elsewhere; a scheduler chosen through joblib
-(`parallel_config(backend="dask")`) is given the chunks instead.
+Workers are forked where that is safe (processes.py), loky elsewhere; a backend chosen through joblib
+(`parallel_config`) is given the chunks instead.
 """
 
 from __future__ import annotations

@@ -503,20 +503,25 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
     return _of_surfaces(answer, format, output)
 
 
-def surface_build(*, distros, repos, packages, all_versions, output, jobs, quiet) -> int:
+def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask, quiet) -> int:
     """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
 
     def answer() -> str:
         from .targets.build_surfaces import all_distros, build
         from .targets.clones import Clones, VersionError
+        from .targets.cluster import ClusterError
 
         if not distros:
             raise Failed("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
+        if dask is not None and jobs is not None:
+            raise Failed("--jobs: is for this machine, and with --dask the cluster works; give one of the two")
         report = None if quiet else steps()
         try:
             versions = "all" if all_versions else "newest"
-            built = build(Clones(repos), all_distros(distros), output, packages, jobs, report, versions=versions)
-        except VersionError as error:
+            built = build(
+                Clones(repos), all_distros(distros), output, packages, jobs, report, versions=versions, dask=dask
+            )
+        except (VersionError, ClusterError) as error:
             raise Failed(str(error)) from None
         if not built.packages:
             raise Failed(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")

@@ -1,16 +1,17 @@
 """Builds a file of surfaces: what released versions of packages offer, read from clones at their tags.
 
-One job for the clones that have versions of the same packages, in processes of joblib or whatever joblib is told to
-run. What a job gives is kept in a file beside the output, so that a run that was stopped goes on from there; a job is
-done anew when its tags, the packages asked for or the code have changed.
+One job for the clones that have versions of the same packages, in processes of joblib or on a Dask cluster
+(cluster.py). What a job gives is kept in a file beside the output, so that a run that was stopped goes on from there; a
+job is done anew when its tags, the packages asked for or the code have changed.
 """
 
 from __future__ import annotations
 
 import hashlib
+import os
 import sqlite3
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -151,7 +152,7 @@ def _jobs(found: Mapping[tuple[str, str], Version], generations: Mapping[tuple[s
     for (package, version), (clone, revision, _, approximate) in found.items():
         clones[clone.name] = clone
         whose = tuple(sorted(generations[package, version]))
-        state = Wanted(version, str(clone.place), clone.name, revision, approximate, (), whose)
+        state = Wanted(version, os.path.abspath(clone.place), clone.name, revision, approximate, (), whose)
         states.setdefault(state, []).append(package)
         together.add_edge((clone.name, revision), package)
     number_of = {
@@ -210,10 +211,12 @@ def build(
     progress: Callable[[str, int, int], None] | None = None,
     *,
     versions: Versions = "newest",
+    dask: str | None = None,
 ) -> Built:
     """Reads what is asked for, as plan() has it, and writes it. jobs: processes, all cores when None. progress: called
-    with (clone, done, total). What was done stays in `OUTPUT.work` when KeyboardInterrupt passes through; it is removed
-    at the end. Raises TargetError, OSError."""
+    with (clone, done, total). dask: address of a scheduler whose workers do the jobs instead. What was done stays in
+    `OUTPUT.work` when an error or KeyboardInterrupt passes through; it is removed at the end. Raises TargetError,
+    OSError, and ClusterError."""
     todo, missing = plan(clones, distros, packages, versions)
     output.parent.mkdir(parents=True, exist_ok=True)
     work = output.with_name(f"{output.name}.work")
@@ -228,13 +231,14 @@ def build(
         done = {key for (key,) in db.execute("SELECT key FROM done") if key in keys}
         left = [job for key, job in keys.items() if key not in done]
         left.sort(key=lambda job: -len(job.states))
-        for number, (job, result) in enumerate(_results(left, jobs), len(done) + 1):
-            rows = ((job.key(), package, *packed) for package, packed in result.packages.items())
-            db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?, ?)", rows)
-            db.execute("INSERT OR REPLACE INTO done VALUES(?, ?)", (job.key(), "\n".join(result.failed)))
-            db.commit()
-            if progress is not None:
-                progress(job.name, number, len(todo))
+        with closing(_results(left, jobs, dask)) as ended:
+            for number, (job, result) in enumerate(ended, len(done) + 1):
+                rows = ((job.key(), package, *packed) for package, packed in result.packages.items())
+                db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?, ?)", rows)
+                db.execute("INSERT OR REPLACE INTO done VALUES(?, ?)", (job.key(), "\n".join(result.failed)))
+                db.commit()
+                if progress is not None:
+                    progress(job.name, number, len(todo))
         written: dict[str, Packed] = {}
         for key in keys:
             for package, *packed in db.execute("SELECT package, data, changes FROM part WHERE key = ?", (key,)):
@@ -249,8 +253,13 @@ def build(
     return Built(len(written), read, missing, approximate, tuple(failed))
 
 
-def _results(todo: list[Job], jobs: int | None) -> Iterator[tuple[Job, Result]]:
+def _results(todo: list[Job], jobs: int | None, dask: str | None) -> Generator[tuple[Job, Result], None, None]:
     """Jobs with their results as they end."""
+    if dask is not None and todo:
+        from .cluster import done_by
+
+        yield from done_by(dask, todo)
+        return
     from joblib import Parallel, delayed
 
     if jobs == 1 or len(todo) < 2:
