@@ -21,7 +21,7 @@ from rosimpact.corpus.report import Label, Report, read_labels, write_rows
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals there")
 
 SEQUENCE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z~]|\x1b[()][A-Z0-9]|\x1b[=>]")
-PATIENCE = 40  # seconds until a screen counts as never drawn
+PATIENCE = 120  # seconds until a screen counts as never drawn
 LONG = "\n\n".join(f"paragraph {n:03d} of the log" for n in range(200))
 REPORTS = [
     Report(

@@ -18,7 +18,7 @@ CHECK = (
 TEST = (
     "command -v git && python3 -m venv .venv || "
     "{ $(command -v sudo) sh -c 'apt-get update && apt-get install -y git python3-venv' && python3 -m venv .venv; } && "
-    ".venv/bin/pip install '.[test]' && .venv/bin/python -m pytest"
+    ".venv/bin/pip install '.[test]' && .venv/bin/python -m pytest -n auto"
 )
 
 
