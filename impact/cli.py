@@ -333,17 +333,31 @@ def env_capture(
     raise typer.Exit(run.env_capture(output))
 
 
+def _print_env_diff_schema(value: bool) -> None:
+    if value:
+        from . import run
+
+        raise typer.Exit(run.env_diff_schema())
+
+
 @env_app.command("diff")
 def env_diff(
-    first: Annotated[str, typer.Argument(help="A target, in any form.")],
+    first: Annotated[str, typer.Argument(help="A target, in any form that --target takes.")],
     second: Annotated[str, typer.Argument(help="Another target.")],
-    path: Annotated[Path | None, typer.Argument(help="Mark what this workspace uses.")] = None,
+    path: Annotated[Path | None, typer.Argument(help="A workspace: say what matters to it.")] = None,
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema", callback=_print_env_diff_schema, is_eager=True, help="Print the JSON schema of --format json."
+        ),
+    ] = False,
 ) -> None:
-    """Say what differs between two machines."""
+    """Say what differs between two machines; beside a workspace, what breaks on one of them alone."""
     from . import run
 
-    raise typer.Exit(run.env_diff(first, second, path, format))
+    raise typer.Exit(run.env_diff(first, second, path, format, output))
 
 
 _REPOS_HELP = "Folder of git clones with their tags, called OWNER+NAME or NAME."

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..corpus import __version__
 from ..corpus.told import DEBUG, counted, say, steps, unforeseen
-from .check import Checked, CheckError, Options, open_workspace
+from .check import Checked, CheckError, Options
 from .check import run as run_check
 from .config import ConfigError
 from .findings import SettingsError, fails
@@ -603,58 +603,26 @@ def env_capture(output: Path | None) -> int:
     return 0
 
 
-def env_diff(first: str, second: str, path: Path | None, format: str) -> int:
-    """Prints what differs between two targets, with what the workspace uses marked and first."""
-    from .config import load
-    from .targets.capture import differences
-    from .targets.resolve import parse_target
+def env_diff_schema() -> int:
+    """Prints the JSON schema of the JSON of `env diff`."""
+    from .report.machines import schema as text
 
-    try:
-        with told(path or ""):
-            _one_of("--format", format, _TEXT_OR_JSON)
-            config = load(path if path is not None else Path())
-            a, b = parse_target(first, config), parse_target(second, config)
-            used = _used(path, (first, second)) if path is not None else {}
-            rows = [d._replace(used_by=used.get(d.name, ())) for d in differences(a, b)]
-    except Failed as error:
-        return failed(str(error))
-    kinds = ("distro", "date", "platform", "library", "package")
-    rows.sort(key=lambda d: (d.kind in kinds[3:], not d.used_by, kinds.index(d.kind), d.name))
-    if format == "json":
-        import json
-
-        _write(json.dumps([d._asdict() for d in rows], indent=1))
-        return 0
-    # Beside a workspace, what it does not use is counted; libraries are not packages that one can leave alone.
-    shown_rows = [d for d in rows if path is None or d.used_by or d.kind != "package"]
-    width = max((len(d.name) for d in shown_rows), default=0)
-    lines = []
-    for d in shown_rows:
-        mark = "*" if d.used_by else " "
-        users = f"  used by {', '.join(d.used_by[:4])}{' …' if len(d.used_by) > 4 else ''}" if d.used_by else ""
-        lines.append(f"{mark} {d.name:{width}s}  {d.first or '-':>14s}  {d.second or '-':>14s}{users}")
-    end = counted(len(rows), "difference")
-    if path is not None:
-        end += f", {sum(bool(d.used_by) for d in rows)} used by {path}; not listed: "
-        end += f"{counted(len(rows) - len(shown_rows), 'package')} that nothing uses"
-    _write("\n".join([*lines, end]))
+    _write(text())
     return 0
 
 
-def _used(path: Path, targets: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
-    """Names the workspace declares or uses, to the packages that do."""
-    used: dict[str, set[str]] = {}
-    with open_workspace(path, Options(targets=targets)) as opened:
-        for view in opened.views:
-            for package in view:
-                names = set(view.declared(package))
-                for need in view.needs(package):
-                    names.update(p.name for p in need.providers[:1])
-                for name in names:
-                    used.setdefault(name, set()).add(package.name)
-                    for library in view.libraries_of(name):
-                        used.setdefault(library, set()).add(package.name)
-    return {name: tuple(sorted(packages)) for name, packages in used.items()}
+def env_diff(first: str, second: str, path: Path | None, format: str, output: Path | None = None) -> int:
+    """Prints what differs between two targets; beside a workspace, what matters to it. Returns the exit status: 0, or 2
+    (failed)."""
+    from .report import machines as report
+
+    def answer() -> str:
+        from .machines import machines
+
+        found = machines(first, second, path)
+        return report.as_json(found, __version__) if format == "json" else report.text(found, _style(output))
+
+    return _answered(answer, format, report.FORMATS, output, path or "")
 
 
 def why(name: str, path: Path, targets: tuple[str, ...], format: str) -> int:

@@ -271,18 +271,6 @@ def test_why(say):
     assert say("why", "x", example, "--target", "gutsy").status == 2
 
 
-def test_env_diff(say, ws):
-    said = say("env", "diff", "humble", "jazzy", ws)
-    assert said.status == 0
-    rows = {line.split()[1]: line for line in said.out.splitlines() if line.startswith("*")}
-    assert "4.5.4" in rows["opencv"] and "used by a" in rows["opencv"]
-    everything = json.loads(say("env", "diff", "humble", "jazzy", "--format", "json").out)
-    assert len(everything) > 500
-    assert say("env", "diff", "humble", "humble").out == "0 differences\n"
-    assert say("env", "diff", "humble", "gutsy").status == 2
-    assert say("env", "diff", "humble", "jazzy", "--format", "xml").status == 2
-
-
 def test_env_capture_is_a_target(say, ws, tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     said = say("env", "capture", "-o", tmp_path / "envs/laptop.json")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import html, json
+from .items import as_data, by_severity, item_lines, short_lines
 from .page import page
 from .report import ReportedTarget, count_by_severity, counted, coverage_text, one_line
-from .text import Style, described, finding_lines, painted
+from .text import Style, described, painted
 
 if TYPE_CHECKING:
     from ..between import Item
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
 FORMATS = ("text", "json", "html")
 SCHEMA = 1
-_PLACES = 5
 
 
 def verdict(found: Upgrade) -> str:
@@ -32,16 +32,9 @@ def verdict(found: Upgrade) -> str:
         return f"{way} is safe: nothing that is known breaks in {total}"
     broken = {item.package for item in found.breaks if item.severity == "error"}
     touched = broken or {item.package for item in found.breaks}
-    what = " and ".join(counted(n, severity) for severity, n in _severities(found.breaks).items() if n)
+    what = " and ".join(counted(n, severity) for severity, n in by_severity(found.breaks).items() if n)
     places = counted(sum(len(item.findings) for item in found.breaks), "place")
     return f"{way} {'breaks' if broken else 'may break'} {len(touched):,} of {total}: {what} to work off, in {places}"
-
-
-def _severities(items: Iterable[Item]) -> dict[str, int]:
-    counts = {"error": 0, "warning": 0, "note": 0}
-    for item in items:
-        counts[item.severity] += 1
-    return counts
 
 
 def by_fixes(found: Upgrade) -> str:
@@ -87,13 +80,13 @@ def text(found: Upgrade, style: Style) -> str:
     for number, (package, items) in enumerate(steps.items(), 1):
         lines += ["", _title(f"{number} of {len(steps)}", package, found, style)]
         for item in items:
-            lines += ["", *_item(found, item, style)]
+            lines += ["", *item_lines(found.report, item, style, found.fixable)]
     if found.deprecations:
         lines += ["", painted(style, "bold", f"deprecated on {one_line(found.new.name)}")]
         for package, items in _steps(found.deprecations).items():
             lines += ["", _title("", package, found, style)]
             for item in items:
-                lines += _short(found, item, style)
+                lines += short_lines(item, style, found.fixable)
     parts = [*rest(found), coverage_text(found.report.coverage), f"{found.seconds:.2f} s"]
     return "\n".join([*lines, "", f" {style.symbols[4]} ".join(parts)]) + "\n"
 
@@ -118,59 +111,13 @@ def _title(number: str, package: str, found: Upgrade, style: Style) -> str:
     return f"{painted(style, 'dim', f'{number}: ')}{title}" if number else title
 
 
-def _item(found: Upgrade, item: Item, style: Style) -> Iterator[str]:
-    """An item with the code of its first place, and once more where other words are said of another place."""
-    for findings in _by_message(item).values():
-        first, *others = finding_lines(found.report, findings[0], style)
-        yield first + _fixed(found, findings, style)
-        yield from others
-        yield from _places(findings[1:], style)
-
-
-def _short(found: Upgrade, item: Item, style: Style) -> Iterator[str]:
-    for findings in _by_message(item).values():
-        yield f"  {one_line(findings[0].message)}{_fixed(found, findings, style)}"
-        yield from _places(findings, style, "    ")
-        if findings[0].help:
-            yield f"    {painted(style, 'help', 'help:')} {one_line(findings[0].help)}"
-
-
-def _by_message(item: Item) -> dict[tuple[str, str], list[Finding]]:
-    groups: dict[tuple[str, str], list[Finding]] = {}
-    for finding in item.findings:
-        groups.setdefault((finding.message, finding.help), []).append(finding)
-    return groups
-
-
-def _fixed(found: Upgrade, findings: Sequence[Finding], style: Style) -> str:
-    number = sum(finding.fingerprint in found.fixable for finding in findings)
-    if not number:
-        return ""
-    word = "fixable" if number == len(findings) else f"fixable at {counted(number, 'place')}"
-    return painted(style, "good", f" [{word}]")
-
-
-def _places(findings: Sequence[Finding], style: Style, margin: str = "  ") -> Iterator[str]:
-    for finding in findings[:_PLACES]:
-        yield f"{margin}{painted(style, 'dim', style.symbols[3])} {_place(finding)}"
-    if len(findings) > _PLACES:
-        yield f"{margin}and {counted(len(findings) - _PLACES, 'more place')}"
-
-
-def _place(finding: Finding) -> str:
-    place = one_line(finding.path)
-    if finding.line:
-        place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")
-    return place
-
-
 # -- JSON --------------------------------------------------------------------------------------------------------------
 
 
 def as_json(found: Upgrade) -> str:
     """The list of work for programs."""
     broken = {item.package for item in found.breaks}
-    counts = _severities(found.breaks)
+    counts = by_severity(found.breaks)
     return json.dumped({
         "schema": SCHEMA,
         "tool": {"name": "rosimpact", "version": found.report.version, "data": found.report.data},
@@ -214,16 +161,7 @@ def _work(found: Upgrade, items: Iterable[Item]) -> list[dict[str, Any]]:
         {
             "package": package,
             "path": folders.get(package, ""),
-            "items": [
-                {
-                    "rule": item.rule,
-                    "severity": item.severity,
-                    "subject": item.subject,
-                    "fixable": found.fixes(item),
-                    "findings": [json.as_data(finding) for finding in item.findings],
-                }
-                for item in items
-            ],
+            "items": [as_data(item) | {"fixable": found.fixes(item)} for item in items],
         }
         for package, items in _steps(items).items()
     ]

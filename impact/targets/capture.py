@@ -163,7 +163,6 @@ class Difference(NamedTuple):
     name: str
     first: str
     second: str
-    used_by: tuple[str, ...] = ()
 
 
 def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] = ()) -> list[Difference]:

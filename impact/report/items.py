@@ -1,0 +1,84 @@
+"""Things to do, as text and as data: one cause in one package, with all its places."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from . import json
+from .report import Report, counted, one_line
+from .text import Style, finding_lines, painted
+
+if TYPE_CHECKING:
+    from ..between import Item
+    from ..rules.rule import Finding
+
+_PLACES = 5
+
+
+def item_lines(report: Report, item: Item, style: Style, fixable: Collection[str] = ()) -> Iterator[str]:
+    """An item with the code of its first place, and once more where other words are said of another place.
+
+    fixable: fingerprints of findings that `check --fix` cures.
+    """
+    for findings in _by_message(item):
+        first, *others = finding_lines(report, findings[0], style)
+        yield first + _fixed(findings, fixable, style)
+        yield from others
+        yield from _places(findings[1:], style, "  ")
+
+
+def short_lines(item: Item, style: Style, fixable: Collection[str] = ()) -> Iterator[str]:
+    """An item without code, set in by two."""
+    for findings in _by_message(item):
+        yield f"  {one_line(findings[0].message)}{_fixed(findings, fixable, style)}"
+        yield from _places(findings, style, "    ")
+        if findings[0].help:
+            yield f"    {painted(style, 'help', 'help:')} {one_line(findings[0].help)}"
+
+
+def _by_message(item: Item) -> Iterable[list[Finding]]:
+    groups: dict[tuple[str, str], list[Finding]] = {}
+    for finding in item.findings:
+        groups.setdefault((finding.message, finding.help), []).append(finding)
+    return groups.values()
+
+
+def _fixed(findings: Sequence[Finding], fixable: Collection[str], style: Style) -> str:
+    number = sum(finding.fingerprint in fixable for finding in findings)
+    if not number:
+        return ""
+    word = "fixable" if number == len(findings) else f"fixable at {counted(number, 'place')}"
+    return painted(style, "good", f" [{word}]")
+
+
+def _places(findings: Sequence[Finding], style: Style, margin: str) -> Iterator[str]:
+    for finding in findings[:_PLACES]:
+        yield f"{margin}{painted(style, 'dim', style.symbols[3])} {_place(finding)}"
+    if len(findings) > _PLACES:
+        yield f"{margin}and {counted(len(findings) - _PLACES, 'more place')}"
+
+
+def _place(finding: Finding) -> str:
+    place = one_line(finding.path)
+    if finding.line:
+        place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")
+    return place
+
+
+def as_data(item: Item) -> dict[str, Any]:
+    """An item as the schemas have it."""
+    return {
+        "rule": item.rule,
+        "severity": item.severity,
+        "subject": item.subject,
+        "findings": [json.as_data(finding) for finding in item.findings],
+    }
+
+
+def by_severity(items: Iterable[Item]) -> dict[str, int]:
+    """How many errors, warnings and notes, in this order, zeros included."""
+    counts = {"error": 0, "warning": 0, "note": 0}
+    for item in items:
+        counts[item.severity] += 1
+    return counts
