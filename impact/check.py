@@ -16,6 +16,7 @@ from . import memo
 from .config import Config, PathSetting, load, parse
 from .facts.store import Store
 from .gather import Gathered, gather
+from .guarded import with_evidence
 from .judge import Crashes, hits_of
 from .model.flow.wanted import code_kinds
 from .model.view import View
@@ -137,6 +138,10 @@ def judged(
     else:
         now = judge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
         found = now.kept
+    if any(finding.evidence for finding in found):
+        for view in views:
+            memo.prepare(store, view.target)
+        found = with_evidence(found, views)
     if any(finding.fix for finding in found):
         from . import fix
 

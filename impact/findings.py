@@ -122,6 +122,7 @@ def _finding(
         message=joined([(name, hit.message) for name, hit in zip(names, hits, strict=True)]),
         help=joined([(name, hit.help) for name, hit in zip(names, hits, strict=True)]),
         fix=first.fix if right else (),
+        evidence=next((hit.evidence for hit in hits if hit.evidence is not None), None),
     )
 
 

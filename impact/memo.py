@@ -22,6 +22,7 @@ from .model.view import View
 from .model.workspace import Workspace
 from .rules.cure import Declare, Insert, Remove, Replace
 from .rules.rule import Cure, Edit, Hit
+from .targets.evidence import Evidence
 from .targets.fields import default_fields
 from .targets.snapshot import data_stamp
 from .targets.target import Change, Target
@@ -42,6 +43,7 @@ class _Hit(msgspec.Struct, frozen=True, array_like=True):
     package: str
     severity: str
     fix: tuple[tuple[str, tuple[str | int, ...]], ...]
+    evidence: Evidence | None = None
 
 
 class _Judgement(msgspec.Struct, frozen=True, array_like=True):
@@ -121,6 +123,7 @@ def _keep(store: Store, key: bytes, hits: Iterable[tuple[str, Hit]], unresolved:
             hit.package,
             hit.severity,
             tuple((type(cure).__name__, tuple(cure)) for cure in hit.fix),
+            hit.evidence,
         )
         for rule, hit in hits
     )
@@ -157,4 +160,4 @@ def prepare(store: Store, target: Target) -> None:
 
 def _hit(h: _Hit) -> Hit:
     cures: tuple[Cure, ...] = tuple(_CURES[kind](*fields) for kind, fields in h.fix)
-    return Hit(At(h.path, h.line, h.column), h.subject, h.message, h.help, h.package, h.severity, cures)
+    return Hit(At(h.path, h.line, h.column), h.subject, h.message, h.help, h.package, h.severity, cures, h.evidence)

@@ -16,6 +16,7 @@ from ..config import Config
 from ..facts.condition import Condition
 from ..targets.changes import DISTROS
 from ..targets.distro import known_distros
+from ..targets.evidence import Evidence
 from ..targets.fields import History, before, default_fields, there
 from ..targets.includes import Machine, machine_of
 from ..targets.library import include_roots, standard_year
@@ -75,6 +76,7 @@ class Misnamed(NamedTuple):
 
     message: str
     help: str
+    evidence: Evidence | None = None
 
 
 # Metapackages whose name other packages' headers begin with (ros/ros.h is roscpp's).
@@ -366,7 +368,8 @@ class View:
                 return Misnamed(f"`{path}` is not installed by {name} {version}", f"include `{rest}`")
             return None
         other = self._renamed(name, path, version)
-        return Misnamed(f"`{path}` is not in {name} {version}", f"include `{other}`" if other else "")
+        evidence = Evidence(name, "removed", path, other, "header", header=path)
+        return Misnamed(f"`{path}` is not in {name} {version}", f"include `{other}`" if other else "", evidence)
 
     def has_released_header(self, package: str, path: str) -> bool | None:
         """Whether the target's release of a package has a header; None when its tree is not known."""
@@ -418,8 +421,9 @@ class View:
         rows = definition.members(use.section, use.member)
         if any(there(row.spans, later[1]) for row in rows) or not any(there(row.spans, now[1]) for row in rows):
             return None
+        lost = _field_lost(use.package, now[0], [span for row in rows for span in row.spans], later[1])
         return Misnamed(f"`{use.member}` of `{use.package}/{use.interface}` is there, and gone in {use.package} "
-                        f"{later[2]} of {self.target.distro}", "")  # fmt: skip
+                        f"{later[2]} of {self.target.distro}", "", lost._replace(name=use.member, ahead=True))  # fmt: skip
 
     def coming_interface(self, path: str) -> Misnamed | None:
         """The same for the interface of a generated header."""
@@ -431,7 +435,8 @@ class View:
         spans = now[0].spans(name)
         if spans is None or not there(spans, now[1]) or there(spans, later[1]):
             return None
-        return Misnamed(f"`{path}` is there, and gone in {head} {later[2]} of {self.target.distro}", "")
+        return Misnamed(f"`{path}` is there, and gone in {head} {later[2]} of {self.target.distro}", "",
+                        _field_lost(head, now[0], spans, later[1])._replace(name=path, ahead=True))  # fmt: skip
 
     def _generated(self, path: str) -> tuple[str, str, str, str]:
         """Package, rest, stem and interface (empty: none known) of the include path of a generated header."""
@@ -453,21 +458,24 @@ class View:
         if not rows or any(there(row.spans, state) for row in rows):
             return None
         name = f"{use.package}/{use.interface}"
+        spans = [span for row in rows for span in row.spans]
         if any(before(row.spans, state) for row in rows):
+            lost = _field_lost(use.package, history, spans, state)._replace(name=use.member)
             reviewed = self._successors.get((use.package, _told(use)))
             if reviewed:
                 return Misnamed(f"`{use.member}` is no longer in `{name}` of {use.package} {version}",
-                                f"use `{reviewed}`")  # fmt: skip
+                                f"use `{reviewed}`", lost)  # fmt: skip
             successor = next((row.successor for row in rows if row.successor), "")
             if successor and not any(there(r.spans, state) for r in definition.members(use.section, successor)):
                 successor = ""
             return Misnamed(f"`{use.member}` is no longer in `{name}` of {use.package} {version}",
-                            f"perhaps `{successor}` stands for it" if successor else "")  # fmt: skip
+                            f"perhaps `{successor}` stands for it" if successor else "", lost)  # fmt: skip
         if not history.read_up_to(version):
             return None
-        since = history.starts[min(first for row in rows for first, _ in row.spans)]
+        since = history.starts[min(first for first, _ in spans)]
         return Misnamed(f"`{use.member}` is not yet in `{name}` of {use.package} {version}",
-                        f"it is there since {use.package} {since}")  # fmt: skip
+                        f"it is there since {use.package} {since}",
+                        Evidence(use.package, "added", use.member, first=since))  # fmt: skip
 
     @cached_property
     def _successors(self) -> dict[tuple[str, str], str]:
@@ -514,11 +522,13 @@ class View:
         if spans is None or there(spans, state):
             return None
         if before(spans, state):
-            return Misnamed(f"`{package}/{name}` is no longer in {package} {version}", "")
+            return Misnamed(f"`{package}/{name}` is no longer in {package} {version}", "",
+                            _field_lost(package, history, spans, state)._replace(name=name))  # fmt: skip
         if not history.read_up_to(version):
             return None
-        return Misnamed(f"`{package}/{name}` is not yet in {package} {version}",
-                        f"it is there since {package} {history.starts[min(first for first, _ in spans)]}")  # fmt: skip
+        since = history.starts[min(first for first, _ in spans)]
+        return Misnamed(f"`{package}/{name}` is not yet in {package} {version}", f"it is there since {package} {since}",
+                        Evidence(package, "added", name, first=since))  # fmt: skip
 
     def misnamed_interface(self, path: str) -> Misnamed | None:
         """What is wrong with the spelling of a generated header on this target's generation, None when nothing is."""
@@ -987,6 +997,12 @@ class View:
             self.certain(found.conditions),
             found.required,
         )
+
+
+def _field_lost(package: str, history: History, spans: Iterable[tuple[int, int]], state: int) -> Evidence:
+    """That what some states of a package's interfaces had is gone in a later one."""
+    ends = [last for _, last in spans if 0 <= last < state]
+    return Evidence(package, "removed", first=history.starts[max(ends) + 1] if ends else "")
 
 
 def _told(use: MemberUse) -> str:

@@ -1,5 +1,5 @@
-// A finding as html.py writes it: its fields, and how its place, its lines of code and its help are shown.
-const [RULE, SEVERITY, PACKAGE, PATH, LINE, COLUMN, SUBJECT, TARGETS, MESSAGE, HELP, NEW, CODE] = Array(12).keys();
+// A finding as html.py writes it: its fields, and how its place, its lines of code, its evidence and its help are shown.
+const [RULE, SEVERITY, PACKAGE, PATH, LINE, COLUMN, SUBJECT, TARGETS, MESSAGE, HELP, NEW, CODE, EVIDENCE] = Array(13).keys();
 const SEVERITIES = ["error", "warning", "note"];
 
 const placeOf = (finding) => finding[PATH] + (finding[LINE] ? `:${finding[LINE]}` + (finding[COLUMN] ? `:${finding[COLUMN]}` : "") : "");
@@ -21,6 +21,14 @@ function whereOf(finding) {
     block.append(row);
   });
   return [place, block];
+}
+
+// What the finding rests on, folded.
+function evidenceOf(finding) {
+  if (!finding[EVIDENCE].length) return [];
+  const rows = make("dl");
+  for (const [label, text] of finding[EVIDENCE]) rows.append(make("dt", null, label), make("dd", null, text));
+  return [make("details", { class: "evidence" }, make("summary", null, "evidence"), rows)];
 }
 
 const helpOf = (finding) => (finding[HELP] ? [make("p", { class: "help" }, make("b", null, "help: "), ...withCode(finding[HELP]))] : []);

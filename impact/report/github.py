@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..rules.rule import Finding
-from . import markdown
+from . import evidence, markdown
 from .report import Report, count_by_severity, counted, coverage_text, focus, fresh, one_line, safe
 
 SHOWN = 10
@@ -89,7 +89,8 @@ def _command(report: Report, finding: Finding, folder: str) -> str:
         _, shown = focus(finding, report.excerpt(finding.path, finding.line))
         if shown is not None and shown.width:
             properties["endColumn"] = str(max(finding.column, shown.start + shown.width))
-    text = finding.message + (f"\nhelp: {finding.help}" if finding.help else "")
+    shown = "".join(f"\n{label}: {line}" for label, line in evidence.lines(finding))
+    text = finding.message + shown + (f"\nhelp: {finding.help}" if finding.help else "")
     told = ",".join(f"{key}={_property(value)}" for key, value in properties.items())
     return f"::{_COMMAND[finding.severity]} {told}::{_data(text)}"
 

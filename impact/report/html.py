@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..rules.rule import Finding
+from . import evidence
 from .markdown import verdict
 from .page import page
 from .report import Report, count_by_severity, coverage_text, focus, fresh, matrix
@@ -71,7 +72,8 @@ def _impact(report: Report) -> dict[str, Any] | None:
 
 
 def as_row(report: Report, finding: Finding, names: list[str]) -> list[Any]:
-    """Rule, severity, package, path, line, column, subject, target numbers, message, help, new, excerpt."""
+    """Rule, severity, package, path, line, column, subject, target numbers, message, help, new, excerpt, evidence as
+    (label, text) pairs."""
     code = None
     if finding.line:
         lines = report.excerpt(finding.path, finding.line)
@@ -83,4 +85,9 @@ def as_row(report: Report, finding: Finding, names: list[str]) -> list[Any]:
     return [
         finding.rule, finding.severity, finding.package, finding.path, finding.line, finding.column, finding.subject,
         numbers, finding.message, finding.help, finding.new, code,
+        [*evidence.lines(finding), *_source(finding)],
     ]  # fmt: skip
+
+
+def _source(finding: Finding) -> list[tuple[str, str]]:
+    return [("source", finding.evidence.source)] if finding.evidence is not None and finding.evidence.source else []

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..findings import printable
 from ..rules.rule import Finding
+from . import evidence
 from .report import Coverage, Report
 
 SCHEMA = 1
@@ -89,7 +90,7 @@ def as_data(finding: Finding) -> dict[str, Any]:
         "help": finding.help,
         "new": finding.new,
         "fingerprint": finding.fingerprint,
-    }
+    } | ({"evidence": evidence.as_object(finding.evidence)} if finding.evidence is not None else {})
 
 
 def _printable(value: Any) -> Any:

@@ -10,6 +10,7 @@ from urllib.parse import quote
 
 from ..findings import printable
 from ..rules.rule import Edit, Finding, Rule
+from . import evidence
 from .report import Report, focus
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -105,7 +106,8 @@ def _help(body: str) -> str:
 
 
 def _result(report: Report, finding: Finding, silent: list[dict[str, str]], index: dict[str, int]) -> dict[str, Any]:
-    text = finding.message + (f"\nhelp: {finding.help}" if finding.help else "")
+    shown = "".join(f"\n{label}: {line}" for label, line in evidence.lines(finding))
+    text = finding.message + shown + (f"\nhelp: {finding.help}" if finding.help else "")
     result: dict[str, Any] = {
         "ruleId": finding.rule,
         "ruleIndex": index[finding.rule],
@@ -117,7 +119,8 @@ def _result(report: Report, finding: Finding, silent: list[dict[str, str]], inde
             "targets": list(finding.targets),
             "package": finding.package,
             "subject": finding.subject,
-        },
+        }
+        | ({"evidence": evidence.as_object(finding.evidence)} if finding.evidence is not None else {}),
     }
     if report.base:
         result["baselineState"] = "new" if finding.new else "unchanged"

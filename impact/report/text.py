@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import NamedTuple, TextIO
 
 from ..rules.rule import Finding
+from . import evidence
 from .report import (
     Report,
     ReportedTarget,
@@ -163,6 +164,8 @@ def finding_lines(report: Report, finding: Finding, style: Style) -> list[str]:
         if width:
             caret = painted(style, finding.severity, "^" * width)
             lines.append(f"  {' ' * margin} {painted(style, 'dim', '|')} {' ' * offset}{caret}")
+    for label, text in evidence.lines(finding):
+        lines.append(f"  {painted(style, 'dim', f'{label}:')} {one_line(text)}")
     if finding.help:
         lines.append(f"  {painted(style, 'help', 'help:')} {one_line(finding.help)}")
     return lines

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from typing import NamedTuple
 
+from ..targets.evidence import Evidence
 from .cure import Declare, Insert, Remove, Replace
 
 SEVERITIES = ("note", "warning", "error")
@@ -30,7 +31,7 @@ class Hit(NamedTuple):
 
     at: anything with path, line, column. message: one clause, code in backticks. help: the cure, or empty.
     severity: empty for the rule's own. fix: what cures it, see cure.py; kept only when every target asked for yields
-    the same.
+    the same. evidence: the change that it rests on, without targets; check.py adds how each stands to it.
     """
 
     at: object
@@ -40,10 +41,11 @@ class Hit(NamedTuple):
     package: str = ""
     severity: str = ""
     fix: tuple[Cure, ...] = ()
+    evidence: Evidence | None = None
 
 
 class Finding(NamedTuple):
-    """A finding as reported, see docs/findings.md. message_by_target is filled where the message differs by target."""
+    """A finding as reported, see docs/findings.md."""
 
     rule: str
     severity: str
@@ -58,6 +60,7 @@ class Finding(NamedTuple):
     new: bool = True
     fingerprint: str = ""
     fix: tuple[Cure, ...] = ()
+    evidence: Evidence | None = None
 
 
 class Rule(NamedTuple):

@@ -99,6 +99,17 @@ def _known_distros(data: Snapshot) -> tuple[Known, ...]:
     return tuple(sorted(found, key=lambda known: known.released))
 
 
+def releases(package: str, data: Snapshot | None = None) -> frozenset[tuple[int, str]]:
+    """(ROS generation, version) of every release of a package in any distro."""
+    rows = (data or snapshots.default()).rows(
+        "SELECT DISTINCT d.ros, r.version, n.names FROM home h JOIN package p ON p.id = h.package"
+        " JOIN distro d ON d.id = h.distro JOIN release r ON r.repository = h.repository AND r.distro = h.distro"
+        " JOIN packages n ON n.id = r.packages WHERE p.name = ? AND r.version IS NOT NULL",
+        (package,),
+    )
+    return frozenset((ros, _upstream(version)) for ros, version, names in rows if package in names.split(" "))
+
+
 def day_of(ts: int) -> str:
     """The ISO day (UTC) of a moment, in seconds since 1970."""
     return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
@@ -164,6 +175,7 @@ class DistroTarget(Target):
         self._versions: dict[str, str | None] = {}
         self._names: frozenset[str] | None = None
         self._declared: dict[str, tuple[ReleasedDependency, ...] | None] = {}
+        self._arrivals: dict[str, tuple[tuple[str, str | None], ...]] = {}
         self._held: dict[str, bool] = {}
         self._keys: dict[str, Resolution | None] = {}
         self._all_keys: dict[str, Resolution] | None = None
@@ -303,6 +315,27 @@ class DistroTarget(Target):
 
     def history(self, package: str) -> tuple[tuple[str, str | None], ...]:
         """(day, version) of every release of a package in this distro, oldest first; version None: dropped."""
+        return tuple((day_of(ts), version) for ts, version in self._steps(package))
+
+    def arrivals(self, package: str) -> tuple[tuple[str, str | None], ...]:
+        """The same with the days on which the versions could be had: those of the sync that brought each, and before
+        the distro's first known sync of the commit. What no sync has brought yet is left out; of versions that one
+        sync brought, the last counts."""
+        if package not in self._arrivals:
+            syncs = self._data.rows("SELECT day, cut FROM sync WHERE distro = ? ORDER BY day", (self._id,))
+            # Commits up to the day before the first known sync were available on their own day, as far as is known.
+            early = end_of_day(syncs[0][0]) - 86400 if syncs else None
+            days: dict[str, str | None] = {}
+            for ts, version in self._steps(package):
+                if early is None or ts <= early:
+                    days[day_of(ts)] = version
+                elif day := next((day for day, cut in syncs if cut >= ts), ""):
+                    days[day] = version
+            self._arrivals[package] = tuple(days.items())
+        return self._arrivals[package]
+
+    def _steps(self, package: str) -> list[tuple[int, str | None]]:
+        """(moment, version) of every release of a package in this distro."""
         events = []
         for repository in self._homes(package):
             held = False
@@ -316,16 +349,16 @@ class DistroTarget(Target):
                     events.append((ts, not here, _upstream(version) if version and here else None))
                 held = here
         events.sort(key=lambda event: event[:2])
-        steps: list[tuple[str, str | None]] = []
+        steps: list[tuple[int, str | None]] = []
         last: tuple[int, str | None] | None = None
         for ts, _, version in events:
             # A move between repositories in one commit is no drop: its arrival sorts first.
             if version is None and last and last[0] == ts and last[1] is not None:
                 continue
             if last is None or last[1] != version:
-                steps.append((day_of(ts), version))
+                steps.append((ts, version))
             last = (ts, version)
-        return tuple(steps)
+        return steps
 
     def _homes(self, package: str) -> list[int]:
         return [
@@ -607,6 +640,18 @@ class DistroTarget(Target):
             return self._facts.libraries[wanted]
         cell = self._libraries().get(wanted)
         return cell.version if cell else None
+
+    def came_with_release(self, name: str) -> bool:
+        """True for platform libraries that everybody has in this version since the distro's release: it stays on one
+        platform, this one, and nothing else brings the library."""
+        wanted = library_name(name)
+        if self._facts is None or self.distro == "rolling" or self.platform != self._facts.platform:
+            return False
+        return wanted not in self._own_libraries and wanted not in self._facts.libraries_from
+
+    def overridden(self, package: str) -> bool:
+        """True for ROS packages whose version was given for this machine, and is not the distro's."""
+        return package in self._overrides
 
     def library_source(self, name: str) -> str:
         """Where a platform library's version is from, in words; empty when the version is not known."""

@@ -28,6 +28,7 @@ Not reported
 from ...model.package import NameUse
 from ...model.view import View
 from ...model.workspace import Package
+from ...targets.evidence import evidence_of
 from ...targets.library import default_standard, standard_year
 from ...targets.target import Change
 from ...targets.uses import function_of, standards_of
@@ -78,6 +79,7 @@ def changed_signature(view: View):
                     later.new,
                     package.name,
                     severity="warning" if loud else "note",
+                    evidence=evidence_of(later, ahead=True),
                 )
                 continue
             when = "is no longer" if change.state == "removed" else "is not yet"
@@ -88,6 +90,7 @@ def changed_signature(view: View):
                 change.new,
                 package.name,
                 severity=_how_bad(view, use, certain),
+                evidence=evidence_of(change),
             )
 
 

@@ -20,6 +20,7 @@ Not reported
 """
 
 from ...model.view import View
+from ...targets.evidence import evidence_of
 from ..rule import Hit, rule
 
 
@@ -45,4 +46,5 @@ def deprecated_name(view: View):
                 f"`{text}` is deprecated in {change.package} {change.version}".strip(),
                 f"use `{change.new}`" if change.new else "",
                 package.name,
+                evidence=evidence_of(change),
             )

@@ -22,6 +22,7 @@ Not reported
 from ...model.package import IncludeUse
 from ...model.view import View
 from ...model.workspace import Package
+from ...targets.evidence import evidence_of
 from ...targets.target import Change
 from ..cure import Replace
 from ..rule import Hit, rule
@@ -48,6 +49,7 @@ def moved_header(view: View):
                 else "",
                 package.name,
                 fix=respelt(view, package, include, change),
+                evidence=evidence_of(change),
             )
 
 

@@ -22,6 +22,7 @@ Not reported
 """
 
 from ...model.view import View
+from ...targets.evidence import evidence_of
 from ..rule import Hit, rule
 
 
@@ -51,4 +52,5 @@ def removed_cmake_name(view: View):
                 f"use `{change.new}`" if change.new else "",
                 package.name,
                 severity="warning" if kind == "variable" or not view.certain(conditions) else "error",
+                evidence=evidence_of(change),
             )

@@ -31,6 +31,7 @@ from collections.abc import Iterator
 from ...model.package import IncludeUse, is_header
 from ...model.view import View
 from ...model.workspace import Package
+from ...targets.evidence import evidence_of
 from ...targets.target import Change
 from ..rule import Hit, rule
 from .moved_header import respelt
@@ -78,6 +79,7 @@ def removed_header(view: View):
                     package.name,
                     severity=severity,
                     fix=respelt(view, package, include, change),
+                    evidence=evidence_of(change),
                 )
                 continue
             change = early.get(path)
@@ -90,6 +92,7 @@ def removed_header(view: View):
                     f"include `{change.old}`, or choose with __has_include",
                     package.name,
                     severity=severity,
+                    evidence=evidence_of(change),
                 )
                 continue
             change = view.later.get(path)
@@ -98,7 +101,9 @@ def removed_header(view: View):
                 continue
             lost = view.lost_header(path)
             if lost is not None:
-                yield Hit(include.at, path, lost.message, lost.help, package.name, severity=severity)
+                yield Hit(
+                    include.at, path, lost.message, lost.help, package.name, severity=severity, evidence=lost.evidence
+                )
                 continue
             wrong = view.misnamed_interface(path) or view.lost_interface(path)
             if wrong is None and (soon := view.coming_interface(path)) is not None:
@@ -109,12 +114,21 @@ def removed_header(view: View):
                     soon.help,
                     package.name,
                     severity="warning" if severity == "error" else "note",
+                    evidence=soon.evidence,
                 )
                 continue
             if wrong is None and path not in gone and path not in early and path not in view.later:
                 quiet.add(path)
             if wrong and not dual:
-                yield Hit(include.at, path, wrong.message, wrong.help, package.name, severity=severity)
+                yield Hit(
+                    include.at,
+                    path,
+                    wrong.message,
+                    wrong.help,
+                    package.name,
+                    severity=severity,
+                    evidence=wrong.evidence,
+                )
         yield from _what_is_coming(view, package, coming)
 
 
@@ -133,6 +147,7 @@ def _what_is_coming(view: View, package: Package, coming: list[tuple[IncludeUse,
             package.name,
             severity="warning" if first.get(include.path) is include else "note",
             fix=respelt(view, package, include, change),
+            evidence=evidence_of(change, ahead=True),
         )
 
 

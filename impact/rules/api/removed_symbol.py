@@ -31,6 +31,7 @@ from ...facts.condition import Condition
 from ...model.package import NameUse, is_header
 from ...model.view import View
 from ...targets.changes import excuses, removed_in
+from ...targets.evidence import evidence_of
 from ...targets.library import include_roots
 from ...targets.stdlib import stood_in_for
 from ...targets.target import Change
@@ -85,6 +86,7 @@ def removed_symbol(view: View):
                         f"use `{change.old}`" if change.old else "",
                         package.name,
                         severity="warning",
+                        evidence=evidence_of(change),
                     )
                 continue
             if change is None:
@@ -132,6 +134,7 @@ def removed_symbol(view: View):
                 f"use `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
                 package.name,
                 severity="error" if sure else "note" if guarded else "warning",
+                evidence=evidence_of(change),
             )
         yield from _what_is_coming(view, package.name, coming)
 
@@ -152,6 +155,7 @@ def _what_is_coming(view: View, package: str, coming: list[tuple[NameUse, Change
             f"use `{later.new}`" if later.new else "",
             package,
             severity="warning" if loud and first.get(later.package) == rank else "note",
+            evidence=evidence_of(later, ahead=True),
         )
 
 

@@ -58,7 +58,15 @@ def unknown_field(view: View):
                 coming = view.coming_member(use)
                 if coming is not None:
                     severity = "warning" if use.sure and use.role != "aside" else "note"
-                    yield Hit(use.at, use.member, coming.message, coming.help, package.name, severity=severity)
+                    yield Hit(
+                        use.at,
+                        use.member,
+                        coming.message,
+                        coming.help,
+                        package.name,
+                        severity=severity,
+                        evidence=coming.evidence,
+                    )
                 continue
             built = view.built(use.role) and use.language == "cpp" and view.certain(use.conditions)
             yield Hit(
@@ -68,6 +76,7 @@ def unknown_field(view: View):
                 lacking.help,
                 package.name,
                 severity="note" if use.role == "aside" else "error" if built and use.sure else "warning",
+                evidence=lacking.evidence,
             )
         for imported in package.digest.imports:
             for name in imported.names:
@@ -81,6 +90,7 @@ def unknown_field(view: View):
                     lost.help,
                     package.name,
                     severity="note" if imported.role == "aside" or imported.conditions else "warning",
+                    evidence=lost.evidence,
                 )
 
 

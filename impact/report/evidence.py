@@ -1,0 +1,77 @@
+"""What a finding rests on, as the reports show it: a few lines for a person, an object for programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..rules.rule import Finding
+from ..targets.evidence import Evidence, OnTarget
+
+_WORDS = {"removed": "gone", "added": "there", "changed": "changed", "deprecated": "deprecated"}
+_MOST_DECLARATIONS = 2
+_MOST_TARGETS = 5
+
+
+def lines(finding: Finding) -> list[tuple[str, str]]:
+    """(label, text) of what the message does not say: the declarations `was` and `now`, and `when` each target got the
+    change. Empty where nothing more is known."""
+    evidence = finding.evidence
+    if evidence is None:
+        return []
+    found = [*_declarations("was", evidence.old), *_declarations("now", evidence.new)]
+    when = _when(evidence)
+    return [*found, ("when", when)] if when else found
+
+
+def as_object(evidence: Evidence) -> dict[str, Any]:
+    """The evidence as findings.schema.json describes it."""
+    data: dict[str, Any] = {"package": evidence.package, "change": evidence.change}
+    for key, value in (
+        ("name", evidence.name),
+        ("instead", evidence.instead),
+        ("old", list(evidence.old)),
+        ("new", list(evidence.new)),
+        ("last", evidence.last),
+        ("first", evidence.first),
+        ("source", evidence.source),
+    ):
+        if value:
+            data[key] = value
+    data["targets"] = [
+        {"target": one.target, "version": one.version, "holds": one.holds} | ({"since": one.since} if one.since else {})
+        for one in evidence.targets
+    ]
+    return data
+
+
+def _declarations(label: str, declarations: tuple[str, ...]) -> list[tuple[str, str]]:
+    shown = [(label, text) for text in declarations[:_MOST_DECLARATIONS]]
+    more = len(declarations) - len(shown)
+    return [*shown[:-1], (label, f"{shown[-1][1]} (and {more} more)")] if more else shown
+
+
+def _when(evidence: Evidence) -> str:
+    """`gone between rclcpp 28.3.1 and 28.3.2: rolling since 2024-08-21, still on humble (16.0.20)`; empty where neither
+    a version nor a day is known, or nobody asked for differs from what it says."""
+    got = [f"{one.target} since {one.since}" for one in evidence.targets if one.holds and one.since]
+    others = [one for one in evidence.targets if not one.holds]
+    if not got and not others and not evidence.first[:1].isdigit():
+        return ""
+    word = _WORDS[evidence.change]
+    if evidence.last and evidence.first:
+        head = f"{word} between {evidence.package} {evidence.last} and {evidence.first}"
+    elif evidence.first == "ros2":
+        head = f"{word} since ROS 2"
+    elif evidence.first:
+        head = f"{word} since " + (f"{evidence.package} " if evidence.first[0].isdigit() else "") + evidence.first
+    else:
+        head = word
+    lasting = "still on" if evidence.change == "removed" else "not on"
+    got += [f"{lasting} {_named(one)}" for one in others[:1]] + [_named(one) for one in others[1:]]
+    more = len(got) - _MOST_TARGETS
+    return f"{head}: {', '.join(got[:_MOST_TARGETS])}" + (f" and {more} more" if more > 0 else "") if got else head
+
+
+def _named(one: OnTarget) -> str:
+    until = f", until {one.since}" if one.since else ""
+    return f"{one.target} ({one.version}{until})"
