@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from .model.view import View
 
 
+_CMAKE = ("cmake", "command", "target", "variable")
+
+
 class Split(NamedTuple):
     """Two spellings of one name, the older and the newer, with the targets that take only the one or the other.
 
@@ -87,7 +90,7 @@ def _used(evidence: Evidence, view: View, spoken: frozenset[str]) -> bool | None
     """Whether the spelling that is used is there."""
     if view.target.name in spoken:
         return False
-    if evidence.language == "header":
+    if evidence.side == "header":
         return view.environment.headers(evidence.name)
     on: Mapping[str, OnTarget] = {one.target: one for one in evidence.targets}
     here = on.get(view.target.name)
@@ -96,7 +99,7 @@ def _used(evidence: Evidence, view: View, spoken: frozenset[str]) -> bool | None
 
 def _other(evidence: Evidence, view: View) -> bool | None:
     """Whether the other spelling is there."""
-    if evidence.language == "header":
+    if evidence.side == "header":
         return view.environment.headers(evidence.instead)
     if evidence.other is None:
         return None
@@ -138,20 +141,18 @@ def _guarded(split: Split) -> str:
     """What to write where neither spelling is right everywhere."""
     evidence = split.evidence
     where = f"{_listed(split.old_only)} {'has' if len(split.old_only) == 1 else 'have'} only `{split.old}`"
-    if evidence.language == "header":
-        return (
-            f"`#if __has_include(<{split.new}>)`, include it, `#else` include `{split.old}`: {where}"
-        )
-    if evidence.language == "python":
+    if evidence.side == "header":
+        return f"`#if __has_include(<{split.new}>)`, include it, `#else` include `{split.old}`: {where}"
+    if evidence.side == "python":
         return f"take `{split.new}` where it is there (`try`, or `hasattr`), else `{split.old}`: {where}"
     package = evidence.package
-    if evidence.language == "cpp" and split.first:
+    if evidence.side == "c++" and split.first:
         test = version_test(package, evidence.library, split.first, ros=split.ros, oldest=split.oldest)
         if test is not None:
             return f"`#if {test.text}` use `{split.new}`, `#else` `{split.old}`, with `{test.header}` included: {where}"
     if split.first:
         cmake = f"`if({package}_VERSION VERSION_GREATER_EQUAL {split.first})`"
-        if evidence.language == "cmake":
+        if evidence.side in _CMAKE:
             return f"{cmake} use `{split.new}`, else `{split.old}`: {where}"
         return f"use `{split.new}` or `{split.old}` by a definition that CMake sets {cmake}: {where}"
     return f"use `{split.new}` or `{split.old}`, whichever is there: {where}"

@@ -421,9 +421,10 @@ class View:
         rows = definition.members(use.section, use.member)
         if any(there(row.spans, later[1]) for row in rows) or not any(there(row.spans, now[1]) for row in rows):
             return None
-        lost = _field_lost(use.package, now[0], [span for row in rows for span in row.spans], later[1])
+        spans = [span for row in rows for span in row.spans]
+        lost = _field_lost(use.package, now[0], spans, later[1])._replace(name=use.member, ahead=True)
         return Misnamed(f"`{use.member}` of `{use.package}/{use.interface}` is there, and gone in {use.package} "
-                        f"{later[2]} of {self.target.distro}", "", lost._replace(name=use.member, ahead=True))  # fmt: skip
+                        f"{later[2]} of {self.target.distro}", "", lost)  # fmt: skip
 
     def coming_interface(self, path: str) -> Misnamed | None:
         """The same for the interface of a generated header."""

@@ -18,7 +18,8 @@ def lines(finding: Finding) -> list[tuple[str, str]]:
     evidence = finding.evidence
     if evidence is None:
         return []
-    found = [*_declarations("was", evidence.old), *_declarations("now", evidence.new)]
+    since = "new" if evidence.change == "added" else "now"
+    found = [*_declarations("was", evidence.old), *_declarations(since, evidence.new)]
     when = _when(evidence)
     return [*found, ("when", when)] if when else found
 
@@ -57,7 +58,7 @@ def _when(evidence: Evidence) -> str:
     others = [one for one in evidence.targets if not one.holds]
     if not got and not others and not evidence.first[:1].isdigit():
         return ""
-    word = _WORDS[evidence.change]
+    word = _WORDS.get(evidence.change, evidence.change)
     if evidence.last and evidence.first:
         head = f"{word} between {evidence.package} {evidence.last} and {evidence.first}"
     elif evidence.first == "ros2":

@@ -165,7 +165,10 @@ def finding_lines(report: Report, finding: Finding, style: Style) -> list[str]:
             caret = painted(style, finding.severity, "^" * width)
             lines.append(f"  {' ' * margin} {painted(style, 'dim', '|')} {' ' * offset}{caret}")
     for label, text in evidence.lines(finding):
-        lines.append(f"  {painted(style, 'dim', f'{label}:')} {one_line(text)}")
+        shown, room = one_line(text), style.width - len(label) - 4
+        # Declarations can be long; what they were called comes first.
+        cut = label != "when" and cells(shown) > room
+        lines.append(f"  {painted(style, 'dim', f'{label}:')} {shown[: room - 3] + '...' if cut else shown}")
     if finding.help:
         lines.append(f"  {painted(style, 'help', 'help:')} {one_line(finding.help)}")
     return lines

@@ -6,18 +6,22 @@ the change is in force there and on which day its distro got it, told by the shi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from .changes import DISTROS, Row, all_rows, reached, version_of
 from .distro import DistroTarget, known_distros, releases
+from .offers import declarations, effect, there_at
 from .providers import Providers
 from .target import Change, Target
 from .uses import all_uses
-from .version import at_least
+from .version import at_least, parts
 
-What = Literal["removed", "added", "changed", "deprecated"]
+if TYPE_CHECKING:
+    from .offers import Offered
+    from .surface_changes import Event, Line
+    from .surface_store import Surfaces
 
 
 class OnTarget(NamedTuple):
@@ -39,20 +43,22 @@ class Evidence(NamedTuple):
 
     package: a ROS package or, where library is set, a platform library. change: removed, added, changed or deprecated.
     name: what is used; instead: the other spelling, where there is one that some versions take: the new one of a name
-    that was removed, the old one of a name that was added. language: `cpp`, `python`, `cmake` or `header`.
+    that was removed, the old one of a name that was added. side: `c++`, `header`, `python`, `cmake` or as in
+    surface_changes.Line; empty where no surface is to be asked.
     old, new: the declarations before and since, a line each, one for each overload; empty where none is recorded. last,
     first: the last version before the change and the first with it, as far as they are known; first may be a bound as
     in changes.Row. source: what says so, for rows that a person wrote. new_in: where `first` does not tell, distro to
     the first version with the change (empty: never there). header: an include path whose presence in a release of the
-    package decides instead, where that is known. ahead: the finding is about what is to come on its targets. other:
-    the same about `instead`, where it is known. targets: see seen_on().
+    package decides instead, where that is known. ahead: the finding is about what is to come on its targets. stored:
+    the stored surfaces tell which versions have the change. other: the same about `instead`, where it is known.
+    targets: see seen_on().
     """
 
     package: str
     change: str
     name: str = ""
     instead: str = ""
-    language: str = ""
+    side: str = ""
     old: tuple[str, ...] = ()
     new: tuple[str, ...] = ()
     last: str = ""
@@ -62,6 +68,7 @@ class Evidence(NamedTuple):
     new_in: tuple[tuple[str, str], ...] = ()
     header: str = ""
     ahead: bool = False
+    stored: bool = False
     other: Evidence | None = None
     targets: tuple[OnTarget, ...] = ()
 
@@ -83,13 +90,13 @@ def _evidence_of(change: Change) -> Evidence:
     if use is None:
         return Evidence(change.package, what, library=change.library, source=change.source)
     first = use.new_since if change.state == "absent" else use.removed_in
-    return Evidence(use.package, what, use.label, language=use.pattern.language,
+    return Evidence(use.package, what, use.label, side="python" if use.pattern.language == "python" else "c++",
                     last=_before(first, use.library, use.source, use.package), first=first, library=use.library,
                     source=use.source)  # fmt: skip
 
 
 _WHAT = {"absent": "added", "deprecated": "deprecated"}
-_LANGUAGES = {"header": "header", "python": "python", "cmake": "cmake", "api": "cpp"}
+_SIDES = {"header": "header", "python": "python", "cmake": "cmake", "api": "c++"}
 
 
 def _of_row(row: Row, state: str) -> Evidence:
@@ -102,18 +109,18 @@ def _of_row(row: Row, state: str) -> Evidence:
 
 def _gone(row: Row) -> Evidence:
     """That the old name went."""
-    language = _LANGUAGES.get(row.kind.partition("-")[0], "")
+    side = _SIDES.get(row.kind.partition("-")[0], "")
     # Where an old name came back, no one version tells who has it.
     first = "" if row.back_in else row.removed_in
-    return Evidence(row.package, "changed" if row.kind == "api-changed" else "removed", row.old, row.new, language,
+    return Evidence(row.package, "changed" if row.kind == "api-changed" else "removed", row.old, row.new, side,
                     last=_before(first, row.library, row.source, row.package), first=first, library=row.library,
-                    source=row.source, header="" if row.library or language != "header" else row.old)  # fmt: skip
+                    source=row.source, header="" if row.library or side != "header" else row.old)  # fmt: skip
 
 
 def _new(row: Row) -> Evidence:
     """That the new name came."""
     gone = _gone(row)
-    return Evidence(row.package, "added", row.new, row.old, gone.language, first=row.new_since, library=row.library,
+    return Evidence(row.package, "added", row.new, row.old, gone.side, first=row.new_since, library=row.library,
                     source=row.source, new_in=tuple(row.new_in.items()),
                     header=row.new if gone.header else "")  # fmt: skip
 
@@ -149,6 +156,72 @@ def _uses():
     return {use.label: use for use in all_uses()}
 
 
+# -- from the stored surfaces ------------------------------------------------------------------------------------------
+
+
+@cache
+def surfaces() -> Surfaces:
+    """The shipped surfaces."""
+    from .surface_store import shipped
+
+    return shipped()
+
+
+def of_offered(offered: Offered) -> Evidence:
+    """The evidence for what the offers of a target say of a name."""
+    change = {"moved": "removed", "absent": "added"}.get(offered.state, offered.state)
+    return Evidence(offered.package, change, offered.name, offered.instead, offered.side,
+                    last=offered.last, first=offered.first, stored=True)  # fmt: skip
+
+
+def from_surfaces(evidence: Evidence, target: Target) -> Evidence:
+    """The evidence with what the stored surfaces tell of the name: declarations, and the versions between which it
+    changed as a target sees it. As it was where they know nothing of such a change."""
+    version = None if evidence.library or evidence.ahead else target.version(evidence.package)
+    line = surfaces().lines(evidence.package).get(target.ros) if version and evidence.side else None
+    place = line.place(version) if line is not None and version else None
+    if line is None or place is None:
+        return evidence
+    sides = ("command", "target", "variable") if evidence.side == "cmake" else (evidence.side,)
+    for side in sides:
+        event = _deciding(evidence.change, side, line.events.get(side, {}).get(evidence.name, ()), place)
+        if event is not None and event.place:
+            last, first = line.versions[event.place - 1], line.versions[event.place]
+            found = evidence._replace(side=side, last=last, first=first, new_in=(), stored=True)
+            found = found if evidence.change == "deprecated" else _declared(found)
+            guessed = not evidence.stored and (last in line.approximate or first in line.approximate)
+            if guessed or evidence.new_in or evidence.first[:1].isdigit():
+                # A branch stood for one of them; or a person found out the very version, and not all are stored.
+                return found._replace(
+                    last=evidence.last, first=evidence.first, new_in=evidence.new_in, stored=evidence.stored
+                )
+            return found
+    return evidence
+
+
+def _declared(evidence: Evidence) -> Evidence:
+    """The evidence with the declarations before and since."""
+    old, new = (
+        declarations(surfaces(), evidence.package, evidence.side, evidence.name, version)
+        for version in (evidence.last, evidence.first)
+    )
+    # What only changed beneath, such as a base, is declared as before.
+    return evidence._replace(old=old, new=new) if old != new else evidence
+
+
+def _deciding(change: str, side: str, events: Sequence[Event], place: int) -> Event | None:
+    """The event of a name that made it what it is on a target; None when none did."""
+    if change == "added":
+        found = next((event for event in events if event.place > place), None)
+        return found if found is not None and effect(side, found) == "come" else None
+    past = [event for event in events if event.place <= place]
+    if change == "deprecated":
+        return next((e for e in reversed(past) if any(told.kind == "deprecated" for told in e.told)), None)
+    if not past or (effect(side, past[-1]) == "gone") != (change == "removed"):
+        return None
+    return past[-1]
+
+
 # -- on the targets asked for ------------------------------------------------------------------------------------------
 
 
@@ -161,9 +234,10 @@ def seen_on(
     spoken_of: names of the targets that the finding holds for. Where what is known of the versions contradicts the
     finding, versions and days are left out rather than shown; None when nothing remains.
     """
-    evidence = _with_version(evidence, providers)
-    found = tuple(one for target in targets if (one := _on(evidence, target, providers)) is not None)
     spoken = frozenset(spoken_of)
+    told = next((target for target in targets if target.name in spoken), None)
+    evidence = from_surfaces(evidence, told) if told is not None else evidence
+    found = tuple(one for target in targets if (one := _on(evidence, target, providers)) is not None)
     expected = (evidence.change != "added") != evidence.ahead
     if any(one.holds != expected for one in found if one.target in spoken):
         evidence = evidence._replace(first="", last="")
@@ -171,28 +245,6 @@ def seen_on(
     if not (evidence.old or evidence.new or evidence.first or evidence.last or evidence.source or found):
         return None
     return evidence._replace(targets=found)
-
-
-def _with_version(evidence: Evidence, providers: Providers) -> Evidence:
-    """The evidence with versions instead of a distro, where the releases of rolling tell in which one a header came or
-    went: whatever changes comes to rolling first."""
-    if not evidence.header or evidence.first[:1].isdigit() or evidence.first == "ros2" or evidence.new_in:
-        return evidence
-    there: list[tuple[str, bool]] = []
-    for _, version in _rolling().arrivals(evidence.package):
-        has = providers.has_header(evidence.package, evidence.header, "rolling", version) if version else None
-        if version and has is not None:
-            there.append((version, has))
-    changes = [(old, new) for old, new in zip(there, there[1:], strict=False) if old[1] != new[1]]
-    if len(changes) != 1 or changes[0][1][1] != (evidence.change == "added"):
-        return evidence
-    (last, _), (first, _) = changes[0]
-    return evidence._replace(last=last, first=first)
-
-
-@cache
-def _rolling() -> DistroTarget:
-    return DistroTarget("rolling")
 
 
 def holds_on(evidence: Evidence, target: Target, providers: Providers) -> bool | None:
@@ -213,6 +265,9 @@ def _on(evidence: Evidence, target: Target, providers: Providers) -> OnTarget | 
 
 def _holds(evidence: Evidence, version: str, target: Target, providers: Providers) -> bool | None:
     """Whether a change is in force in a version that a target has, or had; None when that is not known."""
+    if evidence.stored:
+        line = surfaces().lines(evidence.package).get(target.ros)
+        return _holds_by(line, evidence, version) if line is not None else None
     if evidence.header:
         there = providers.has_header(evidence.package, evidence.header, target.distro, version)
         if there is not None:
@@ -224,6 +279,26 @@ def _holds(evidence: Evidence, version: str, target: Target, providers: Provider
     return reached(evidence.first, version, target) if evidence.first else None
 
 
+def _holds_by(line: Line, evidence: Evidence, version: str) -> bool | None:
+    """The same by the stored versions. One that is not stored is taken to be like the stored one that shares its first
+    two numbers; else it is known where its stored neighbours agree."""
+    place = line.place(version)
+    events = line.events.get(evidence.side, {}).get(evidence.name)
+    if place is None or not events:
+        return None
+    near = [at for at in (place, place + 1) if at < len(line.versions)]
+    alike = [at for at in near if parts(line.versions[at])[:2] == parts(version)[:2]]
+    asked = alike[:1] or near
+    held = {_holds_at(evidence, events, line, at) for at in asked}
+    return held.pop() if len(held) == 1 else None
+
+
+def _holds_at(evidence: Evidence, events: tuple[Event, ...], line: Line, place: int) -> bool:
+    if evidence.change in ("changed", "deprecated"):
+        return at_least(line.versions[place], evidence.first)
+    return there_at(evidence.side, events, place) == (evidence.change == "added")
+
+
 def _since(evidence: Evidence, target: Target, holds: bool, providers: Providers) -> str:
     if not isinstance(target, DistroTarget):
         return ""
@@ -233,23 +308,21 @@ def _since(evidence: Evidence, target: Target, holds: bool, providers: Providers
     if target.overridden(evidence.package):
         return ""
 
-    def there(version: str) -> bool:
-        return bool(_holds(evidence, version, target, providers))
-
-    day = _first_day(target.arrivals(evidence.package), there)
     if holds and target.distro == "rolling" and evidence.first in DISTROS:
         return ""  # such a bound is only known to hold from a release on
     # Before its announced release a distro is being made.
-    return max(day, released) if day and target.distro != "rolling" else day
-
-
-def _first_day(arrivals: Iterable[tuple[str, str | None]], there: Callable[[str], bool]) -> str:
-    """The day since which all later versions have a change; empty when the last one has not."""
-    since = ""
-    for day, version in arrivals:
-        if version is not None:
-            since = (since or day) if there(version) else ""
-    return since
+    begin = released if target.distro != "rolling" else ""
+    since, unknown = "", False
+    for day, version in target.arrivals(evidence.package):
+        there = _holds(evidence, version, target, providers) if version is not None else None
+        if there is None:
+            unknown = version is not None
+        elif not there:
+            since, unknown = "", False
+        elif not since:
+            # Which of the versions before brought it, is not known; before the release nobody cares.
+            since = max(day, begin) if not unknown or day <= begin else "?"
+    return since.rstrip("?")
 
 
 @cache

@@ -4,12 +4,13 @@ changed or on their way out. Asked of the shipped surfaces; packages of which no
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from .surface_changes import Event, Form, Line, Told
 
 if TYPE_CHECKING:
+    from .surface import State
     from .surface_store import Surfaces
     from .target import Target
 
@@ -124,12 +125,8 @@ class Offer:
         versions = self.line.versions
         past = [event for event in events if event.place <= self.place]
         future = [event for event in events if event.place > self.place]
-        if past:
-            there = _effect(side, past[-1]) != "gone"
-            here = past[-1].has
-        else:
-            there = _effect(side, future[0]) != "come"
-            here = future[0].had
+        there = there_at(side, events, self.place)
+        here = past[-1].has if past else future[0].had
         told = (past[-1] if past else future[0]).told
         deciding = past[-1:] if past else future[:1]
         if there:
@@ -164,7 +161,7 @@ class Offer:
             first,
             coming.has if coming is not None else None,
             versions[coming.place] if coming is not None else "",
-            next((versions[e.place] for e in future if there and _effect(side, e) == "gone"), ""),
+            next((versions[e.place] for e in future if there and effect(side, e) == "gone"), ""),
             told,
             instead,
             moved_to,
@@ -178,23 +175,40 @@ class Offer:
 
     def declarations(self, side: str, name: str, version: str) -> tuple[str, ...]:
         """How a stored version declares a name of C++ or Python, a line for each overload. Reads the whole version."""
-        from .surface import State, declared
-        from .surface_python import UNKNOWN, shown
+        return declarations(self._offers.surfaces, self.package, side, name, version)
 
-        history = self._offers.surfaces.history(self.package)
-        surface = history.surface(version) if history is not None else None
-        if surface is None:
-            return ()
-        state = State({self.package: surface})
-        if side == "c++":
-            return tuple(dict.fromkeys(declared(place.entity) for place in state.cpp.get(name, ())))
-        if side == "python":
-            entry = state.python(self.package).find(name)
-            return () if entry is None or entry is UNKNOWN else (f"{name}{shown(entry)}",)
+
+def declarations(surfaces: Surfaces, package: str, side: str, name: str, version: str) -> tuple[str, ...]:
+    """How a stored version of a package declares a name of C++ or Python, a line for each overload; empty for anything
+    else. Reads the whole version."""
+    from .surface import declared
+    from .surface_python import UNKNOWN, shown
+
+    state = _state(surfaces, package, version) if side in ("c++", "python") else None
+    if state is None:
         return ()
+    if side == "c++":
+        return tuple(dict.fromkeys(declared(place.entity) for place in state.cpp.get(name, ())))
+    entry = state.python(package).find(name)
+    return () if entry is None or entry is UNKNOWN else (f"{name}{shown(entry)}",)
 
 
-def _effect(side: str, event: Event) -> str:
+@lru_cache(maxsize=8)
+def _state(surfaces: Surfaces, package: str, version: str) -> State | None:
+    from .surface import State
+
+    history = surfaces.history(package)
+    surface = history.surface(version) if history is not None else None
+    return State({package: surface}) if surface is not None else None
+
+
+def there_at(side: str, events: tuple[Event, ...], place: int) -> bool:
+    """Whether a name of which these are all events is there in the version at a place of its line."""
+    past = [event for event in events if event.place <= place]
+    return effect(side, past[-1]) != "gone" if past else effect(side, events[0]) != "come"
+
+
+def effect(side: str, event: Event) -> str:
     """What an event does to a name: it is `gone`, it has `come`, or it has another `form`."""
     whole = [told for told in event.told if "overload" not in told.aspects]
     come = any(told.kind == "added" for told in whole)
