@@ -10,7 +10,7 @@ from .rules.rule import Finding
 from .targets.changes import version_of
 from .targets.evidence import Evidence, OnTarget, holds_on, seen_on
 from .targets.version import at_least
-from .targets.version_tests import version_test
+from .targets.version_macros import version_test
 
 if TYPE_CHECKING:
     from .model.view import View

@@ -4,7 +4,7 @@ import pytest
 from rosimpact.impact.check import Options, check
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.model.conditions import Environment, all_hold
-from rosimpact.impact.targets.version_tests import version_test
+from rosimpact.impact.targets.version_macros import version_test
 
 MANIFEST = """<package format="3">
   <name>winch</name><version>1.0.0</version><description>d</description>
@@ -92,7 +92,7 @@ TESTS = [
 
 
 @pytest.mark.parametrize(("package", "library", "version", "oldest", "below", "at", "text"), TESTS)
-def test_version_tests_hold_from_their_version_on(package, library, version, oldest, below, at, text):
+def test_version_macros_hold_from_their_version_on(package, library, version, oldest, below, at, text):
     test = version_test(package, library, version, ros=1 if package == "roscpp" else 2, oldest=oldest)
     assert test is not None and test.text == text
     name = {"rclcpp_action": "rclcpp"}.get(package, package)
