@@ -25,6 +25,7 @@ from .rules.rule import Cure, Edit, Hit
 from .targets.evidence import Evidence
 from .targets.fields import default_fields
 from .targets.snapshot import data_stamp
+from .targets.surface_store import shipped
 from .targets.target import Change, Target
 
 _CURES: dict[str, type] = {kind.__name__: kind for kind in (Declare, Remove, Replace, Insert, Edit)}
@@ -57,10 +58,12 @@ def watched(store: Store) -> Watched:
     data = store.memo("watched", name)
     if data is not None:
         with contextlib.suppress(msgspec.MsgspecError):
-            return structs.replace(msgspec.msgpack.decode(data, type=Watched), fields=default_fields())
+            known = msgspec.msgpack.decode(data, type=Watched)
+            return structs.replace(known, fields=default_fields(), surfaces=shipped())
     names = watch.watched()
-    # The table of fields is read from its own file, where it is asked.
-    store.remember("watched", [(name, msgspec.msgpack.encode(structs.replace(names, fields=None)))])
+    # The table of fields and the surfaces are read from files of their own, where they are asked.
+    bare = structs.replace(names, fields=None, surfaces=None)
+    store.remember("watched", [(name, msgspec.msgpack.encode(bare))])
     return names
 
 

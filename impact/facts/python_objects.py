@@ -32,8 +32,9 @@ class PythonUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     name: dotted, import aliases resolved; a relative import has leading dots. A member of an object is called by what
     made the object, `pkg.mod.Class.member`, whether that is a class or a function.
-    how: `call`, `member` (of an object, not called) or `override` (a method that a class defines; name is then that of
-    the base's). given: of a call. parameters: of an override, as Python writes them, defaults as `...`.
+    how: `call`, `method` (a call of a member of an object), `member` (of an object, not called) or `override` (a method
+    that a class defines; name is then that of the base's). given: of a call. parameters: of an override, as Python
+    writes them, defaults as `...`.
     lazy: only a function that may not run uses it. alone: no other base class is known, or not known, that could have
     the member.
     """
@@ -119,8 +120,9 @@ class Objects(Values):
         while looking is not None:
             known = looking.imports.get(node.id)
             if known is not None:
-                # What several imports bind is left to those who watch single names.
-                return ".".join([known[0][0], *reversed(parts)]) if len(known) == 1 else ""
+                # What several imports bind, or one under a condition, is left to those who watch single names.
+                plain = len(known) == 1 and not known[0][1]
+                return ".".join([known[0][0], *reversed(parts)]) if plain else ""
             if node.id in looking.bound:
                 return f"{_OWN}{node.id}" if not parts and node.id in self.classes else ""
             looking = looking.parent
@@ -237,7 +239,7 @@ class Objects(Values):
         """Every use of what is not the file's own, in the order of the source. column: of a line and an offset."""
         found: dict[tuple, PythonUse] = {}
         for raw in self.raw.values():
-            how = "call" if raw.given is not None else "member"
+            how = "member" if raw.given is None else "method" if raw.member else "call"
             for type_, alone in self.types(raw):
                 name = f"{type_}.{raw.member}" if raw.member else type_
                 key = (name, how, raw.given, raw.conditions)

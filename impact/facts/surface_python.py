@@ -233,7 +233,7 @@ class _Module:
                 kind = "classmethod"
         if "overload" in last:
             conditions = (*conditions, Condition("python", "overload"))
-        given = tuple(_parameters(node.args))
+        given = tuple(parameters_of(node.args))
         if scope and kind != "staticmethod" and given and given[0].kind in ("positional", "normal"):
             given = given[1:]
         self.names.append(
@@ -462,7 +462,7 @@ _INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem) + (
 )
 
 
-def _parameters(arguments: ast.arguments) -> Iterator[Parameter]:
+def parameters_of(arguments: ast.arguments) -> Iterator[Parameter]:
     """Parameters in order, `self` and `cls` among them."""
     positional = [(a, "positional") for a in arguments.posonlyargs] + [(a, "normal") for a in arguments.args]
     missing = len(positional) - len(arguments.defaults)

@@ -9,6 +9,7 @@ import posixpath
 import re
 from collections.abc import Callable, Container, Iterable, Iterator
 from functools import cache, cached_property
+from typing import Any
 
 import msgspec
 
@@ -19,9 +20,11 @@ from ..facts.launch import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
+from ..facts.python_objects import PythonUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, first_places, place_in, places_of_use, python_text
 from ..targets.fields import Fields
+from .api_python import Changing, python_packages, uses_of
 from .build import At, Build
 from .macros import Macros
 from .members import Interface as Meant
@@ -131,6 +134,14 @@ class MemberUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...] = ()
 
 
+class PythonApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A use of a Python name of another package that may not be the same in all its versions. role: as in ImportUse."""
+
+    use: PythonUse
+    at: At
+    role: str
+
+
 class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """All that rules ask of one package."""
 
@@ -172,6 +183,7 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     functions: tuple[str, ...] = ()
     # Fields and constants of other packages' interfaces that only some versions have.
     members: tuple[MemberUse, ...] = ()
+    python_api: tuple[PythonApiUse, ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -207,7 +219,8 @@ def role_of_folder(path: str) -> str | None:
 class Watched(msgspec.Struct, frozen=True, dict=True):
     """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
     of the standard library the headers that offer them. modules: labels and patterns of uses in Python, by the
-    package that is imported. fields: the table of interfaces."""
+    package that is imported. fields: the table of interfaces. surfaces: what versions of packages offer, as
+    surface_store.Surfaces."""
 
     words: frozenset[str] = frozenset()
     qualified: frozenset[str] = frozenset()
@@ -216,6 +229,12 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     version: str = ""
     fields: Fields | None = None
+    surfaces: Any = None
+
+    @cached_property
+    def changing_python(self) -> Changing | None:
+        """Python names that surfaces tell to have changed."""
+        return Changing(self.surfaces) if self.surfaces is not None else None
 
     def meant(self, text: str) -> str:
         """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
@@ -353,6 +372,7 @@ class _Join:
             uses=tuple(uses),
             functions=tuple(sorted({name for facts in self.cpp.values() for name in facts.functions})),
             members=(*self.members(roles), *self.python_members(python)),
+            python_api=tuple(self.python_api(python)),
         )
 
     # -- which file is compiled by what ------------------------------------------------------------------------------
@@ -585,6 +605,17 @@ class _Join:
                         yield MemberUse(found.interface.package, found.interface.ros, found.interface.name,
                                         found.section, found.member, At(path, line, column),
                                         self.python_role(path), "python", found.sure)  # fmt: skip
+
+    def python_api(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
+        """Uses of Python names of other packages that may not be the same in all versions."""
+        changing = self.watched.changing_python
+        if changing is None:
+            return
+        own = {self.name, *python_packages(self.files)}
+        own.update(posixpath.basename(path).removesuffix(".py") for path in files)
+        for path, facts in files.items():
+            for use in uses_of(facts, frozenset(own), changing):
+                yield PythonApiUse(use, At(path, use.line, use.column), self.python_role(path))
 
     def bare(self, word, path, role, public, targets, conditions) -> NameUse:
         """Where a bare word stands first, outside comments, with the preprocessor conditions around it."""

@@ -21,8 +21,10 @@ from ..targets.fields import History, before, default_fields, there
 from ..targets.includes import Machine, machine_of
 from ..targets.library import include_roots, standard_year
 from ..targets.offers import Offers
+from ..targets.offers_python import PythonOffers
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
+from .api_python import python_packages
 from .build import At, Found, for_tests
 from .conditions import Environment, all_hold
 from .package import MemberUse, role_of_folder
@@ -231,6 +233,19 @@ class View:
     def offers(self) -> Offers:
         """What the released packages offer here, beside what other versions of them do."""
         return Offers(self.target)
+
+    @cached_property
+    def python_offers(self) -> PythonOffers:
+        """The same of their Python names, for uses of them."""
+        return PythonOffers(self.offers)
+
+    @cached_property
+    def own_modules(self) -> frozenset[str]:
+        """Top-level Python modules that packages of the workspace bring, or may bring."""
+        found = {name.removesuffix("_py") for name in self.workspace.packages} | set(self.workspace.packages)
+        for package in self.workspace:
+            found |= python_packages(package.digest.files)
+        return frozenset(found)
 
     @cached_property
     def later_machine(self) -> Machine | None:

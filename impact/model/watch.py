@@ -11,6 +11,7 @@ from ..targets.changes import all_rows, transitive_includes
 from ..targets.fields import default_fields
 from ..targets.includes import offered
 from ..targets.standard import DEFINED_IN
+from ..targets.surface_store import shipped
 from ..targets.uses import all_uses, stamp
 from .package import Watched
 
@@ -56,7 +57,10 @@ def watched() -> Watched:
                 modules,
                 stamp(),
                 fields.version,
+                shipped().stamp,
             )
         ).encode()
     ).hexdigest()
-    return Watched(frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields)
+    return Watched(
+        frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields, shipped()
+    )

@@ -11,6 +11,7 @@ from .surface_changes import Event, Form, Line, Told
 
 if TYPE_CHECKING:
     from .surface import State
+    from .surface_build import BuildSurface
     from .surface_store import Surfaces
     from .target import Target
 
@@ -113,6 +114,15 @@ class Offer:
             events = self.line.events.get(side, {}).get(name)
             self._known[key] = self._offered(side, name, events) if events else None
         return self._known[key]
+
+    @cached_property
+    def build(self) -> BuildSurface:
+        """What the stored version gives to CMake and at run time. Reads the whole version."""
+        from .surface_build import BuildSurface
+
+        history = self._offers.surfaces.history(self.package)
+        surface = history.surface(self.stored) if history is not None else None
+        return surface.build if surface is not None else BuildSurface(self.package)
 
     def every(self, side: str) -> Iterator[Offered]:
         """All such names."""

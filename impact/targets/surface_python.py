@@ -675,7 +675,7 @@ class _Comparison:
     def signatures(self, name: str, old: Entry, new: Entry, sure: bool) -> None:
         assert old.bound is not None and new.bound is not None
         had, has = old.bound.parameters, new.bound.parameters
-        sure = sure and not (_wrapped(old.bound) or _wrapped(new.bound))
+        sure = sure and not (wrapped(old.bound) or wrapped(new.bound))
         problem = broken_by(had, has)
         # Which keywords `**kwargs` stood for cannot be told.
         sure = sure and not (problem.startswith("`**"))
@@ -707,7 +707,7 @@ def _last(path: str) -> str:
     return path.rpartition(".")[2]
 
 
-def _wrapped(bound: Bound) -> bool:
+def wrapped(bound: Bound) -> bool:
     """True where a decorator that is not known may give it other parameters."""
     return any(decorator.rpartition(".")[2] not in _KEEPS for decorator in bound.decorators)
 

@@ -24,20 +24,22 @@ def told(source: str) -> set[tuple[str, str]]:
         ("from a.b import f as g\ng(1)", {("a.b.f", "call")}),
         ("from .b import f\nf()", {(".b.f", "call")}),
         # objects that a constructor made
-        ("from a import C\nx = C()\nx.m(1)", {("a.C", "call"), ("a.C.m", "call")}),
+        ("from a import C\nx = C()\nx.m(1)", {("a.C", "call"), ("a.C.m", "method")}),
         ("from a import C\nx = C()\ny = x\ny.field", {("a.C", "call"), ("a.C.field", "member")}),
-        ("from a import C\nC().m()", {("a.C", "call"), ("a.C.m", "call")}),
+        ("from a import C\nC().m()", {("a.C", "call"), ("a.C.m", "method")}),
         # not any more once the name is bound to something else
         ("from a import C\nx = C()\nx = 3\nx.m(1)", {("a.C", "call")}),
         ("from a import C\nx = C()\nfor x in y: x.m(1)", {("a.C", "call")}),
         ("from a import C\ndef f(x):\n    x.m()\nx = C()", {("a.C", "call")}),
+        # nor when it is imported under a condition
+        ("try:\n  from a import C\nexcept ImportError:\n  C = None\nx = C()\nx.m(1)", set()),
         # annotations
-        ("from a import C\ndef f(x: C): x.m()", {("a.C.m", "call")}),
-        ("from a import C\ndef f(x: 'C'): x.m()", {("a.C.m", "call")}),
+        ("from a import C\ndef f(x: C): x.m()", {("a.C.m", "method")}),
+        ("from a import C\ndef f(x: 'C'): x.m()", {("a.C.m", "method")}),
         ("from a import C\ndef f(x: list[C]): x.m()", set()),
         # self and super() of a subclass, also over several steps in the file
-        ("from a import C\nclass D(C):\n  def f(self): self.m(1)", {("a.C.f", "override"), ("a.C.m", "call")}),
-        ("from a import C\nclass D(C):\n  def _f(self): super()._f(1)", {("a.C._f", "call")}),
+        ("from a import C\nclass D(C):\n  def f(self): self.m(1)", {("a.C.f", "override"), ("a.C.m", "method")}),
+        ("from a import C\nclass D(C):\n  def _f(self): super()._f(1)", {("a.C._f", "method")}),
         ("from a import C\nclass D(C): pass\nclass E(D):\n  def _f(me): me.x", {("a.C.x", "member")}),
         ("from a import C\nclass D(C):\n  def _f(self): self._g()\n  def _g(self): pass", set()),
         ("from a import C\nclass D(C):\n  def _f(self):\n    self.x = 1\n    self.x.y", set()),
@@ -45,7 +47,7 @@ def told(source: str) -> set[tuple[str, str]]:
         # what self holds
         (
             "from a import C\nclass D:\n  def f(self): self.c = C()\n  def g(self): self.c.m(2)",
-            {("a.C", "call"), ("a.C.m", "call")},
+            {("a.C", "call"), ("a.C.m", "method")},
         ),
         # setting a member is no use of one, and the standard library is nobody's package
         ("from a import C\nx = C()\nx.y = 1", {("a.C", "call")}),

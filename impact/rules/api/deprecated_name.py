@@ -1,7 +1,8 @@
 """deprecated-name: a name that is used will go.
 
 What it does
-    Reports classes, functions, constants and CMake names that the target still has and has marked as deprecated.
+    Reports classes, functions, constants and CMake names that the target still has and has marked as deprecated: by the
+    known-changes table, and of Python names by what the sources of the target's version say.
 
 Why it matters
     The version that drops the name may be on a colleague's machine already.
@@ -22,6 +23,7 @@ Not reported
 from ...model.view import View
 from ...targets.evidence import evidence_of
 from ..rule import Hit, rule
+from .python_api import uses_lost
 
 
 @rule(severity="note", deprecation=True)
@@ -31,9 +33,14 @@ def deprecated_name(view: View):
         for c in view.changes("api-removed", "api-renamed", "python-removed", "cmake-removed", "cmake-renamed")
         if c.state == "deprecated" and c.old
     }
-    if not old:
-        return
     for package in view:
+        told = set()
+        for found, lost in uses_lost(view, package):
+            if lost.state == "deprecated" and (found.at.path, lost.name) not in told:
+                told.add((found.at.path, lost.name))
+                why = "" if lost.why == "deprecated" else lost.why
+                message = f"`{lost.name}` is deprecated in {lost.package} {lost.version}"
+                yield Hit(found.at, lost.name, message, why, package.name)
         uses = [(u.text, u.at, u.conditions) for u in package.digest.names]
         uses += [(u.name, u.at, u.conditions) for u in package.build.uses]
         for text, at, conditions in uses:

@@ -1,0 +1,92 @@
+"""removed-executable: a program, launch file or launch argument of another package is not there on a target.
+
+What it does
+    Reports nodes that launch files and scripts start, launch files that they include, and arguments that they give to
+    those, which the target's version of the package does not install or declare, and an earlier or later version does.
+
+Why it breaks
+    `ros2 launch` stops with "executable not found" or "file not found" when the file is started; an argument that is
+    not declared has no effect in ROS 2, and stops roslaunch.
+
+Severity
+    error for what is started or included in every run; warning for what stands under a condition, for arguments, for
+    tests, and where something about the target's version is guessed; note in examples, and for launch files of ROS 1
+    that a package still carries along.
+
+Example
+    Node(package='controller_manager', executable='spawner.py')     # gone in controller_manager 2.0
+
+Use instead
+    Node(package='controller_manager', executable='spawner')
+
+Not reported
+    What the workspace itself provides; packages that the target does not have at all; arguments that any launch file of
+    the target's version declares, since they are handed on; files in folders that are called after another distro.
+"""
+
+import posixpath
+from collections.abc import Iterator
+
+from ...model.package import ReferenceUse
+from ...model.view import View
+from ...targets.evidence import of_offered
+from ..rule import Hit, rule
+from .build_api import lacking, of_another_distro, severity_of
+
+
+@rule(severity="error")
+def removed_executable(view: View):
+    for package in view:
+        files = frozenset(package.digest.files)
+        for use in package.digest.references:
+            reference = use.reference
+            if of_another_distro(view, use.at.path, files) or (view.target.ros == 2 and use.at.path.endswith(".test")):
+                continue
+            if reference.package and reference.package != package.name and "$" not in reference.name:
+                if reference.kind == "executable":
+                    yield from _lost(view, package.name, use, "executable", reference.name)
+                elif reference.kind == "file":
+                    path = _launch_file(view, reference.package, reference.name)
+                    yield from _lost(view, package.name, use, "launch file", path)
+                    yield from _arguments(view, package.name, use, path)
+
+
+def _lost(view: View, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Hit]:
+    found = lacking(view, side, name, (use.reference.package,))
+    if found is not None:
+        severity = severity_of(use.role, certain=not use.reference.conditional, sure=found.sure)
+        if view.target.ros == 2 and name.endswith((".launch", ".launch.xml")):
+            severity = "note"
+        yield Hit(
+            use.at, name, found.message, found.help, package, severity=severity, evidence=of_offered(found.offered)
+        )
+
+
+def _launch_file(view: View, package: str, name: str) -> str:
+    """The launch file that is meant; on a command line it is told without its folder."""
+    offer = view.offers.package(package) if "/" not in name else None
+    if offer is None or any(posixpath.basename(launch.path) == name for launch in offer.build.launches):
+        return name
+    return next((one.name for one in offer.every("launch file") if posixpath.basename(one.name) == name), name)
+
+
+def _arguments(view: View, package: str, use: ReferenceUse, path: str) -> Iterator[Hit]:
+    """Arguments given to an included launch file that no launch file of the target's version declares."""
+    reference = use.reference
+    for name in reference.arguments or ():
+        found = lacking(view, "launch argument", f"{path} {name}", (reference.package,))
+        offer = view.offers.package(reference.package) if found is not None else None
+        if found is None or offer is None:
+            continue
+        if any(name == known for launch in offer.build.launches for known, _ in launch.arguments):
+            continue
+        lost = found.offered
+        when = "no longer" if lost.state == "removed" else "not yet"
+        certain = view.target.ros == 1 and not reference.conditional
+        severity = severity_of(use.role, certain=certain, sure=found.sure)
+        yield Hit(
+            use.at, f"{path} {name}", f"`{path}` of {lost.package} {lost.version} has {when} an argument `{name}`",
+            f"{lost.package} {lost.last} was the last with it" if lost.state == "removed"
+            else f"it is there since {lost.package} {lost.first}",
+            package, severity=severity, evidence=of_offered(lost),
+        )  # fmt: skip

@@ -1,0 +1,66 @@
+"""removed-plugin: a plugin or component is asked for by a name that the target's version of its package does not have.
+
+What it does
+    Reports names of plugins and components in parameter files, launch files and robot descriptions that an earlier or
+    later version of the package declares, and the target's does not.
+
+Why it breaks
+    pluginlib finds no class of that name, so the node that asks for it does not start.
+
+Severity
+    error for components and nodelets that a launch file loads in every run; warning for what parameter files and robot
+    descriptions name, since which of them is used is not known, under a condition, for tests, and where something about
+    the target's version is guessed; note in examples.
+
+Example
+    plugin: "nav2_behaviors/Spin"               # Humble and Iron
+
+Use instead
+    plugin: "nav2_behaviors::Spin"              # Jazzy and later
+
+Not reported
+    What the workspace itself provides; packages that the target does not have at all; files in folders that are called
+    after another distro.
+"""
+
+import re
+
+from ...model.package import ReferenceUse
+from ...model.view import View
+from ...model.workspace import Package
+from ...targets.evidence import of_offered
+from ..rule import Hit, rule
+from .build_api import lacking, of_another_distro, severity_of
+
+
+@rule(severity="error")
+def removed_plugin(view: View):
+    own = {plugin.name or plugin.type for package in view.workspace for _, plugin in package.digest.plugins}
+    for package in view:
+        files = frozenset(package.digest.files)
+        for use in package.digest.references:
+            name = use.reference.name
+            if use.reference.kind != "plugin" or name in own or "$" in name:
+                continue
+            found = lacking(view, "plugin", name, _packages(view, package, use))
+            if found is None or of_another_distro(view, use.at.path, files):
+                continue
+            loaded = bool(use.reference.package) and not use.reference.conditional
+            severity = severity_of(use.role, certain=loaded, sure=found.sure)
+            other = _respelt(view, found.offered.package, name)
+            yield Hit(use.at, name, found.message, f"use `{other}`" if other else found.help, package.name,
+                      severity=severity, evidence=of_offered(found.offered))  # fmt: skip
+
+
+def _packages(view: View, package: Package, use: ReferenceUse) -> list[str]:
+    """Packages that may have a plugin: the one that is named, the one it is called after, else any that comes along."""
+    head = re.split(r"/|::", use.reference.name)[0]
+    named = [name for name in (use.reference.package, head) if name and view.is_package(name)]
+    return named or sorted(view.closure(package))
+
+
+def _respelt(view: View, package: str, name: str) -> str:
+    """The same class as the target's version calls it."""
+    offer = view.offers.package(package)
+    known = {plugin.name for plugin in offer.build.plugins} if offer is not None else set()
+    return next((one for one in (name.replace("/", "::"), name.replace("::", "/")) if one != name and one in known), "")

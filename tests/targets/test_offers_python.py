@@ -1,0 +1,178 @@
+"""What becomes of uses of Python names on a target: gone, not there yet, refused, overridden, deprecated."""
+
+from types import SimpleNamespace
+
+import pytest
+from rosimpact.impact.facts.python_objects import Given, PythonUse
+from rosimpact.impact.facts.surface_python import extract
+from rosimpact.impact.targets.build_surface_changes import Lines
+from rosimpact.impact.targets.offers import Offers
+from rosimpact.impact.targets.offers_python import PythonOffers, read_parameters, refused, unlike
+from rosimpact.impact.targets.surface import State, Surface
+from rosimpact.impact.targets.surface_build import BuildSurface
+from rosimpact.impact.targets.surface_python import Module, PythonSurface
+from rosimpact.impact.targets.surface_store import Packed, Stored, Surfaces, pack, write
+
+
+@pytest.fixture
+def offers(tmp_path):
+    """A function that gives what a target offers whose `arm` has a version, of these modules in versions 1, 2, 3 ..."""
+
+    def made(version, *versions, approximate=()):
+        lines, stored = Lines(), []
+        for number, modules in enumerate(versions, 1):
+            modules = {"arm": modules} if isinstance(modules, str) else modules
+            python = PythonSurface(
+                "arm", tuple(Module(name, "", name == "arm", extract(text.encode())) for name, text in modules.items())
+            )
+            one = Surface("arm", f"{number}.0.0", BuildSurface("arm", f"{number}.0.0"), python)
+            branch = one.version in approximate
+            lines.add("arm", one.version, (2,), State({"arm": one}), branch)
+            stored.append(Stored(one.version, branch, one))
+        write(tmp_path / "surfaces.sqlite", {"arm": Packed(pack(stored), lines.packed()["arm"])})
+        target = SimpleNamespace(ros=2, version={"arm": version}.get)
+        return PythonOffers(Offers(target, Surfaces(tmp_path / "surfaces.sqlite")))
+
+    return made
+
+
+def use(name, how="name", positional=0, keywords=(), parameters=""):
+    given = Given(positional, tuple(keywords)) if how in ("call", "method") else None
+    return PythonUse(name, how, 1, 1, given, parameters)
+
+
+def test_a_name_that_went_is_told_with_the_versions_around(offers):
+    lost = offers("3.0.0", "def f(): pass", "def f(): pass", "").lost(use("arm.f"), ["arm"])
+    assert (lost.state, lost.name, lost.last, lost.first, lost.sure) == ("removed", "arm.f", "2.0.0", "3.0.0", True)
+
+
+def test_a_name_that_comes_later_is_not_there_yet(offers):
+    lost = offers("1.0.0", "", "", "def f(): pass").lost(use("arm.f"), ["arm"])
+    assert (lost.state, lost.first) == ("absent", "3.0.0")
+
+
+@pytest.mark.parametrize("name", ["arm.always", "arm.never", "other.f"])
+def test_what_never_changed_or_never_was_is_not_spoken_of(offers, name):
+    assert offers("2.0.0", "always = 1\ndef f(): pass", "always = 1").lost(use(name), ["arm"]) is None
+
+
+def test_a_lost_module_is_told_for_what_lies_in_it(offers):
+    known = offers("2.0.0", {"arm": "", "arm.old": "class C:\n  def m(self): pass"}, {"arm": ""})
+    assert known.lost(use("arm.old.C.m", "member"), ["arm"]).name == "arm.old"
+
+
+def test_a_member_is_found_by_any_path_to_its_class(offers):
+    before = {"arm": "from arm.node import Node", "arm.node": "class Node:\n  def m(self): pass\n  def n(self): pass"}
+    after = {"arm": "from arm.node import Node", "arm.node": "class Node:\n  def n(self): pass"}
+    known = offers("2.0.0", before, after)
+    assert known.lost(use("arm.node.Node.m", "method"), ["arm"]).name == "arm.node.Node.m"
+    assert known.lost(use("arm.Node.m", "method"), ["arm"]).name == "arm.Node.m"
+    assert known.lost(use("arm.Node.n", "method"), ["arm"]) is None
+
+
+@pytest.mark.parametrize(
+    "module",
+    [
+        "from elsewhere import Base\nclass C(Base): pass",  # a base of another package may have it
+        "class C:\n  def __getattr__(self, name): pass",
+        "from elsewhere import *",
+        "from elsewhere import C",
+    ],
+)
+def test_what_may_be_there_is_not_called_gone(offers, module):
+    assert offers("2.0.0", "class C:\n  def m(self): pass", module).lost(use("arm.C.m", "method"), ["arm"]) is None
+
+
+@pytest.mark.parametrize(
+    ("how", "positional", "keywords", "state"),
+    [
+        ("call", 2, (), "refused"),
+        ("call", 1, ("speed",), "refused"),
+        ("call", 0, (), None),  # no version takes it
+        ("call", 1, ("force",), "early"),
+        ("call", 1, (), None),
+        ("name", 0, (), None),
+    ],
+)
+def test_calls_are_measured_by_the_parameters(offers, how, positional, keywords, state):
+    known = offers("2.0.0", "def f(a, speed=0): pass", "def f(a): pass", "def f(a, *, force=0): pass")
+    lost = known.lost(use("arm.f", how, positional, keywords), ["arm"])
+    assert (lost and lost.state) == state
+
+
+def test_a_class_is_called_as_its_constructor(offers):
+    old, new = "class C:\n  def __init__(self, a): pass", "class C:\n  def __init__(self, a, b): pass"
+    lost = offers("2.0.0", old, new).lost(use("arm.C", "call", 1), ["arm"])
+    assert (lost.state, lost.why, lost.old, lost.new) == ("refused", "`b` must be given", "arm.C(a)", "arm.C(a, b)")
+
+
+def test_a_method_called_by_its_class_is_left_alone(offers):
+    known = offers("2.0.0", "class C:\n  def m(self, a): pass", "class C:\n  def m(self): pass")
+    assert known.lost(use("arm.C.m", "call", 2), ["arm"]) is None
+    assert known.lost(use("arm.C.m", "method", 1), ["arm"]).state == "refused"
+
+
+def test_a_decorator_that_is_not_known_may_change_the_parameters(offers):
+    old, new = "@wrapped\ndef f(a): pass", "@wrapped\ndef f(a, b): pass"
+    assert offers("2.0.0", old, new).lost(use("arm.f", "call", 1), ["arm"]) is None
+
+
+def test_an_override_is_measured_by_what_the_base_class_is_called_with(offers):
+    known = offers("2.0.0", "class C:\n  def m(self, a): pass", "class C:\n  def m(self, a, b): pass")
+    assert known.lost(use("arm.C.m", "override", parameters="(a)"), ["arm"]).why == "`b` is given to it and not taken"
+    assert known.lost(use("arm.C.m", "override", parameters="(a, b)"), ["arm"]) is None
+    assert known.lost(use("arm.C.m", "override", parameters="(*args)"), ["arm"]) is None
+
+
+def test_a_deprecation_is_told_with_its_message(offers):
+    module = "from typing_extensions import deprecated\n@deprecated('use g')\ndef f(): pass"
+    lost = offers("2.0.0", "def f(): pass", module).lost(use("arm.f", "call"), ["arm"])
+    assert (lost.state, lost.why) == ("deprecated", "use g")
+
+
+def test_what_a_branch_stands_for_is_not_spoken_of(offers):
+    assert offers("2.0.0", "def f(): pass", "", approximate=["2.0.0"]).lost(use("arm.f"), ["arm"]) is None
+    assert offers("2.0.0", "def f(): pass", "", approximate=["1.0.0"]).lost(use("arm.f"), ["arm"]) is None
+    lost = offers("3.0.0", "def f(): pass", "", "", approximate=["2.0.0"]).lost(use("arm.f"), ["arm"])
+    assert (lost.last, lost.first) == ("1.0.0", "3.0.0")
+
+
+def test_between_two_stored_versions_only_what_both_say_is_sure(offers):
+    assert offers("2.5.0", "def f(): pass", "", "def f(): pass").lost(use("arm.f"), ["arm"]).sure is False
+    assert offers("2.5.0", "def f(): pass", "", "").lost(use("arm.f"), ["arm"]).sure is True
+
+
+@pytest.mark.parametrize(
+    ("parameters", "positional", "keywords", "expected"),
+    [
+        ("(a, b=...)", 1, (), ""),
+        ("(a, b=...)", 3, (), "it takes at most 2 arguments by position"),
+        ("()", 1, (), "it takes no arguments by position"),
+        ("(a, *args)", 5, (), ""),
+        ("(a)", 0, ("a",), ""),
+        ("(a, /)", 0, ("a",), "it has no parameter `a`"),
+        ("(a)", 1, ("b",), "it has no parameter `b`"),
+        ("(a, **more)", 1, ("b",), ""),
+        ("(a)", 1, ("a",), "`a` is given by position and by name"),
+        ("(*, k)", 0, (), "`k` must be given"),
+    ],
+)
+def test_whether_a_call_fits(parameters, positional, keywords, expected):
+    assert refused(Given(positional, keywords), read_parameters(parameters)) == expected
+
+
+@pytest.mark.parametrize(
+    ("own", "base", "fits"),
+    [
+        ("(a)", "(a)", True),
+        ("(b)", "(a)", True),
+        ("(a)", "(a, b=...)", True),
+        ("(a)", "(a, b)", False),
+        ("(a, b)", "(a)", False),
+        ("(a, b=...)", "(a)", True),
+        ("(a)", "(a, *, k)", False),
+        ("(a, **more)", "(a, *, k)", True),
+    ],
+)
+def test_whether_a_method_can_stand_for_anothers(own, base, fits):
+    assert (unlike(read_parameters(own), read_parameters(base)) == "") is fits
