@@ -23,6 +23,7 @@ Not reported
 from ...model.view import View
 from ...targets.evidence import evidence_of
 from ..rule import Hit, rule
+from .python_api import evidence_of as told_by
 from .python_api import uses_lost
 
 
@@ -40,7 +41,7 @@ def deprecated_name(view: View):
                 told.add((found.at.path, lost.name))
                 why = "" if lost.why == "deprecated" else lost.why
                 message = f"`{lost.name}` is deprecated in {lost.package} {lost.version}"
-                yield Hit(found.at, lost.name, message, why, package.name)
+                yield Hit(found.at, lost.name, message, why, package.name, evidence=told_by(lost))
         uses = [(u.text, u.at, u.conditions) for u in package.digest.names]
         uses += [(u.name, u.at, u.conditions) for u in package.build.uses]
         for text, at, conditions in uses:
