@@ -91,18 +91,23 @@ def plan(
     missing: list[str] = []
     for distro in distros:
         target = DistroTarget(distro, data=data)
+        tagged: set[str] = set()
         for package, release in (_released if versions == "all" else _newest)(target, data):
             if asked and package not in asked:
                 continue
             key = package, release.version
-            if key not in found or found[key].approximate:
-                state = next(clones.standing_for(package, release), None)
-                if state is not None and (key not in found or not state.approximate):
-                    found[key] = state
-            if key in found:
-                generations.setdefault(key, set()).add(target.ros)
-            else:
+            state = found.get(key)
+            if state is None or state.approximate:
+                state = next(clones.standing_for(package, release), state)
+            if state is None or (state.approximate and package in tagged):
+                # The distro's version before it stands for it better than a branch does, which may be years older.
                 missing.append(f"{package} {release.version} {distro}")
+                continue
+            if not state.approximate:
+                tagged.add(package)
+            if key not in found or not state.approximate:
+                found[key] = state
+            generations.setdefault(key, set()).add(target.ros)
     return _jobs(found, generations), tuple(missing)
 
 
