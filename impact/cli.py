@@ -361,12 +361,13 @@ def env_diff(
 
 
 _REPOS_HELP = "Folder of git clones with their tags, called OWNER+NAME or NAME."
+_REPOS_OR_SHIPPED = f"{_REPOS_HELP} Without it, what is shipped answers."
 
 
 @surface_app.command("show")
 def surface_show(
-    package: Annotated[str, typer.Argument(help="PACKAGE, PACKAGE@28.1.0 or PACKAGE@jazzy.")],
-    repos: Annotated[Path, typer.Option(help=_REPOS_HELP)] = Path("."),
+    package: Annotated[str, typer.Argument(help="PACKAGE, PACKAGE@28.1.0, PACKAGE@jazzy or PACKAGE@jazzy@2024-08-01.")],
+    repos: Annotated[Path | None, typer.Option(help=_REPOS_OR_SHIPPED)] = None,
     all: Annotated[bool, typer.Option("--all", help="Members of classes, constants and macros too.")] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
@@ -383,7 +384,7 @@ def surface_diff(
     what: Annotated[str, typer.Argument(help="A package, or the path of a clone (then without --repos).")],
     old: Annotated[str, typer.Argument(help="A version or a distro, such as 16.0.0 or humble; of a clone a revision.")],
     new: Annotated[str, typer.Argument(help="The same of what it is compared with.")],
-    repos: Annotated[Path | None, typer.Option(help=_REPOS_HELP)] = None,
+    repos: Annotated[Path | None, typer.Option(help=_REPOS_OR_SHIPPED)] = None,
     packages: Annotated[list[str] | None, typer.Option(help="Of a clone, only these packages.")] = None,
     all: Annotated[bool, typer.Option("--all", help="Also list what is new and what still builds.")] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",

@@ -452,13 +452,9 @@ def surface_show(what: str, *, repos, all_of_it, format, output, jobs) -> int:
     from .report import surface as report
 
     def answer(store) -> str:
-        from .targets.clones import Clones
-
         package, _, asked = what.partition("@")
-        clones = Clones(repos)
-        asked = asked or clones.newest(package)
-        version, state = clones.surface(package, asked, store, jobs)
-        surface, source = state.surfaces[package], _source(version, asked)
+        source, state = _surface(package, asked, repos, store, jobs)
+        surface = state.surfaces[package]
         if format == "json":
             return report.show_json(surface, source, __version__)
         if format == "markdown":
@@ -474,7 +470,7 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
     from .report import surface as report
 
     def answer(store) -> str:
-        from .targets.clones import Clone, Clones
+        from .targets.clones import Clone
         from .targets.surface import State, compare, compare_states
 
         if os.path.isdir(what) and repos is None:
@@ -487,12 +483,9 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
             changes = {name: each for name, each in changes.items() if (name in packages if packages else each)}
             sources = [report.Source(revision, "", clone.name, revision) for revision in (old, new)]
         else:
-            if repos is None:
-                raise Failed(f"{what}: no such folder; for a package, say where the clones are: --repos DIR")
-            clones = Clones(repos)
-            (first, before), (second, after) = (clones.surface(what, asked, store, jobs) for asked in (old, new))
+            (first, before), (second, after) = (_surface(what, asked, repos, store, jobs) for asked in (old, new))
             changes = {what: compare(before.surfaces[what], after.surfaces[what], before, after)}
-            sources = [_source(first, old), _source(second, new)]
+            sources = [first, second]
         found = report.Difference(sources[0], sources[1], changes)
         if format == "json":
             return report.diff_json(found, __version__)
@@ -535,11 +528,23 @@ def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask,
     return _answered(answer, path=output)
 
 
-def _source(version, asked: str):
+def _surface(package: str, asked: str, repos: Path | None, store, jobs):
+    """Where a version of a package was found, and its state: in clones, else in what is shipped."""
     from .report.surface import Source
+    from .targets.clones import Clones
+    from .targets.stored_versions import StoredVersions
+    from .targets.surface_store import shipped
 
-    revision = version.revision.removeprefix("refs/").partition("/")[2] or version.revision
-    return Source(asked, version.version, version.clone.name, revision, version.approximate)
+    if repos is None:
+        versions = StoredVersions(shipped())
+        asked = asked or versions.newest(package)
+        stored, state = versions.surface(package, asked)
+        return Source(asked, stored.version, "the shipped surfaces", stored.stored, stored.approximate), state
+    clones = Clones(repos)
+    asked = asked or clones.newest(package)
+    found, state = clones.surface(package, asked, store, jobs)
+    revision = found.revision.removeprefix("refs/").partition("/")[2] or found.revision
+    return Source(asked, found.version, found.clone.name, revision, found.approximate), state
 
 
 def _of_surfaces(answer: Callable, format: str, output: Path | None) -> int:

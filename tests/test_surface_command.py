@@ -5,6 +5,7 @@ import subprocess
 
 import pytest
 from rosimpact.impact.cli import app
+from rosimpact.impact.targets.distro import DistroTarget
 from typer.testing import CliRunner
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
@@ -110,7 +111,8 @@ def test_diff_of_a_clone_as_json(repos):
 
 def test_diff_as_markdown_says_what_is_approximate(repos):
     result = run("diff", "rclcpp", "humble", "28.1.0", "--repos", repos, "--format", "markdown")
-    assert "`humble` stands for it." in result.stdout
+    version = DistroTarget("humble").version("rclcpp")
+    assert f"`humble` of ros2/rclcpp: {version} is not there." in result.stdout
     assert "| removed field | `rclcpp::Node::rate` | `int rclcpp::Node::rate` |  |" in result.stdout
 
 
@@ -129,10 +131,23 @@ def test_show(repos):
     ]
 
 
+def test_without_clones_what_is_shipped_answers():
+    result = run("diff", "rclcpp", "humble", "jazzy", "--all")
+    assert result.exit_code == 0, result.stderr
+    old, new = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
+    assert result.stdout.startswith(f"rclcpp {old} (humble) → {new} (jazzy)\n  humble: ")
+    assert " of the shipped surfaces" in result.stdout.splitlines()[1]
+    # Deprecated in Galactic for the one of rcpputils, and gone after Humble.
+    assert "  removed header  rclcpp/scope_exit.hpp\n" in result.stdout
+    assert "  header  rclcpp/scope_exit.hpp" in run("show", "rclcpp@humble").stdout
+    assert "  header  rclcpp/scope_exit.hpp" not in run("show", f"rclcpp@{new}").stdout
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("diff", "rclcpp", "16.0.0", "28.1.0"), "say where the clones are: --repos DIR"),
+        (("diff", "rclcpp", "0.0.1", "humble"), "`rclcpp` 0.0.1 is not shipped, others from "),
+        (("show", "rclcpp@noetic"), "noetic has no `rclcpp`; released in "),
         (("diff", "rclcpp", "16.0.0", "9.9.9", "--repos", "REPOS"), "has no tag for it"),
         (("diff", "REPOS/ros2+rclcpp", "16.0.0", "nowhere"), "nowhere"),
         (("diff", "REPOS/ros2+rclcpp", "16.0.0", "28.1.0", "--packages", "x"), "--packages x: "),

@@ -18,7 +18,8 @@ FORMATS = ("text", "json", "markdown")
 
 
 class Source(NamedTuple):
-    """Where a version was read. asked: as the user wrote it. approximate: a branch stands for a missing tag."""
+    """Where a version was read. asked: as the user wrote it. approximate: it is not there, and the revision stands for
+    it."""
 
     asked: str
     version: str
@@ -99,10 +100,16 @@ def _short(source: Source) -> str:
     return f"{source.version} ({source.asked})" if source.version not in ("", source.asked) else source.asked
 
 
+def _lacking(source: Source) -> str:
+    if source.revision == source.version:
+        return "it was read at a branch"
+    return f"{source.version} is not there"
+
+
 def _source(source: Source, style: Style) -> Iterator[str]:
     text = f"{source.asked}: {source.revision} of {source.repository}"
     if source.approximate:
-        text += f"; there is no tag for {source.version}, so this is approximate"
+        text += f"; {_lacking(source)}, so this is approximate"
     yield from laid_out([Piece(text, "warning" if source.approximate else "dim")], style, 2, 4)
 
 
@@ -144,7 +151,7 @@ def diff_markdown(found: Difference) -> str:
         lines += [f"## {package} {_short(found.old)} → {_short(found.new)}", ""]
         for source in (found.old, found.new):
             if source.approximate:
-                lines += [f"There is no tag for {source.version}; `{source.revision}` stands for it.", ""]
+                lines += [f"`{source.revision}` of {source.repository}: {_lacking(source)}.", ""]
         for name in _GROUPS:
             these = [c for c in changes if group_of(c) == name]
             if not these:

@@ -125,6 +125,30 @@ class Clone:
             raise TreeError(f"{self.name}: there is no revision `{revision}`; `git tag` lists what there is") from None
 
 
+def release_of(package: str, asked: str, data: Snapshot) -> Release:
+    """What a distro (`jazzy`, `jazzy@2024-08-01`) has of a package. Raises VersionError when it does not have it."""
+    name, _, date = asked.partition("@")
+    try:
+        target = DistroTarget(name, date or None, data=data)
+    except TargetError as error:
+        raise VersionError(str(error)) from None
+    version = target.version(package)
+    if version is None:
+        having = [known.name for known in known_distros(data) if DistroTarget(known.name).version(package)]
+        where = f"; released in {', '.join(having)}" if having else ", and no other distro either"
+        raise VersionError(f"{asked} has no `{package}`{where}")
+    _, url, branch = target.repository(package) or ("", "", "")
+    return Release(name, version, (url,) if url else (), branch)
+
+
+def newest_with(package: str, data: Snapshot) -> str:
+    """The newest distro that has a package. Raises VersionError when none has it."""
+    for known in reversed(known_distros(data)):
+        if DistroTarget(known.name, data=data).version(package):
+            return known.name
+    raise VersionError(f"no distro ever had `{package}`; say which version is meant: {package}@1.0.0")
+
+
 def _at_tags(clones: Iterable[Clone], package: str, version: str, distro: str = "") -> Iterator[Version]:
     for clone in clones:
         tag = clone.tag(version, package, distro)
@@ -206,7 +230,7 @@ class Clones:
         if not asked or asked[0].isdigit():
             yield from _at_tags(clones, package, asked)
             return
-        release = self._released(package, asked)
+        release = release_of(package, asked, self._data)
         if not self._having(package, release):
             url = release.urls[0]
             raise VersionError(
@@ -238,27 +262,9 @@ class Clones:
         alike = [clone for clone in clones if not names or clone.name.lower().rpartition("/")[2] in names]
         return list(dict.fromkeys((*own, *bloomed))) or alike
 
-    def _released(self, package: str, asked: str) -> Release:
-        """What a distro asked for has of a package."""
-        name, _, date = asked.partition("@")
-        try:
-            target = DistroTarget(name, date or None, data=self._data)
-        except TargetError as error:
-            raise VersionError(str(error)) from None
-        version = target.version(package)
-        if version is None:
-            having = [known.name for known in known_distros(self._data) if DistroTarget(known.name).version(package)]
-            where = f"; released in {', '.join(having)}" if having else ", and no other distro either"
-            raise VersionError(f"{asked} has no `{package}`{where}")
-        _, url, branch = target.repository(package) or ("", "", "")
-        return Release(name, version, (url,) if url else (), branch)
-
     def newest(self, package: str) -> str:
         """The newest distro that has a package. Raises VersionError when none has it."""
-        for known in reversed(known_distros(self._data)):
-            if DistroTarget(known.name, data=self._data).version(package):
-                return known.name
-        raise VersionError(f"no distro ever had `{package}`; say which version is meant: {package}@1.0.0")
+        return newest_with(package, self._data)
 
     def surface(self, package: str, asked: str, store: Store, jobs: int | None = None) -> tuple[Version, State]:
         """The state that stands for a version of a package, see find(). Raises VersionError where there is none."""

@@ -1,0 +1,85 @@
+"""Which version in a file of surfaces stands for what is asked for, when there are no clones."""
+
+import pytest
+from rosimpact.impact.facts.surface_cpp import extract as header
+from rosimpact.impact.targets.build_surface_changes import Lines
+from rosimpact.impact.targets.clones import VersionError
+from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.stored_versions import StoredVersions
+from rosimpact.impact.targets.surface import State, Surface, compare
+from rosimpact.impact.targets.surface_build import BuildSurface
+from rosimpact.impact.targets.surface_python import PythonSurface
+from rosimpact.impact.targets.surface_store import Packed, Stored, Surfaces, pack, write
+
+HUMBLE, JAZZY = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
+EARLY = DistroTarget("humble", "2024-03-01").version("rclcpp")
+"""What humble had then, and has now, are not the same."""
+
+
+def surface(package, version, code):
+    headers = ((f"{package}/{package}.hpp", header(code.encode())),)
+    return Surface(package, version, BuildSurface(package, version), PythonSurface(package), headers)
+
+
+@pytest.fixture
+def versions(tmp_path):
+    """rclcpp and rclcpp_action, which one repository releases, and of jazzy a branch."""
+    lines, stored = Lines(), {}
+    codes = {
+        EARLY: ("void f(); void early();", ""),
+        HUMBLE: ("void f();", ""),
+        JAZZY: ("", "void f();"),
+    }
+    for version, (first, second) in codes.items():
+        state = State({name: surface(name, version, code) for name, code in
+                       (("rclcpp", first), ("rclcpp_action", second))})  # fmt: skip
+        for name, one in state.surfaces.items():
+            lines.add(name, version, (2,), state, version == JAZZY)
+            stored.setdefault(name, []).append(Stored(version, version == JAZZY, one))
+    packed = lines.packed()
+    file = tmp_path / "surfaces.sqlite"
+    write(file, {name: Packed(pack(each), packed[name]) for name, each in stored.items()})
+    return StoredVersions(Surfaces(file))
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        ("humble", (HUMBLE, HUMBLE, False)),
+        ("humble@2024-03-01", (EARLY, EARLY, False)),
+        (HUMBLE, (HUMBLE, HUMBLE, False)),
+        # A branch was read for it.
+        ("jazzy", (JAZZY, JAZZY, True)),
+        # The newest before what it has.
+        ("kilted", (DistroTarget("kilted").version("rclcpp"), JAZZY, True)),
+    ],
+)
+def test_what_stands_for_what(versions, asked, found):
+    assert versions.find("rclcpp", asked) == found
+
+
+@pytest.mark.parametrize(
+    ("package", "asked", "why"),
+    [
+        ("rclcpp", "1.2.3", f"`rclcpp` 1.2.3 is not shipped, others from {EARLY} to {JAZZY} are"),
+        ("rclcpp", "foxy", "is not shipped, others from"),
+        ("rclcpp", "noetic", "noetic has no `rclcpp`; released in "),
+        ("rclcpp", "jazy", "jazy"),
+        ("rclpy", "humble", "surfaces of `rclpy` are not shipped"),
+    ],
+)
+def test_what_does_not(versions, package, asked, why):
+    with pytest.raises(VersionError, match=why):
+        versions.find(package, asked)
+
+
+def test_packages_that_were_released_together_are_seen_together(versions):
+    (_, before), (_, after) = (versions.surface("rclcpp", asked) for asked in ("humble", "jazzy"))
+    changes = compare(before.surfaces["rclcpp"], after.surfaces["rclcpp"], before, after)
+    assert [(c.kind, c.name, c.moved_to) for c in changes] == [("moved", "f", "rclcpp_action")]
+
+
+def test_the_newest_distro_that_has_it(versions):
+    assert versions.newest("roscpp") == "noetic"
+    with pytest.raises(VersionError, match="no distro ever had `no_such_thing`"):
+        versions.newest("no_such_thing")
