@@ -104,6 +104,8 @@ class View:
         self._closures: dict[str, frozenset[str]] = {}
         self._direct: dict[str, tuple[str, ...]] = {}
         self._whole: dict[str, frozenset[str]] = {}
+        self._widest: dict[str, frozenset[str]] = {}
+        self._possible: dict[str, frozenset[str]] = {}
         self._spreads: dict[frozenset[str], frozenset[str]] = {}
         self._declared: dict[str, Mapping[str, set[str]]] = {}
         self._needs: dict[str, tuple[Need, ...]] = {}
@@ -707,6 +709,27 @@ class View:
             self._closures[package.name] = known
         return known
 
+    def may_bring(self, package: Package) -> frozenset[str]:
+        """closure(), and all that packages whose manifests this distro does not tell bring in any other: what is not
+        in it is sure to be missing, unless the package is blind()."""
+        known = self._widest.get(package.name)
+        if known is None:
+            found, waiting = set(self.closure(package)), list(self.closure(package))
+            while waiting:
+                for other in self._possibly_with(waiting.pop()):
+                    if other not in found:
+                        found.add(other)
+                        waiting.append(other)
+            known = self._widest[package.name] = frozenset(found)
+        return known
+
+    def _possibly_with(self, name: str) -> Iterable[str]:
+        if name in self.workspace.packages or self.target.dependencies(name) is not None:
+            return self._installed_with(name)
+        if name not in self._possible:
+            self._possible[name] = self.target.possible_dependencies(name)
+        return self._possible[name]
+
     def _built_with(self, package: Package) -> list[str]:
         return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
 
@@ -760,6 +783,7 @@ class View:
             n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
             and not target.known_key(n)  # a key that the platform lacks brings nothing
             and target.dependencies(n) is None and target.similar_dependencies(n) is None
+            and not target.other_generation(n)  # nor does a package that cannot be had
             for n in self.closure(package)
         )  # fmt: skip
 
@@ -769,8 +793,9 @@ class View:
         if package.name not in self._sealed:
             self._sealed[package.name] = [
                 n for n in self.closure(package)
-                if n not in self.workspace.packages and (libraries := [d for d in self.debian(n) if d.endswith("-dev")])
-                and not self.providers.knows_system([n, *libraries])
+                if n not in self.workspace.packages
+                and (libraries := [d for d in self.debian(n) if d.endswith("-dev") or d.startswith("gazebo")])
+                and (n.startswith("gazebo") or not self.providers.knows_system([n, *libraries]))
             ]  # fmt: skip
         return self._sealed[package.name]
 
@@ -1000,9 +1025,13 @@ class View:
 
     def _modules_asked(self, found: Found) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
-        providers = tuple(self.providers.pkgconfig(re.split(r"[<>=]", found.name)[0]))
+        name = re.split(r"[<>=]", found.name)[0]
+        providers = tuple(self.providers.pkgconfig(name))
         if not providers or found.name in self.workspace.packages:
             return
+        if self.target.version(name) is not None and all(p.name != name for p in providers):
+            # A library that is released as a package (fcl, octomap) writes its own.
+            providers = (*providers, Provider("ros", name, "", False))
         testing = for_tests(found.conditions)
         yield Need(
             "pkg-config",

@@ -126,6 +126,10 @@ def version_key(version: str) -> list[int]:
     return [int(part) for part in re.findall(r"\d+", version)]
 
 
+# Letters of KINDS for what is installed along with a package.
+_COMES_ALONG = frozenset("eox")
+
+
 class DistroTarget(Target):
     """A distro at a date, with overrides.
 
@@ -459,6 +463,32 @@ class DistroTarget(Target):
             if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
                 return found
         return None
+
+    def possible_dependencies(self, package: str) -> frozenset[str]:
+        """Names that come along with a package in some version of some distro of this generation.
+
+        Conditions count as held: this is what the package may bring where its own manifest is not known.
+        """
+        rows = self._data.rows(
+            "SELECT DISTINCT d.entries FROM manifest m JOIN package p ON p.id = m.package JOIN distro o ON"
+            " o.id = m.distro JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND o.ros = ?",
+            (package, self.ros),
+        )
+        lines = (line.split("\t") for (entries,) in rows for line in entries.splitlines())
+        return frozenset(fields[0] for fields in lines if not _COMES_ALONG.isdisjoint(fields[1]))
+
+    def known_build_types(self, package: str) -> frozenset[str]:
+        """Every build type that a package is known to have had in a distro of this generation."""
+        rows = self._data.rows(
+            "SELECT DISTINCT m.build_type FROM manifest m JOIN package p ON p.id = m.package JOIN distro o ON"
+            " o.id = m.distro WHERE p.name = ? AND o.ros = ?",
+            (package, self.ros),
+        )
+        return frozenset(build or "" for (build,) in rows)
+
+    def other_generation(self, package: str) -> bool:
+        """True when distros have released a package of this name, and all of them are of the other ROS."""
+        return self.ever_released(package) and not self._distros_with(package)
 
     def similar_build_type(self, package: str) -> str:
         """The build type of the package in the nearest distro of the same generation that says it; likely, not sure."""

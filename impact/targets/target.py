@@ -97,6 +97,19 @@ class Target(Protocol):
         """The same in the nearest distro of this generation that knows it; likely, not sure."""
         ...
 
+    def possible_dependencies(self, package: str) -> frozenset[str]:
+        """Names that come along with a package in some version of some distro of this generation: what it may bring
+        where its own manifest is not known. Empty when none of it is."""
+        ...
+
+    def known_build_types(self, package: str) -> frozenset[str]:
+        """Every build type that a package is known to have had in a distro of this generation."""
+        ...
+
+    def other_generation(self, package: str) -> bool:
+        """True when distros have released a package of this name, and all of them are of the other ROS."""
+        ...
+
     def build_type(self, package: str) -> str:
         """`catkin`, `ament_cmake`, `cmake` ... of a released package; empty when not known or not said."""
         ...

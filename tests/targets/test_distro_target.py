@@ -251,10 +251,39 @@ def test_version_bounds_are_kept():
 
 
 def test_unknown_manifests():
-    assert target("kinetic").knows_manifests is False
-    assert target("kinetic").dependencies("roscpp") is None
     assert target("jazzy").knows_manifests is True
     assert target("jazzy").dependencies("no_such_package") is None
+
+
+def test_manifests_of_distros_without_a_cache():
+    assert "rosconsole" in {d.name for d in target("kinetic").dependencies("roscpp")}
+    assert "boost" in {d.name for d in target("hydro").dependencies("console_bridge")}  # bloom's release repository
+    # pcl_ros passed the headers of PCL on from 1.1.8 on
+    early, late = target("hydro@2014-01-10"), target("hydro@2014-06-01")
+    assert (early.version("pcl_ros"), late.version("pcl_ros")) == ("1.1.7", "1.1.8")
+    passed_on = [{d.name for d in t.dependencies("pcl_ros") if d.kind == "exec"} for t in (early, late)]
+    assert ["libpcl-all-dev" in names for names in passed_on] == [False, True]
+
+
+def test_what_a_package_may_bring_in_any_distro():
+    jazzy = target("jazzy")
+    assert jazzy.dependencies("orocos_kdl") is None
+    assert "eigen" in jazzy.possible_dependencies("orocos_kdl")
+    assert jazzy.possible_dependencies("no_such_package") == jazzy.possible_dependencies("eigen") == frozenset()
+    # what only builds it does not come along
+    assert "message_generation" not in target("noetic").possible_dependencies("std_msgs")
+
+
+def test_packages_of_the_other_ros():
+    assert target("rolling").other_generation("eigen_conversions")
+    assert not target("noetic").other_generation("eigen_conversions")
+    assert not target("rolling").other_generation("no_such_package")
+
+
+def test_every_build_type_of_a_package():
+    assert target("groovy").known_build_types("orocos_kdl") == {"cmake"}
+    assert target("noetic").known_build_types("roscpp") == {""}
+    assert target("noetic").known_build_types("no_such_package") == frozenset()
 
 
 def test_closure_follows_exports_and_ends_at_keys():
@@ -334,9 +363,9 @@ def test_the_newest_long_term_distro(text, distro):
 @pytest.mark.parametrize(
     ("text", "package", "here", "near"),
     [
-        ("melodic", "orocos_kdl", "cmake", ""),
-        ("hydro", "orocos_kdl", "", "cmake"),  # the manifests of hydro are not known
-        ("noetic", "fcl", "cmake", ""),
+        ("melodic", "orocos_kdl", "cmake", "cmake"),
+        ("hydro", "libg2o", "", "cmake"),  # its manifest in hydro is not known
+        ("noetic", "fcl", "cmake", "cmake"),
         ("noetic", "no_such_package", "", ""),
     ],
 )

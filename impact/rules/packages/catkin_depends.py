@@ -8,7 +8,8 @@ Why it breaks
     catkin_package() ends with FATAL_ERROR: nothing of the package is built, on any machine.
 
 Severity
-    error; warning where only another distro's manifest says that the package is a plain CMake one.
+    error; warning where only another distro's manifest says that the package is a plain CMake one, and yet another's
+    says otherwise.
 
 Example
     catkin_package(CATKIN_DEPENDS roscpp tf)    # and package.xml has <build_depend>tf</build_depend> alone
@@ -86,7 +87,8 @@ def _not_catkin(view: View, name: str) -> tuple[str, bool]:
     if view.target.version(name) is not None:
         known = view.target.build_type(name)
         plain = (known or view.target.similar_build_type(name)) == "cmake"
-        return ("is a plain CMake package", bool(known)) if plain else ("", False)
+        sure = bool(known) or view.target.known_build_types(name) == {"cmake"}
+        return ("is a plain CMake package", sure) if plain else ("", False)
     if view.target.resolve(name) is not None and not view.underlaid:
         return "is a system library", True
     return "", False

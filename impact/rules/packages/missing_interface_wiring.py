@@ -147,7 +147,7 @@ def _catkin_generation(view: View, package):
             + (f", but for `{through}` that brings it" if through else ""),
             "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)",
             package.name,
-            severity="warning" if through or view.blind(package) or not view.target.knows_manifests else "error",
+            severity="warning" if through or view.blind(package) else "error",
         )
 
 

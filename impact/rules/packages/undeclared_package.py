@@ -12,9 +12,11 @@ Why it breaks
 
 Severity
     error: an unconditional find_package(REQUIRED), catkin component, pkg_check_modules(REQUIRED), include of compiled
-    code or test command that is sure to miss its package on the target. warning: tests, imports, launch files,
-    installed headers that nothing here compiles, what only comes along with another dependency, or where the manifests
-    that would settle it are not known for the target. note: conditional code, examples, documentation, files that
+    code (or of an installed header that another package here compiles) or test command that is sure to miss its package
+    on a clean machine of the target: nothing that is declared brings it, and where the target's manifest of something
+    declared is not known, no version of that in any distro does. warning: tests, imports, launch files, installed
+    headers that nothing here compiles, what only comes along with another dependency, or where a dependency is known
+    nowhere and may bring anything. note: conditional code, examples, documentation, files that
     nothing compiles, and all but the first few imports, launch references and borrowed packages of a package.
 
 Example
@@ -273,7 +275,7 @@ def _test_commands(view: View, package, blind: bool):
             f"add `<test_depend>{name}</test_depend>` to {package.digest.manifest_path}, and "
             f"find_package({name} REQUIRED)",
             package.name,
-            severity="error" if view.target.knows_manifests and not blind and sure else "warning",
+            severity="error" if not blind and sure and name not in view.may_bring(package) else "warning",
             fix=() if declared.get(name) else (Declare(package.digest.manifest_path, name, "test_depend"),),
         )
 
@@ -350,8 +352,10 @@ def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | 
             and name not in WITH_CLIENT
             and not need.subject.startswith(WITH_TESTS)
         )
-        return "warning" if passed_on and not circular(view, package, name) else "note"
-    if blind or not view.target.knows_manifests:
+        if not passed_on or circular(view, package, name):
+            return "note"
+        return "error" if _stops_another(view, package, need) else "warning"
+    if blind or view.answered(need.providers, view.may_bring(package)):
         return "warning"
     if need.how == "include" and not any(
         view.certain(target.conditions) for target in package.build.targets if target.name in need.targets
@@ -362,9 +366,37 @@ def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | 
         return "warning"
     # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
     guessed = need.how == "include" and not first.sure
-    if guessed and (first.kind == "system" or view.has_released_header(first.name, need.subject) is False):
+    if guessed and first.kind == "system":
         return "warning"
+    if guessed and not _generated(view, first.name, need.subject):
+        return "warning" if view.has_released_header(first.name, need.subject) is False else "error"
     return "error"
+
+
+# What a package that generates messages hands on to whoever uses them.
+_RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
+_OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
+
+
+def _generated(view: View, name: str, header: str) -> bool:
+    """True for the header of an interface, which no tree of the released package shows."""
+    return bool(_OF_INTERFACE.match(header)) and not _RUNTIMES.isdisjoint(view.installed_with(name))
+
+
+def _stops_another(view: View, package, need: Need) -> bool:
+    """True when another package of the workspace compiles the installed header, and nothing brings it what that
+    includes either."""
+    for other in view.everyone():
+        if other.name == package.name:
+            continue
+        for include in other.digest.includes:
+            if include.role != "build" or not include.targets or not view.certain(include.conditions):
+                continue
+            if need.subject not in view.outward((include.path,))[0] or view.blind(other):
+                continue
+            if not view.answered(need.providers, view.may_bring(other)):
+                return True
+    return False
 
 
 def _how(need: Need) -> str:

@@ -12,8 +12,9 @@ Why it breaks
     node imports.
 
 Severity
-    warning; note where rosdep installs the package all the same (declared for running, needed to build), and where what
-    is needed to run is declared for tests.
+    error where nothing that is declared brings the headers that compiled code includes; warning; note where rosdep
+    installs the package all the same (declared for running, needed to build), and where what is needed to run is
+    declared for tests.
 
 Example
     <test_depend>moveit_ros_planning</test_depend>      # and CMakeLists.txt finds it outside BUILD_TESTING
@@ -173,7 +174,17 @@ def _without_headers(view: View, package, declared):
             f"`{name}` brings no headers, and `{need.subject}` needs those of `{right}`",
             f"declare `{right}`",
             package.name,
+            severity="error" if _lacks(view, package, need) else "warning",
         )
+
+
+def _lacks(view: View, package, need) -> bool:
+    """True when compiled code is sure not to find the headers: nothing that is declared brings them in turn."""
+    if need.how == "include" and not need.targets:
+        return False
+    if not need.required or view.blind(package) or view.sealed(package):
+        return False
+    return not view.answered(need.providers, view.may_bring(package))
 
 
 def _handed_on_bare(view: View, package, declared, bare, need, told):
