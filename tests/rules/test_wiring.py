@@ -123,6 +123,33 @@ ROWS = {
         ("sled/package.xml", "<depend>angles</depend>", ""),
         ("warning", "angles"),
     ),
+    "an installed header that another package compiles": Row(
+        "undeclared-package",
+        "humble",
+        {
+            **ament("sled", HEADERS, "angles", include__sled__sled_hpp="#pragma once\n" + ANGLES),
+            **ament("dogs", "add_executable(run run.cpp)", "sled", run_cpp="#include <sled/sled.hpp>\n" + MAIN),
+        },
+        ("sled/package.xml", "<depend>angles</depend>", ""),
+        ("error", "angles"),
+    ),
+    "a header of a distro that has no cache": Row(
+        "undeclared-package",
+        "indigo",
+        catkin("sled", "", "catkin_package()\nadd_executable(run run.cpp)", "roscpp", "angles", run_cpp=ANGLES + MAIN),
+        ("sled/package.xml", "<depend>angles</depend>", ""),
+        ("error", "angles"),
+    ),
+    "a generated header of a released package": Row(
+        "undeclared-package",
+        "kinetic",
+        catkin(
+            "sled", "", "catkin_package()\nadd_executable(run run.cpp)", "roscpp", "geographic_msgs",
+            run_cpp="#include <geographic_msgs/GeoPoint.h>\n" + MAIN,
+        ),
+        ("sled/package.xml", "<depend>geographic_msgs</depend>", ""),
+        ("error", "geographic_msgs"),
+    ),
     "a module asked of pkg-config, and not required": Row(
         "undeclared-package",
         "noetic",
@@ -160,7 +187,7 @@ ROWS = {
             "libboost-thread-dev", run_cpp="#include <boost/thread.hpp>\n" + MAIN,
         ),
         ("sled/package.xml", "libboost-thread-dev", "libboost-thread"),
-        ("warning", "boost"),
+        ("error", "boost"),
     ),
     "headers for whoever includes the public header": Row(
         "wrong-dependency-kind",
@@ -189,6 +216,100 @@ ROWS = {
         ("sled/CMakeLists.txt", "PROGRAMS", "FILES"),
         ("warning", "run.py"),
     ),
+    "a script among programs that may be executed": Row(
+        "missing-install",
+        "noetic",
+        catkin(
+            "sled", "", "catkin_package()\ninstall(FILES scripts/run.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} "
+            "PERMISSIONS OWNER_READ OWNER_EXECUTE)\n", scripts__run_py="#!/usr/bin/env python3\nprint()\n",
+        ),
+        ("sled/CMakeLists.txt", "PERMISSIONS OWNER_READ OWNER_EXECUTE", ""),
+        ("error", "run.py"),
+    ),
+    "headers that another package includes by the name they are installed under": Row(
+        "missing-install",
+        "noetic",
+        {
+            **catkin(
+                "sled", "", "catkin_package(INCLUDE_DIRS include)\ninstall(DIRECTORY include/runner/ "
+                "DESTINATION ${CATKIN_GLOBAL_INCLUDE_DESTINATION}/runner)\n",
+                include__runner__runner_h="#pragma once\n",
+            ),
+            **catkin(
+                "dogs", "COMPONENTS sled", "catkin_package()\nadd_executable(run run.cpp)", "sled",
+                run_cpp="#include <runner/runner.h>\n" + MAIN,
+            ),
+        },
+        ("sled/CMakeLists.txt", "${CATKIN_GLOBAL_INCLUDE_DESTINATION}/runner", "${CATKIN_PACKAGE_INCLUDE_DESTINATION}"),
+        ("error", "CATKIN_PACKAGE_INCLUDE_DESTINATION"),
+    ),
+    "headers that another package compiles, installed in their place": Row(
+        "missing-install",
+        "humble",
+        {
+            **ament("sled", HEADERS, include__sled__sled_hpp="#pragma once\n"),
+            **ament("dogs", "add_executable(run run.cpp)", "sled", run_cpp="#include <sled/sled.hpp>\n" + MAIN),
+        },
+        ("sled/CMakeLists.txt", "DIRECTORY include/ ", "DIRECTORY include "),
+        ("error", "include"),
+    ),
+    "headers in their place that nothing here compiles": Row(
+        "missing-install",
+        "humble",
+        ament("sled", HEADERS, include__sled__sled_hpp="#pragma once\n"),
+        ("sled/CMakeLists.txt", "DIRECTORY include/ ", "DIRECTORY include "),
+        ("warning", "include"),
+    ),
+    "the description of installed plugins": Row(
+        "missing-install",
+        "noetic",
+        catkin(
+            "sled",
+            "COMPONENTS pluginlib",
+            "catkin_package()\nadd_library(sled sled.cpp)\ninstall(TARGETS sled DESTINATION lib)\n"
+            "install(FILES plugins.xml DESTINATION share/sled)\n",
+            "pluginlib",
+            sled_cpp="int f;\n",
+            plugins_xml='<library path="lib/libsled"><class name="sled/A" type="A" base_class_type="B"/></library>\n',
+        )
+        | {
+            "sled/package.xml": manifest(
+                "sled", "pluginlib", tool="catkin", export='<nav_core plugin="${prefix}/plugins.xml"/>'
+            )
+        },
+        ("sled/CMakeLists.txt", "install(FILES plugins.xml DESTINATION share/sled)\n", ""),
+        ("error", "plugins.xml"),
+    ),
+    "a program that an installed launch file starts": Row(
+        "missing-install",
+        "noetic",
+        catkin(
+            "sled",
+            "",
+            "catkin_package()\nadd_executable(run run.cpp)\nadd_executable(stop stop.cpp)\n"
+            "install(TARGETS run stop DESTINATION lib/sled)\ninstall(DIRECTORY launch DESTINATION share/sled)\n",
+            run_cpp=MAIN,
+            stop_cpp=MAIN,
+            launch__all_launch='<launch>\n<node pkg="sled" type="run" name="run"/>\n</launch>\n',
+        ),
+        ("sled/CMakeLists.txt", "TARGETS run stop", "TARGETS stop"),
+        ("error", "run"),
+    ),
+    "a program that a launch file starts on demand": Row(
+        "missing-install",
+        "noetic",
+        catkin(
+            "sled",
+            "",
+            "catkin_package()\nadd_executable(run run.cpp)\nadd_executable(stop stop.cpp)\n"
+            "install(TARGETS run stop DESTINATION lib/sled)\ninstall(DIRECTORY launch DESTINATION share/sled)\n",
+            run_cpp=MAIN,
+            stop_cpp=MAIN,
+            launch__all_launch=LAUNCH.replace("rosbridge_server", "sled").replace("rosbridge_websocket", "run"),
+        ),
+        ("sled/CMakeLists.txt", "TARGETS run stop", "TARGETS stop"),
+        ("warning", "run"),
+    ),
     "headers installed under the name they are included by": Row(
         "missing-install",
         "noetic",
@@ -211,17 +332,47 @@ ROWS = {
         "humble",
         ament("sled", LIBRARY + "ament_export_libraries(sled)", sled_cpp="int f;\n"),
         ("sled/CMakeLists.txt", "ament_export_libraries(sled)", "ament_export_libraries(sledge)"),
-        ("warning", "sledge"),
-    ),
-    "an exported library that is built, and looked for": Row(
-        "missing-export",
-        "humble",
-        {
-            **ament("sled", LIBRARY + "ament_export_libraries(sled)", sled_cpp="int f;\n"),
-            **ament("dogs", "find_package(sled REQUIRED)", "sled"),
-        },
-        ("sled/CMakeLists.txt", "ament_export_libraries(sled)", "ament_export_libraries(sledge)"),
         ("error", "sledge"),
+    ),
+    "an exported library that catkin builds": Row(
+        "missing-export",
+        "noetic",
+        catkin("sled", "", "catkin_package(LIBRARIES sled)\n" + LIBRARY, sled_cpp="int f;\n"),
+        ("sled/CMakeLists.txt", "LIBRARIES sled", "LIBRARIES sledge"),
+        ("error", "sledge"),
+    ),
+    "exported names apart": Row(
+        "misspelt-cmake-name",
+        "humble",
+        ament(
+            "sled",
+            "find_package(angles REQUIRED)\nfind_package(rclcpp REQUIRED)\nament_export_dependencies(angles rclcpp)",
+            "angles",
+            "rclcpp",
+        ),
+        ("sled/CMakeLists.txt", "(angles rclcpp)", "(anglesrclcpp)"),
+        ("error", "anglesrclcpp"),
+    ),
+    "variables of a module that pkg-config is asked for": Row(
+        "missing-find-package",
+        "noetic",
+        catkin(
+            "sled",
+            "",
+            "find_package(PkgConfig REQUIRED)\npkg_check_modules(v4l2 REQUIRED libv4l2)\ncatkin_package()\n"
+            "add_executable(run run.cpp)\ntarget_link_libraries(run ${v4l2_LIBRARIES})\n",
+            "libv4l-dev",
+            run_cpp="#include <libv4l2.h>\n" + MAIN,
+        ),
+        ("sled/CMakeLists.txt", "pkg_check_modules(v4l2 REQUIRED libv4l2)\n", ""),
+        ("error", "libv4l2"),
+    ),
+    "a component of catkin that is no system library": Row(
+        "missing-find-package",
+        "noetic",
+        catkin("sled", "COMPONENTS roscpp", "catkin_package()", "roscpp", "libconsole-bridge-dev"),
+        ("sled/CMakeLists.txt", "COMPONENTS roscpp", "COMPONENTS roscpp console_bridge"),
+        ("error", "console_bridge"),
     ),
     "headers of a base class, exported": Row(
         "missing-export",

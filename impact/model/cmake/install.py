@@ -130,6 +130,8 @@ def _files(run: Interpreter, call: Call, kind: str, args: list[Word]) -> None:
         if item in _KEYWORDS:
             break
         items.append(item)
+    if kind == "files" and "PERMISSIONS" in args and any(item.endswith("_EXECUTE") for item in args):
+        kind = "programs"
     destination = _destination(run, args)
     items = split_words(items)
     by_conditions: dict[tuple[Condition, ...], list[Word]] = {}

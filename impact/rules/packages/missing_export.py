@@ -10,8 +10,8 @@ Why it breaks
     exported configuration names a library that was never built.
 
 Severity
-    error where the package's own configuration stops (an include directory that does not exist), or that of a package
-    of the workspace that looks for it (a library that is never built); warning where a dependant of the workspace, or
+    error where the package's own configuration stops (an include directory that does not exist), or that of whoever
+    looks for the package (a library that is never built); warning where a dependant of the workspace, or
     an exported target or library, needs what is missing; note otherwise, and for all but the first few of a package.
 
 Example
@@ -88,7 +88,7 @@ def _catkin(view: View, package):
                 f"the exported library `{export.item}` is no target of `{package.name}`",
                 "export the library's target name",
                 package.name,
-                severity=_of_dependants(view, package, export),
+                severity="error" if view.certain(export.conditions) and _own(view, package, export.item) else "warning",
             )
         elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
             near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
@@ -100,6 +100,13 @@ def _catkin(view: View, package):
                 package.name,
                 severity="warning" if near else "note",
             )
+
+
+def _own(view: View, package, library: str) -> bool:
+    """True for the name of a library that can only be one of the package's own: CMake finds those of the system."""
+    if library.startswith("boost_") or view.providers.pkgconfig(library) or view.providers.pkgconfig(f"lib{library}"):
+        return False
+    return all(link.item != library for target in package.build.targets for link in target.links)
 
 
 def _sets(package, stem: str) -> bool:
@@ -266,22 +273,8 @@ def _never_built(view: View, package, exports):
             f"the exported library `{item}` is never built, so find_package({package.name}) stops",
             "export what the package builds, or drop it",
             package.name,
-            severity=_of_dependants(view, package, export),
+            severity="error",
         )
-
-
-def _of_dependants(view: View, package, export) -> str:
-    """error where a package of the workspace is sure to look for one whose configuration cannot be read."""
-    sought = any(
-        found.name == package.name
-        and found.how in ("find_package", "catkin")
-        and (found.required or found.how == "catkin")
-        and view.certain(found.conditions)
-        for other in view.everyone()
-        if other.name != package.name
-        for found in other.build.found
-    )
-    return "error" if sought and view.certain(export.conditions) else "warning"
 
 
 def _installed(package) -> set[str]:

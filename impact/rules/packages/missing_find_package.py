@@ -13,9 +13,10 @@ Why it breaks
 
 Severity
     error where a target is linked or an include path used under a name that only the missing find_package defines,
-    where catkin is asked for a system library, for a program that is linked to nothing, and, since Kinetic, where no
-    target gets ROS's include folder; warning for includes, since an include path may come along by accident, and for
-    variables that nothing sets.
+    where catkin is asked for a system library, for a program that is linked to nothing, for a variable that nothing
+    sets where it stands for a library whose headers the target compiles, and, since Kinetic, where no target gets ROS's
+    include folder; warning for includes, since an include path may come along by accident, and for other variables that
+    nothing sets.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -289,7 +290,7 @@ def _no_components(view: View, package):
             f"`{name}` is a system library in {view.target.distro} and no catkin component",
             f"find_package({name} REQUIRED), or pkg-config, on its own",
             package.name,
-            severity="error" if key and found.required and not view.underlaid else "warning",
+            severity="error" if found.required and not view.underlaid else "warning",
         )
 
 
@@ -399,7 +400,25 @@ def _never_set(view: View, package):
             f"`{use.name}` is linked, and nothing sets it",
             f"pkg_check_modules({stem} REQUIRED {module})" if module else f"find_package({stem} REQUIRED)",
             package.name,
+            severity="error" if _compiled_with(view, package, use.name, module, stem) else "warning",
         )
+
+
+def _compiled_with(view: View, package, variable: str, module: str, stem: str) -> bool:
+    """True when a target that links the empty variable, and nothing that could stand for it, compiles the library's
+    headers."""
+    providers = view.providers.pkgconfig(module) if module else view.cmake(stem)
+    owners = {p.package or p.name for p in providers}
+    for target in package.build.targets:
+        items = [link.item for link in target.links if link.how == "link"]
+        if f"${{{variable}}}" not in items or not view.certain(target.conditions):
+            continue
+        if any("$" not in item and _folded(stem) in _folded(item) for item in items):
+            continue
+        includes = (i for i in package.digest.includes if target.name in i.targets and view.certain(i.conditions))
+        if any((p.package or p.name) in owners for i in includes for p in view.header(i.path)[:1]):
+            return True
+    return False
 
 
 def _no_prefix(view: View, package):

@@ -10,7 +10,11 @@ Why it breaks
     Everything works from the build tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
 
 Severity
-    error for an install rule of something that does not exist, or with a variable that nothing sets; warning otherwise.
+    error for an install rule of something that does not exist, or with a variable that nothing sets; and where the
+    installed package is sure to fail: a program that an installed launch file starts in any case, a script that lies
+    among programs and cannot be executed, the description of plugins whose library is installed, headers in a folder
+    where another package of the workspace, which compiles them, does not look. warning otherwise: in a workspace that
+    is never installed all of this works.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
@@ -113,7 +117,29 @@ def _doubled(view: View, package, installs):
                     "the folder `include` is installed into `include`, so headers end up in include/include",
                     "write `include/` with a slash at its end",
                     package.name,
+                    severity="error" if _lost(view, package, install, item) else "warning",
                 )
+
+
+def _lost(view: View, package, install, folder: str) -> bool:
+    """True when another package of the workspace compiles a header of the folder, which no other rule of the package
+    installs and whose way into the include path the package does not tell."""
+    if not view.certain(install.conditions) or package.build.unresolved:
+        return False
+    told = [e.item for e in package.build.exports if "include" in e.how]
+    if any("$" in item or item.rstrip("/").endswith("include/include") for item in told):
+        return False
+    others = [i for i in package.build.installs if i is not install and i.kind in ("directory", "files")]
+    start = posixpath.normpath(folder) + "/"
+    headers = {h[len(start) :] for h in package.digest.headers if h.startswith(start)}
+    if any(_covered(package, others, start + h) for h in headers):
+        return False
+    return any(
+        include.path in headers and include.role == "build" and include.targets and view.certain(include.conditions)
+        for other in view.everyone()
+        if other.name != package.name
+        for include in other.digest.includes
+    )
 
 
 def _not_executable(view: View, package, installs):
@@ -135,6 +161,7 @@ def _not_executable(view: View, package, installs):
                     f"`{name}` is installed with install(FILES), so it cannot be executed",
                     "install(PROGRAMS ...)",
                     package.name,
+                    severity="error" if among_programs and view.certain(install.conditions) else "warning",
                 )
 
 
@@ -153,6 +180,7 @@ def _under_another_name(view: View, package, installs):
             if folder is None or root or tail in ("", "/" + folder.group(1)) or tail.count("/") != 1:
                 continue
             name = folder.group(1)
+            lost = _lost(view, package, install, item.rstrip("/").removesuffix(name))
             catkin = tail == "/" + package.name and package.build_type == "catkin"
             yield Hit(
                 install.at,
@@ -161,6 +189,7 @@ def _under_another_name(view: View, package, installs):
                 "install them into "
                 + (f"${{CATKIN_GLOBAL_INCLUDE_DESTINATION}}/{name}" if catkin else f"`include/{name}`"),
                 package.name,
+                severity="error" if lost else "warning",
             )
 
 
@@ -244,13 +273,28 @@ def _targets(view: View, package, installs, referred):
         ):
             why = "other executables are"
         if why:
+            stops = target.kind == "executable" and installed and _is_started(view, package, name)
             yield Hit(
                 target.at,
                 name,
                 f"`{name}` is not installed, although {why}",
                 "add it to install(TARGETS ...)",
                 package.name,
+                severity="error" if stops and not package.build.unresolved else "warning",
             )
+
+
+def _is_started(view: View, package, name: str) -> bool:
+    """True when an installed launch file starts a program of the package in any case."""
+    for other in view.everyone():
+        installs = [i for i in other.build.installs if view.certain(i.conditions)]
+        for use in other.digest.references:
+            r = use.reference
+            if (r.package, r.name, r.kind, use.role) != (package.name, name, "executable", "run") or r.conditional:
+                continue
+            if ".launch" in use.at.path and _covered(other, installs, use.at.path):
+                return True
+    return False
 
 
 def _static(target) -> bool:
@@ -308,7 +352,19 @@ def _descriptions(view: View, package, installs):
                 f"the exported plugin description `{posixpath.basename(path)}` is not installed",
                 f"install(FILES {value[len('${prefix}/') :]} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})",
                 package.name,
+                severity="error" if _is_shipped(view, package, installs, path) else "warning",
             )
+
+
+def _is_shipped(view: View, package, installs, description: str) -> bool:
+    """True when a library that the description names is installed, so that the plugins are there for others."""
+    if package.build.unresolved:
+        return False
+    libraries = (posixpath.basename(c.library) for path, c in package.digest.plugins if path == description)
+    names = {name.removeprefix("lib").removesuffix(".so") for name in libraries}
+    return any(
+        item in names and view.certain(i.conditions) for i in installs if i.kind == "targets" for item in i.items
+    )
 
 
 def _folders(view: View, package, installs, referred):

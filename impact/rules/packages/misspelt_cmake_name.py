@@ -10,7 +10,8 @@ Why it breaks
     CMake takes an unknown variable as empty and says nothing; an unknown package stops this build or a dependant's.
 
 Severity
-    error where configuration of the package itself stops; warning otherwise.
+    error where configuration of the package itself stops, or that of whoever looks for it (exported names run
+    together); warning otherwise.
 
 Example
     ament_export_dependencies(nav2_costmap_2dnav2_util)
@@ -46,7 +47,7 @@ def misspelt_cmake_name(view: View):
         declared = view.declared(package)
         found = {f.name for f in package.build.found}
         near = None
-        for at, name, required, conditions, exact in _named(package):
+        for at, name, required, conditions, exact, exported in _named(package):
             if package.name in view.workspace.find_modules.get(name, ()):
                 continue
             if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
@@ -61,7 +62,7 @@ def misspelt_cmake_name(view: View):
                     f"`{name}` is `{halves[0]}` and `{halves[1]}` run together",
                     f"write `{halves[0]} {halves[1]}`",
                     package.name,
-                    severity="error" if required else "warning",
+                    severity="error" if required or (exported and view.certain(conditions)) else "warning",
                     fix=(Replace(at.path, at.line, at.column, name, " ".join(halves)),),
                 )
                 continue
@@ -107,14 +108,14 @@ def _wrong_case(view: View, package):
 def _named(package):
     for f in package.build.found:
         if f.how in ("find_package", "catkin") and f.name != "catkin":
-            yield f.at, f.name, f.required or f.how == "catkin", f.conditions, True
+            yield f.at, f.name, f.required or f.how == "catkin", f.conditions, True, False
     for e in package.build.exports:
         if e.how in ("ament_export_dependencies", "catkin_depends"):
-            yield e.at, e.item, False, e.conditions, True
+            yield e.at, e.item, False, e.conditions, True, e.how == "ament_export_dependencies"
     for target in package.build.targets:
         for link in target.links:
             if link.how == "ament" and "$" not in link.item:
-                yield link.at, link.item, False, link.conditions, False
+                yield link.at, link.item, False, link.conditions, False, False
 
 
 def _run_together(name: str, names) -> tuple[str, str] | None:
