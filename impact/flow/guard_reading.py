@@ -23,16 +23,13 @@ def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
     return "cpp"
 
 
-def pieces_of(
-    way: Sequence[GuardAt], language: Language, renames: Mapping[str, str], meanings: Mapping[str, str]
-) -> tuple[Piece, ...]:
+def pieces_of(way: Sequence[GuardAt], language: Language, renames: Mapping[str, str]) -> tuple[Piece, ...]:
     """All that must hold on one way, outermost first, with variables of loops and conditions put back into what they
-    stand for, and so are those in meanings (name to expression)."""
+    stand for."""
     result: list[Piece] = []
-    meant = {name: _meaning(language, text) for name, text in meanings.items()}
     names: dict[str, dict[str, Term]] = {}
     for place, guard in enumerate(way):
-        known = names.setdefault(guard.of, dict(meant))
+        known = names.setdefault(guard.of, {})
         reading = read(language, guard.kind, guard.text)
         for piece in reading.pieces:
             term = substituted(piece.term, known) if known else piece.term
@@ -43,11 +40,6 @@ def pieces_of(
         for name, value in reading.names:
             define(known, name, value)
     return tuple(result)
-
-
-@lru_cache(4096)
-def _meaning(language: Language, text: str) -> Term:
-    return guard_cpp.expression(text) if language == "cpp" else guard_python.expression(text)
 
 
 def this_left_out(sides: Sequence[Sequence[Sequence[Piece]]]) -> tuple[tuple[tuple[Piece, ...], ...], ...]:

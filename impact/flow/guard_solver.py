@@ -8,7 +8,7 @@ negative, show it too, wherever the terms could be of such a type. What lies bet
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 
 from .guard_reading import Language
@@ -29,13 +29,11 @@ class Undecided(Exception):
 class Solver:
     """Compares two conditions of one language.
 
-    types: of names, as they are written where they are declared. milliseconds: for each question, turned into an amount
-    of work that is the same on every machine.
+    milliseconds: for each question, turned into an amount of work that is the same on every machine.
     """
 
-    def __init__(self, language: Language, types: Mapping[str, str], milliseconds: int) -> None:
+    def __init__(self, language: Language, milliseconds: int) -> None:
         self.python = language == "python"
-        self.types = types
         self.milliseconds = max(milliseconds, 1)
         self.numbers: dict[Term, str] = {}
         self.truths: dict[Term, str] = {}
@@ -184,7 +182,8 @@ class Solver:
         if term.kind in ("+", "-"):
             if any(part.kind == "string" for part in term.parts):
                 return False
-            return term.kind == "+" or not any(self.type_of(part) == "unsigned" for part in term.parts)
+            # A size less something is never negative in C++: 0 - 1 is a large number there.
+            return term.kind == "+" or self.python or not any(part.kind == "size" for part in term.parts)
         if term.kind == "*":
             return any(self.fold(part) is not None for part in term.parts)
         if term.kind == "op" and term.text == "/" and len(term.parts) == 2:
@@ -209,15 +208,11 @@ class Solver:
             return left + right if term.kind == "+" else left - right if term.kind == "-" else left * right
         return None
 
-    def type_of(self, term: Term) -> str:
-        """`float`, `integer`, `unsigned`, `bool`, `pointer`, `optional`, or empty for what is not known."""
-        if term.kind == "size":
-            return "integer" if self.python else "unsigned"
+    def is_whole(self, term: Term) -> bool:
+        """Whether a term is a whole number in whatever types it is made of."""
         if term.kind == "call":
-            return "integer" if owner_of(term.parts[0])[1] in _COUNTS else ""
-        if term.kind == "op" and term.text == "cut":
-            return "integer"
-        return type_class(self.types.get(term.text, "")) if term.kind == "name" else ""
+            return owner_of(term.parts[0])[1] in _COUNTS
+        return term.kind == "size" or (term.kind == "op" and term.text == "cut")
 
     # Terms to formulas
 
@@ -273,7 +268,7 @@ class Solver:
         if kind == "string":
             return "true"
         measured = kind in ("whole", "real", "size", "abs") or self.is_arithmetic(term)
-        if measured or (not self.python and term in self.valued and self.type_of(term) != "optional"):
+        if measured or (not self.python and term in self.valued):
             return f"(not (= {self.value(term)} 0.0))"
         if term not in self.truths:
             self.truths[term] = self.fresh("Bool")
@@ -320,13 +315,10 @@ class Solver:
             match = _ENUMERATOR.fullmatch(term.text) if term.kind == "name" else None
             if match:
                 scopes.setdefault(match["scope"] or match["class"], []).append(value)
-            type_ = self.type_of(term)
-            if type_ in ("integer", "unsigned", "bool"):
+            if self.is_whole(term):
                 result.append(f"(is_int {value})")
-            if type_ in ("unsigned", "bool") or (term.kind in ("size", "call") and type_ == "integer"):
-                result.append(f"(>= {value} 0.0)")
-            if type_ == "bool":
-                result.append(f"(<= {value} 1.0)")
+                if term.kind != "op":
+                    result.append(f"(>= {value} 0.0)")
         result.extend(f"(distinct {' '.join(values)})" for values in scopes.values() if len(values) > 1)
         return result
 
@@ -335,10 +327,9 @@ class Solver:
         other."""
         for term, truth in self.truths.items():
             there = f"(not {self.nulls[term]})" if term in self.nulls else "true"
-            type_ = self.type_of(term)
             if term in self.counted:
                 yield f"(= {truth} (and {there} (not (= {self.value(Term('size', '', (term,)))} 0.0))))"
-            elif term in self.valued and (term in self.ordered or type_ in ("integer", "float", "bool")):
+            elif term in self.valued and (term in self.ordered or self.is_whole(term)):
                 yield f"(= {truth} (and {there} (not (= {self.value(term)} 0.0))))"
             else:
                 yield f"(=> {truth} {there})"
@@ -350,24 +341,19 @@ class Solver:
                 if term in self.nulls:
                     yield f"(=> {equal} (not {self.nulls[term]}))"
                 if term in self.truths and not self.is_constant(other):
-                    truth = self.truths[term]
-                    yield f"(=> {equal} (= {truth} {self.truth(other)}))"
-                    if other.kind == "string" and is_empty(other.text) and self.type_of(term) == "str":
-                        yield f"(=> (not {truth}) {equal})"
+                    yield f"(=> {equal} (= {self.truths[term]} {self.truth(other)}))"
 
     def supposed(self) -> list[str]:
         """What may hold of them besides: a difference that only shows otherwise is not believed."""
         result: list[str] = []
         constants: list[str] = []
         for term, value in self.numbers.items():
-            if self.type_of(term) == "float":
-                continue
             if term.kind == "name" and _CONSTANT.fullmatch(term.text):
                 constants.append(value)
             # Whether numbers are whole does not matter where they are only said to be equal or not.
             if term in self.measured and term not in self.fractional:
                 result.append(f"(is_int {value})")
-                if term not in self.signed and self.type_of(term) != "integer":
+                if term not in self.signed and not self.is_whole(term):
                     result.append(f"(>= {value} 0.0)")
         if len(constants) > 1:
             result.append(f"(distinct {' '.join(constants)})")
@@ -389,24 +375,3 @@ def _real(number: Fraction) -> str:
 def is_empty(literal: str) -> bool:
     """Whether a string literal is the empty string."""
     return bool(re.fullmatch(r"\w*(\"\"|''|R\"\(\)\")", literal))
-
-
-_FLOATING = re.compile(r"\b(?:double|float|float32_t|float64_t)\b")
-_UNSIGNED = re.compile(r"\b(?:unsigned|uint(?:_fast|_least)?\d*_t|uint|uint\d+|size_t|size_type)\b")
-_SIGNED = re.compile(r"\b(?:int|long|short|s?size_t|int(?:_fast|_least)?\d*_t|int\d+)\b")
-
-
-def type_class(type_: str) -> str:
-    """`float`, `integer`, `unsigned`, `bool`, `pointer`, `optional`, `str` or empty, for a type as it is written."""
-    if not type_:
-        return ""
-    if "optional" in type_ or "Optional" in type_:
-        return "optional"
-    if "*" in type_ or re.search(r"(?:Ptr|_ptr)\b", type_):
-        return "pointer"
-    if "<" in type_ or "[" in type_:
-        return ""
-    for pattern, name in ((_FLOATING, "float"), (_UNSIGNED, "unsigned"), (_SIGNED, "integer")):
-        if pattern.search(type_):
-            return name
-    return {"bool": "bool", "str": "str"}.get(type_.replace("const", "").strip(), "")

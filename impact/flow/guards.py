@@ -32,17 +32,12 @@ class Reading(NamedTuple):
     """How the names in two conditions are to be understood.
 
     renames: identifiers of the old revision that are called otherwise in the new one. language: as the guards' paths
-    tell it when it is not given. types: of names as the new revision has them, as they are declared; they decide
-    whether `n > 0` is `n >= 1` and `n != 0`. meanings: local variables of the old and of the new revision that are
-    assigned once, with the expression they are assigned: `if (n)` after `n = v.size()` is `if (v.size())`; namespaces
-    with what they are short for.
-    milliseconds: what each of the few questions to z3 may take, on any machine the same work.
+    tell it when it is not given. milliseconds: what each of the few questions to z3 may take, on any machine the same
+    work.
     """
 
     renames: Mapping[str, str] = _NOTHING
     language: Language | None = None
-    types: Mapping[str, str] = _NOTHING
-    meanings: tuple[Mapping[str, str], Mapping[str, str]] = (_NOTHING, _NOTHING)
     milliseconds: int = MILLISECONDS
 
 
@@ -56,7 +51,7 @@ def compare(old: Guards, new: Guards, reading: Reading = AS_WRITTEN) -> Kind:
 
 def compare_ways(old: Ways, new: Ways, reading: Reading = AS_WRITTEN) -> Kind:
     """As compare(), for a statement that several ways lead to: it runs when all guards of one of them hold."""
-    if not reading.renames and reading.meanings[0] == reading.meanings[1] and _written(old) == _written(new):
+    if not reading.renames and _written(old) == _written(new):
         return "equivalent"
     before, after, solver = _sides(old, new, reading)
     if _said(before) == _said(after):
@@ -100,9 +95,9 @@ def impossible(guards: Guards, language: Language | None = None, milliseconds: i
     """Whether guards contradict each other. That tells that the statement never runs only where nothing they name is
     assigned between them."""
     language = language or language_of((guards,))
-    pieces = pieces_of(guards, language, _NOTHING, _NOTHING)
+    pieces = pieces_of(guards, language, _NOTHING)
     try:
-        return not Solver(language, _NOTHING, milliseconds).possible(_all_of(pieces))
+        return not Solver(language, milliseconds).possible(_all_of(pieces))
     except Undecided:
         return False
 
@@ -114,11 +109,11 @@ def _written(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
 def _sides(old: Ways, new: Ways, reading: Reading) -> tuple[_Side, _Side, Callable[[], Solver]]:
     """Both sides as terms, and what makes a solver for them."""
     language = reading.language or language_of((*old, *new))
-    before = tuple(pieces_of(way, language, reading.renames, reading.meanings[0]) for way in old)
-    after = tuple(pieces_of(way, language, _NOTHING, reading.meanings[1]) for way in new)
+    before = tuple(pieces_of(way, language, reading.renames) for way in old)
+    after = tuple(pieces_of(way, language, _NOTHING) for way in new)
     if language == "cpp":
         before, after = this_left_out((before, after))
-    return before, after, lambda: Solver(language, reading.types, reading.milliseconds)
+    return before, after, lambda: Solver(language, reading.milliseconds)
 
 
 def _said(side: _Side) -> frozenset[frozenset[Term]]:
