@@ -8,11 +8,14 @@ from typing import NamedTuple
 
 from .surface import Argument, Base, TemplateParameter
 from .surface_cpp_types import (
+    ASIDE,
     ATTRIBUTE_WORDS,
     BUILTIN,
     CAPITALS,
+    DEDUCED,
     argument,
     arguments_of,
+    behind_aside,
     closed,
     closed_angle,
     joined,
@@ -347,15 +350,9 @@ def declared(tokens: list[str], head: Head, class_name: str) -> list[Declared] |
             break
         elif token == "operator":
             return _operator(rest, place, units, head)
-        elif token in ("decltype", "typeof", "__typeof__") and place + 1 < end:
-            place = closed(rest, place + 1)
-            builtin = True
-            continue
-        elif token in ATTRIBUTE_WORDS and place + 1 < end:
-            place = closed(rest, place + 1)
-            continue
-        elif token == "[":
-            place = closed(rest, place)
+        elif token in ASIDE and (behind := behind_aside(rest, place)) > place:
+            builtin = builtin or token in DEDUCED
+            place = behind
             continue
         elif token == "~" or token.isidentifier() or token == "::":
             if token not in _PLAIN:

@@ -26,6 +26,9 @@ _QUALIFIERS = ("const", "volatile")
 _POINTERS = frozenset(("*", "&", "&&", "..."))
 RESTRICT = frozenset(("restrict", "__restrict", "__restrict__"))
 ATTRIBUTE_WORDS = frozenset(("__attribute__", "__attribute", "__declspec", "alignas", "_Alignas"))
+DEDUCED = frozenset(("decltype", "typeof", "__typeof__"))
+ASIDE = DEDUCED | ATTRIBUTE_WORDS | {"["}
+"""How things in brackets begin that are no part of a name."""
 _NO_UNITS = frozenset((*_DROPPED, *_QUALIFIERS, *RESTRICT, "register", "in", "mutable")) - {"in"}
 CAPITALS = re.compile(r"_*[A-Z][A-Z0-9_]+\Z")
 """How macros are written, and some types."""
@@ -48,6 +51,12 @@ def closed(tokens: Sequence[str], at: int) -> int:
             if depth <= 0:
                 return place + 1
     return len(tokens)
+
+
+def behind_aside(tokens: Sequence[str], place: int) -> int:
+    """The place behind the thing in brackets that begins with a word of ASIDE; the same place when none follows it."""
+    opening = place if tokens[place] == "[" else place + 1
+    return closed(tokens, opening) if opening < len(tokens) else place
 
 
 def closed_angle(tokens: Sequence[str], at: int) -> int:
@@ -283,18 +292,10 @@ def named(tokens: Sequence[str]) -> tuple[str, str]:
             builtin = True
         elif token in _NO_UNITS:
             pass
-        elif token in ("decltype", "typeof", "__typeof__") and place + 1 < end:
-            place = closed(tokens, place + 1)
-            builtin = True
-            continue
-        elif token in ATTRIBUTE_WORDS and place + 1 < end:
-            behind = closed(tokens, place + 1)
-            dropped.append((place, behind))
-            place = behind
-            continue
-        elif token == "[":
-            behind = closed(tokens, place)
-            if place + 1 < end and tokens[place + 1] == "[":
+        elif token in ASIDE and (behind := behind_aside(tokens, place)) > place:
+            if token in DEDUCED:
+                builtin = True
+            elif token != "[" or (place + 1 < end and tokens[place + 1] == "["):
                 dropped.append((place, behind))
             place = behind
             continue
