@@ -8,18 +8,27 @@ knows spoils one declaration at most. Where #if branches cut through a declarati
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from .condition import Condition
 from .cpp import Scan, includes_of, scan
-from .surface import Argument, Entity, HeaderSurface
-from .surface_cpp_declarations import ClassHead, Declared, Head, class_head, declared, head_of, without_deprecation
-from .surface_cpp_macros import DECLARES
+from .surface import Entity, HeaderSurface
+from .surface_cpp_declarations import (
+    ClassHead,
+    Declared,
+    Head,
+    class_head,
+    declarators,
+    declared,
+    head_of,
+    names_variables,
+    without_deprecation,
+)
+from .surface_cpp_directives import HIDDEN, conditions_at, warning_of, without_directives
+from .surface_cpp_enums import enumerators
+from .surface_cpp_macros import DECLARES, expansion
 from .surface_cpp_types import (
-    arguments_of,
     closed,
     joined,
     split,
@@ -55,15 +64,6 @@ _NO_HEAD = Head(0, None, frozenset(), frozenset())
 _INIT = _Opened("init", [], _NO_HEAD)
 _BODY = _Opened("body", [], _NO_HEAD)
 _MARKS = re.compile(r"[{};]")
-_DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(\w*)([^\n]*(?:(?<=\\)\n[^\n]*)*)", re.MULTILINE)
-_NOT_NEWLINE = re.compile(r"[^\n]+")
-_HIDDEN = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'", re.DOTALL)
-_DEFINE = re.compile(r"\s*([^\W\d]\w*)(\([^()]*\))?(.*)", re.DOTALL)
-_LITERAL = re.compile(r"\(?\s*([-+]?(?:0[xX][\da-fA-F]+|\d[\d.]*(?:[eE][-+]?\d+)?)[uUlLfF]*|\"[^\"\n]{0,60}\")\s*\)?\Z")
-_WARNS = re.compile(
-    r"^[ \t]*#[ \t]*(?:warning|pragma[ \t]+(?:message|GCC[ \t]+warning))\b([^\n]*(?:(?<=\\)\n[^\n]*)*)", re.MULTILINE
-)
-_GONE = re.compile(r"deprecat|obsolete|has moved|been moved|been renamed|instead", re.IGNORECASE)
 _PATH = re.compile(r"[\w+.-]+(?:/[\w+.-]+)*\.(?:hpp|hxx|hh|h)\b")
 _ACCESS = frozenset(("public", "protected", "private", "signals", "Q_SIGNALS", "slots"))
 _SECTION = re.compile(r"(?<!:):(?!:)")
@@ -74,7 +74,6 @@ _ENDS_INIT = "=(,[&|+*?<"
 _BODY_WORDS = frozenset(("const", "noexcept", "override", "final", "mutable", "try", "volatile"))
 _LAST_WORD = re.compile(r"(\w+)\s*\Z")
 _MADE = frozenset(("constructor", "destructor"))
-_NUMBER = re.compile(r"(?:0[xX][\da-fA-F]+|\d+)[uUlL]*\Z")
 _HEADER_MACROS = ("DEPRECATED_HEADER", "HEADER_DEPRECATED")
 
 
@@ -95,15 +94,16 @@ class _Reader:
         self.lost = 0
         self.deprecated: str | None = None
         self.access = ""
-        self.under_all = scanned.segments[0][2] if len(scanned.segments) == 1 else None
-        self.code = self._without_directives()
+        self.code, macros = without_directives(scanned)
+        self.entities += macros
 
     def read(self) -> HeaderSurface:
         self._walk()
         scanned = self.scanned
         includes = includes_of(scanned)
         instead = ""
-        self._header_warning()
+        if self.deprecated is None:
+            self.deprecated = warning_of(self.text)
         if self.deprecated is not None:
             named = _PATH.findall(self.deprecated)
             taken = [include.path for include in includes]
@@ -118,101 +118,6 @@ class _Reader:
             self.lost,
             tuple(scanned.problems),
         )
-
-    # Directives
-
-    def _without_directives(self) -> str:
-        visible = self.scanned.visible
-        if "#" not in visible:
-            return visible
-        gone: list[tuple[int, int]] = []
-        opened: list[list[tuple[int, int, str, str]]] = []
-        undefined: set[str] = set()
-        defines: list[tuple[int, int, str]] = []
-        for match in _DIRECTIVE.finditer(visible):
-            start, end = match.span()
-            word = match[1]
-            gone.append((start, end))
-            if word == "define":
-                defines.append((start, end, match[2]))
-            elif word == "undef":
-                undefined.add(match[2].strip())
-            elif word in ("if", "ifdef", "ifndef"):
-                opened.append([(start, end, word, match[2].strip())])
-            elif opened and word in ("else", "elif", "elifdef", "elifndef"):
-                opened[-1].append((start, end, word, match[2].strip()))
-            elif opened and word == "endif":
-                branches = opened.pop()
-                if len(branches) > 1 or branches[0][3] == "0":
-                    gone += _cut(visible, [*branches, (start, end, word, "")])
-        gone.sort()
-        pieces: list[str] = []
-        position = 0
-        for start, end in gone:
-            if end <= position:
-                continue
-            start = max(start, position)
-            hidden = visible[start:end]
-            pieces += [
-                visible[position:start],
-                _NOT_NEWLINE.sub(_spaces, hidden) if "\n" in hidden else " " * len(hidden),
-            ]
-            position = end
-        pieces.append(visible[position:])
-        self._macros(defines, undefined)
-        return "".join(pieces)
-
-    def _macros(self, defines: list[tuple[int, int, str]], undefined: set[str]) -> None:
-        seen: set[tuple[str, tuple[Condition, ...]]] = set()
-        for start, end, body in defines:
-            match = _DEFINE.match(body)
-            if match is None or match[1] in undefined:
-                continue
-            name = match[1]
-            conditions = self._conditions(start)
-            if (name, conditions) in seen:
-                continue
-            parameters = None
-            value = ""
-            if match[2]:
-                parameters = arguments_of(tokens_of(match[2][1:-1].replace("\\\n", " ")))
-            else:
-                whole = _HIDDEN.sub(_kept, self.text[start:end])
-                found = _DEFINE.match(whole.split("define", 1)[-1])
-                rest = found[3].strip() if found else ""
-                literal = _LITERAL.match(rest)
-                value = literal[1] if literal else ""
-                if not rest and self._is_guard(name, start):
-                    continue
-            seen.add((name, conditions))
-            plain = None
-            if parameters is not None:
-                plain = tuple(Argument(parameter.type) for parameter in parameters[0])
-                if parameters[1] or "..." in match[2]:
-                    plain = (*(one for one in plain if one.type), Argument("..."))
-            self.entities.append(
-                Entity(
-                    "macro", name, self.scanned.place(start)[0], parameters=plain, value=value, conditions=conditions
-                )
-            )
-
-    def _is_guard(self, name: str, start: int) -> bool:
-        before = self.scanned.visible[max(0, start - 400) : start].rstrip()
-        line = before[before.rfind("\n") + 1 :]
-        return line.lstrip()[:1] == "#" and name in line
-
-    def _header_warning(self) -> None:
-        text = self.text
-        if self.deprecated is not None or ("warning" not in text and "pragma" not in text):
-            return
-        for match in _WARNS.finditer(text):
-            before = text[: match.start()]
-            if before.rfind("/*") > before.rfind("*/"):
-                continue
-            message = " ".join(re.sub(r'\\\n|["()]', " ", match[1]).split())
-            if _GONE.search(message):
-                self.deprecated = message
-                return
 
     # Declarations
 
@@ -267,7 +172,7 @@ class _Reader:
                 tail: list[str] = []
                 if other + 1 < count and code[marks[other + 1]] == ";":
                     tail = tokens_of(code[behind : marks[other + 1]])
-                    if _is_tail(tail):
+                    if names_variables(tail):
                         resume = (marks[other + 1] + 1, other + 2)
                     else:
                         tail = []
@@ -384,7 +289,7 @@ class _Reader:
         """A piece of code with its literals."""
         pieces = list(head)
         text = self.text[start:at]
-        for match in _HIDDEN.finditer(text):
+        for match in HIDDEN.finditer(text):
             first = match[0][0]
             if first == '"' and head[match.start()] == '"':
                 pieces[match.start() : match.end()] = match[0]
@@ -475,7 +380,7 @@ class _Reader:
             if any(mark in name for mark in _HEADER_MACROS) and self.deprecated is None:
                 self.deprecated = "".join(word[1:-1] for word in arguments if word[:1] == '"')
             return
-        for tokens in _expansion(name, arguments):
+        for tokens in expansion(name, arguments):
             scope = self.scopes[-1]
             self._declare_macro(tokens, head_of(tokens, scope.class_name), name, start, at)
 
@@ -585,7 +490,7 @@ class _Reader:
                 arguments,
                 scope.internal,
                 macro,
-                self._conditions(offset),
+                conditions_at(self.scanned, offset),
             )
         )
 
@@ -612,13 +517,6 @@ class _Reader:
                 return at
             at = code.find(word, at + 1, end)
         return start
-
-    def _conditions(self, offset: int) -> tuple[Condition, ...]:
-        if self.under_all is not None:
-            return self.under_all
-        scanned = self.scanned
-        _start, _, conditions = scanned.segments[min(bisect_right(scanned.ends, offset), len(scanned.segments) - 1)]
-        return conditions
 
     def _lose(self, head: str) -> None:
         self.lost += len(head.strip())
@@ -668,7 +566,7 @@ class _Reader:
         name = found.name
         if "::" in name or (scope.class_name and self.access == "private"):
             return False  # `struct A::Impl {`: nobody else sees it
-        others = _declarators(tail)
+        others = declarators(tail)
         if not name and typedef:
             name = next((word for word, stars in others if not stars), "")
             others = [(word, stars) for word, stars in others if word != name]
@@ -711,31 +609,10 @@ class _Reader:
         if "'" in self.text[at:end] or '"' in body:
             body = self._restored(at + 1, end, body)
         prefix = scope.prefix + (name + "::" if scoped and name else "")
-        number: int | None = -1
-        last = ""
-        steps = 0
         position = at + 1
-        for piece in split(tokens_of(body)):
-            deprecated = None
-            while piece and piece[0] == "#":
-                piece = piece[1:]
-            if any("eprecated" in word or "DEPRECATED" in word for word in piece[1:]):
-                piece, deprecated = without_deprecation(piece)
-            if not piece or not piece[0].isidentifier():
-                continue
-            word = piece[0]
+        for word, value, deprecated in enumerators(body):
             offset = self._word(word, position, end)
             position = offset + len(word)
-            steps += 1
-            if "=" in piece:
-                value = piece[piece.index("=") + 1 :]
-                number = _value(value)
-                if number is None:
-                    last = joined(value)
-                    steps = 0
-            elif number is not None:
-                number += 1
-            shown = str(number) if number is not None else last if steps == 0 else f"{last}+{steps}"
             self.entities.append(
                 Entity(
                     "enumerator",
@@ -743,10 +620,10 @@ class _Reader:
                     self.scanned.place(offset)[0],
                     scope.prefix + name if name else "",
                     access=self.access if scope.class_name else "",
-                    value=shown,
+                    value=value,
                     deprecated=deprecated,
                     internal=scope.internal,
-                    conditions=self._conditions(offset),
+                    conditions=conditions_at(self.scanned, offset),
                 )
             )
 
@@ -754,70 +631,6 @@ class _Reader:
 @lru_cache(maxsize=4096)
 def _sorted(traits: frozenset[str]) -> tuple[str, ...]:
     return tuple(sorted(traits))
-
-
-@lru_cache(maxsize=1024)
-def _expansion(name: str, arguments: tuple[str, ...]) -> list[list[str]]:
-    """The declarations of a known macro, each as tokens."""
-    parameters, text = DECLARES[name]
-    given = split(list(arguments))
-    if len(parameters) == 1:
-        given = [list(arguments)]
-    values = dict(zip(parameters, given, strict=False))
-    statements: list[list[str]] = []
-    for statement in text.split(";"):
-        tokens: list[str] = []
-        pending = False
-        for token in tokens_of(statement.replace("##", " \x01 ")):
-            if token == "\x01":
-                pending = True
-            elif pending:
-                tokens[-1] += token
-                pending = False
-            else:
-                tokens += values.get(token, [token])
-        if tokens:
-            statements.append(tokens)
-    return statements
-
-
-def _value(tokens: Sequence[str]) -> int | None:
-    """The number an enumerator is given, where that is told by the text alone."""
-    sign = 1
-    rest = list(tokens)
-    while rest[:1] == ["("] and rest[-1:] == [")"]:
-        rest = rest[1:-1]
-    if rest[:1] in (["-"], ["+"]):
-        sign = -1 if rest[0] == "-" else 1
-        rest = rest[1:]
-    if len(rest) == 3 and rest[1] == "<<" and all(_NUMBER.match(rest[place]) for place in (0, 2)):
-        shift = _number(rest[2])
-        return sign * (_number(rest[0]) << shift) if shift < 64 else None
-    if len(rest) == 1:
-        token = rest[0]
-        if _NUMBER.match(token):
-            return sign * _number(token)
-        if len(token) == 3 and token[0] == "'":
-            return sign * ord(token[1])
-    return None
-
-
-def _number(token: str) -> int:
-    token = token.rstrip("uUlL")
-    if token[:2] in ("0x", "0X"):
-        return int(token, 16)
-    if token[0] == "0" and len(token) > 1 and all(digit in "01234567" for digit in token):
-        return int(token, 8)
-    return int(token)
-
-
-def _spaces(match: re.Match[str]) -> str:
-    return " " * (match.end() - match.start())
-
-
-def _kept(match: re.Match[str]) -> str:
-    """Literals stay, comments go."""
-    return " " if match[0][0] == "/" else match[0]
 
 
 def _partners(code: str, marks: list[int]) -> list[int]:
@@ -831,30 +644,6 @@ def _partners(code: str, marks: list[int]) -> list[int]:
         elif sign == "}" and opened:
             partner[opened.pop()] = index
     return partner
-
-
-def _cut(visible: str, branches: list[tuple[int, int, str, str]]) -> list[tuple[int, int]]:
-    """Of branches that cut through a declaration, all but one are left out; so is what stands under `#if 0`."""
-    bodies = [(branches[number][1], branches[number + 1][0]) for number in range(len(branches) - 1)]
-    never = 0 if branches[0][3] == "0" and branches[0][2] == "if" else -1
-    if len(bodies) > 1 and any(
-        not _whole(visible[start:end]) for number, (start, end) in enumerate(bodies) if number != never
-    ):
-        keep = 1 if never == 0 else 0
-        return [body for number, body in enumerate(bodies) if number != keep]
-    return [bodies[0]] if never == 0 else []
-
-
-def _whole(body: str) -> bool:
-    if body.count("{") != body.count("}") or body.count("(") != body.count(")"):
-        return False
-    last = ""
-    for line in reversed(body.split("\n")):
-        line = line.strip()
-        if line and line[0] != "#":
-            last = line[-1]
-            break
-    return not last or last in ";{}:)"
 
 
 def _last_closing(tokens: Sequence[str]) -> int:
@@ -872,47 +661,3 @@ def _is_macro_before_section(tokens: Sequence[str], place: int) -> bool:
     if behind < len(tokens) and tokens[behind] == "(":
         behind = closed(tokens, behind)
     return behind < len(tokens) and (tokens[behind] in _ACCESS or word in DECLARES)
-
-
-def _is_tail(tail: Sequence[str]) -> bool:
-    """Whether what stands behind the closing brace of a class names variables, and is no new declaration."""
-    return not tail or (
-        len(tail) < 60
-        and "(" not in [word for word in tail if word == "operator"]
-        and not any(
-            word
-            in ("class", "struct", "namespace", "using", "typedef", "enum", "template", "public", "private", "static")
-            for word in tail
-        )
-    )
-
-
-def _declarators(tail: Sequence[str]) -> list[tuple[str, str]]:
-    """Names behind a closing brace, with the pointers and array bounds they have."""
-    found = []
-    for piece in split(list(tail)):
-        stars = "".join(word for word in piece if word in ("*", "&"))
-        place = 0
-        name = ""
-        while place < len(piece):
-            word = piece[place]
-            if word in ("__attribute__", "__declspec", "alignas"):
-                place = closed(piece, place + 1) if place + 1 < len(piece) else place + 1
-                continue
-            if word in ("=", ":", "{"):
-                break
-            if word == "[":
-                behind = closed(piece, place)
-                if name and piece[place + 1 : place + 2] != ["["]:
-                    stars += joined(piece[place:behind])
-                place = behind
-                continue
-            if word == "(":
-                place = closed(piece, place)
-                continue
-            if word.isidentifier() and word not in ("const", "volatile"):
-                name = name if name else word
-            place += 1
-        if name and not (name.isupper() and name.endswith("PACKED")):
-            found.append((name, stars))
-    return found

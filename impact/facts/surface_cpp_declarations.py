@@ -622,3 +622,47 @@ def _variables(rest: list[str], head: Head) -> list[Declared] | None:
         keep = kind == "variable" and traits & {"const", "constexpr"} and len(value) <= 60
         found.append(Declared(kind, name, type_, None, traits, value if keep else ""))
     return found
+
+
+def names_variables(tail: Sequence[str]) -> bool:
+    """Whether what stands behind the closing brace of a class names variables, and is no new declaration."""
+    return not tail or (
+        len(tail) < 60
+        and "(" not in [word for word in tail if word == "operator"]
+        and not any(
+            word
+            in ("class", "struct", "namespace", "using", "typedef", "enum", "template", "public", "private", "static")
+            for word in tail
+        )
+    )
+
+
+def declarators(tail: Sequence[str]) -> list[tuple[str, str]]:
+    """Names behind a closing brace, with the pointers and array bounds they have."""
+    found = []
+    for piece in split(list(tail)):
+        stars = "".join(word for word in piece if word in ("*", "&"))
+        place = 0
+        name = ""
+        while place < len(piece):
+            word = piece[place]
+            if word in ("__attribute__", "__declspec", "alignas"):
+                place = closed(piece, place + 1) if place + 1 < len(piece) else place + 1
+                continue
+            if word in ("=", ":", "{"):
+                break
+            if word == "[":
+                behind = closed(piece, place)
+                if name and piece[place + 1 : place + 2] != ["["]:
+                    stars += joined(piece[place:behind])
+                place = behind
+                continue
+            if word == "(":
+                place = closed(piece, place)
+                continue
+            if word.isidentifier() and word not in ("const", "volatile"):
+                name = name if name else word
+            place += 1
+        if name and not (name.isupper() and name.endswith("PACKED")):
+            found.append((name, stars))
+    return found

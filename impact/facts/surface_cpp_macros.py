@@ -6,6 +6,10 @@ ros/message_forward.h, urdf_model/types.h, ompl/util/ClassForward.h, rclcpp_life
 
 from __future__ import annotations
 
+from functools import lru_cache
+
+from .surface_cpp_types import split, tokens_of
+
 _SHARED = "using SharedPtr = std::shared_ptr<T>; using ConstSharedPtr = std::shared_ptr<const T>;"
 _MAKE_SHARED = "template<typename... Args> static std::shared_ptr<T> make_shared(Args&&... args);"
 _WEAK = "using WeakPtr = std::weak_ptr<T>; using ConstWeakPtr = std::weak_ptr<const T>;"
@@ -44,3 +48,28 @@ DECLARES: dict[str, tuple[tuple[str, ...], str]] = {
     "Q_OBJECT": ((), "static const QMetaObject staticMetaObject; virtual const QMetaObject* metaObject() const;"),
 }
 """Macro: the names of its parameters, and the declarations it stands for, written in those (`T##Ptr` joins)."""
+
+
+@lru_cache(maxsize=1024)
+def expansion(name: str, arguments: tuple[str, ...]) -> list[list[str]]:
+    """The declarations of a known macro, each as tokens."""
+    parameters, text = DECLARES[name]
+    given = split(list(arguments))
+    if len(parameters) == 1:
+        given = [list(arguments)]
+    values = dict(zip(parameters, given, strict=False))
+    statements: list[list[str]] = []
+    for statement in text.split(";"):
+        tokens: list[str] = []
+        pending = False
+        for token in tokens_of(statement.replace("##", " \x01 ")):
+            if token == "\x01":
+                pending = True
+            elif pending:
+                tokens[-1] += token
+                pending = False
+            else:
+                tokens += values.get(token, [token])
+        if tokens:
+            statements.append(tokens)
+    return statements
