@@ -253,6 +253,28 @@ SILENT = {
         ),
         ("run.cpp", "  void create_timer(double period, void (*callback)());\n", ""),
     ),
+    "a call of a method that a package it is built with declares": Silent(
+        "changed-signature",
+        ("humble",),
+        {
+            f"sled/{name}": text
+            for name, text in ament(
+                NODE.format("") + INSTALLED,
+                "rclcpp",
+                "raft",
+                run_cpp=RCLCPP
+                + "struct Sled : rclcpp::Node\n{\n  void go() { this->create_timer(100ms, callback_); }\n};\n"
+                + MAIN,
+            ).items()
+        }
+        | {
+            "raft/package.xml": manifest(name="raft"),
+            "raft/CMakeLists.txt": HEAD.replace("sled", "raft") + "find_package(ament_cmake REQUIRED)\n"
+            "add_library(raft raft.cpp)\nament_package()\n",
+            "raft/raft.cpp": "struct Raft\n{\n  void create_timer(double period, void (*callback)());\n};\n",
+        },
+        ("sled/package.xml", "<depend>raft</depend>\n", ""),
+    ),
     "sources of an interface package that generates what another one lists": Silent(
         "removed-header",
         ("jazzy",),

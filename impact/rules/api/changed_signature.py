@@ -46,9 +46,10 @@ def changed_signature(view: View):
     coming = {label: c for label, c in view.later.items() if c.kind == "call-changed" and c.package not in _COMPILER}
     if not refused and not coming:
         return
-    # A method that the workspace declares may be meant wherever its name is called.
-    own = {function for package in view.workspace for function in package.digest.functions}
     for package in view:
+        # A method that the package or what it is built with declares may be meant wherever its name is called.
+        within = [view.workspace.packages[name] for name in view.closure(package) if name in view.workspace.packages]
+        own = {function for each in within for function in each.digest.functions}
         warned: set[str] = set()
         for use in package.digest.uses:
             if function_of(use.text) in own:
