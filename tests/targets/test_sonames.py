@@ -39,6 +39,20 @@ def test_of_a_platform_without_a_file_list_nothing_is_known():
     assert SONAMES.has("ubuntu jammy", "libpcl_common.so.1.11") is None
 
 
+LOADERS = {"ld-linux-aarch64.so.1", "ld-linux-armhf.so.3"}  # of machines whose packages the index does not hold
+
+
+@pytest.mark.parametrize("soname", [name for name in SONAMES.reviewed.everywhere if name not in LOADERS])
+def test_what_is_reviewed_as_everywhere_is_in_every_index(soname):
+    assert [SONAMES.has(platform, soname) for platform in DEBIAN] == [True] * len(DEBIAN)
+
+
+@pytest.mark.parametrize("soname", ["libnvme.so.1", "libnvcore.so.2", "libcue.so.2", "libtorrent.so.21"])
+def test_makers_libraries_are_not_mistaken_for_debians_own(soname):
+    assert not soname.startswith(SONAMES.reviewed.elsewhere)
+    assert any(SONAMES.has(platform, soname) is not None for platform in DEBIAN)
+
+
 def test_what_is_there_instead_comes_shortest_first():
     assert SONAMES.others("debian bookworm", "libpcl_common.so.1.11") == [
         "libpcl_common.so.1.13",
