@@ -69,9 +69,8 @@ def schema_with(name: str) -> str:
     ours, whole = json.loads(schema()), json.loads(Path(__file__).with_name(name).read_text(encoding="utf-8"))
     shared = {key: ours["properties"][key] for key in ("tool", "coverage")}
     shared["target"] = ours["properties"]["targets"]["items"]
-    for key in ("day", "count", "finding"):
-        shared[key] = ours["$defs"][key]
-    whole["$defs"] = whole.get("$defs", {}) | shared
+    whole["$defs"] = {**whole.get("$defs", {}), **shared, **ours["$defs"]}
+    del whole["$defs"]["change"]  # of the message flow, which is asked with a base alone
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
 
