@@ -55,7 +55,7 @@ _FAR = 160
 _LONGEST = 4000
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _SPACE = re.compile(r"\s*")
-_TYPES = re.compile(r"[\w:,\s*&]*(?:<[\w:,\s*&]*(?:<[\w:,\s*&<>]*>[\w:,\s*&]*)*>[\w:,\s*&]*)*>")
+TEMPLATE_ARGUMENTS = re.compile(r"[\w:,\s*&]*(?:<[\w:,\s*&]*(?:<[\w:,\s*&<>]*>[\w:,\s*&]*)*>[\w:,\s*&]*)*>")
 _VARIABLE = re.compile(r"\s+[A-Za-z_]\w*\s*(?=[({])")
 _BEFORE_CALL = re.compile(r"(?:([A-Za-z_]\w*)|(>))\s+(?:[A-Za-z_]\w*\s*::\s*)*\Z")
 _NOT_A_TYPE = frozenset(
@@ -215,7 +215,7 @@ def _fits(pattern: Pattern, text: str, start: int, end: int) -> str | None:
     at, shown = end, ""
     opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
     if pattern.language == "cpp" and text.startswith("<", opened):
-        types = _TYPES.match(text, opened + 1)
+        types = TEMPLATE_ARGUMENTS.match(text, opened + 1)
         if types is not None:
             if pattern.template is not None and not _compiled(pattern.template).fullmatch(types.group()[:-1].strip()):
                 return None
@@ -231,9 +231,9 @@ def _fits(pattern: Pattern, text: str, start: int, end: int) -> str | None:
         at = variable.end() if variable else _SPACE.match(text, at).end()  # type: ignore[union-attr]
         if text[at : at + 1] not in ("(", "{") or (text[at] == "{" and not pattern.names):
             return None
-        if not pattern.names and _declares(ahead):
+        if not pattern.names and declares_next(ahead):
             return None
-        found = _arguments(text, at)
+        found = arguments_at(text, at)
         if found is None:
             return None
         given, at = found
@@ -273,13 +273,13 @@ def _in_class(text: str, at: int) -> bool:
             return bool(_OPENING_CLASS.search(text[begins:position]))
 
 
-def _declares(ahead: str) -> bool:
+def declares_next(ahead: str) -> bool:
     """Whether a name behind this text is declared, not called: a type stands before it."""
     match = _BEFORE_CALL.search(ahead)
     return bool(match) and match.group(1) not in _NOT_A_TYPE
 
 
-def _arguments(text: str, at: int) -> tuple[list[str], int] | None:
+def arguments_at(text: str, at: int) -> tuple[list[str], int] | None:
     """The arguments of the call whose bracket opens at an offset, and where it ends; None when it does not."""
     given, depth, begins, last = [], [_CLOSING[text[at]]], at + 1, min(len(text), at + _LONGEST)
     position = at + 1
@@ -296,7 +296,7 @@ def _arguments(text: str, at: int) -> tuple[list[str], int] | None:
                     given.append(final)
                 return given, position + 1
         elif character == "<":
-            types = _TYPES.match(text, position + 1)
+            types = TEMPLATE_ARGUMENTS.match(text, position + 1)
             if types is not None and text[types.end() : types.end() + 1] in ("(", "{", ":", ",", ")", ">"):
                 position = types.end()
                 continue

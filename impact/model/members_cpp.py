@@ -10,7 +10,8 @@ import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
-from .members import FAR, Found, Interface, Scope, Type, section_of
+from .expressions_cpp import FAR, NO_TYPES, chain_before, declarations_of, in_scope
+from .members import Found, Interface, Scope, Type, section_of
 
 _POINTERS = frozenset(
     [
@@ -28,7 +29,6 @@ _SEQUENCES = frozenset(["vector", "array", "deque", "list", "BoundedVector"])
 _SAME = frozenset(["get", "operator", "value", "lock"])
 _ELEMENT = frozenset(["front", "back", "at"])
 _POINTED = re.compile(r"(?:Const|Shared|Unique|Weak|ConstShared|ConstUnique)*Ptr")
-_WORD_BACK = re.compile(r"([A-Za-z_]\w*)\s*\Z")
 _QUALIFIED_BACK = re.compile(r"((?:[A-Za-z_]\w*\s*::\s*)+)\Z")
 _WRAPPER_BACK = re.compile(r"(\w+)\s*<\s*(?:const\s+)?\Z")
 _ASSIGNED_BACK = re.compile(r"(?<![\w.>])(\w+)\s*=\s*(?:(?:std|boost)\s*::\s*)?\Z")
@@ -36,39 +36,6 @@ _TAIL = re.compile(r"((?:\s*::\s*\w+)*)")
 _DECLARED = re.compile(r"[\s&*]*(?:const\b[\s&*]*)?([A-Za-z_]\w*)\s*(?=[;=,){(\[:])(?!::)")
 _USE = re.compile(r"(?:\.|->|::)\s*([A-Za-z_]\w*)(?!\w|\s*\(|\s*::)")
 _NAME = re.compile(r"[A-Za-z_]\w*")
-_BRACES = re.compile(r"[{}]")
-_KEYWORDS = frozenset(
-    [
-        "return",
-        "delete",
-        "throw",
-        "new",
-        "else",
-        "case",
-        "goto",
-        "using",
-        "typename",
-        "template",
-        "operator",
-        "const",
-        "constexpr",
-        "static",
-        "if",
-        "while",
-        "for",
-        "switch",
-        "sizeof",
-        "co_return",
-        "co_await",
-        "co_yield",
-        "and",
-        "or",
-        "not",
-    ]
-)
-_TYPE_BACK = re.compile(
-    r"(?P<type>[A-Za-z_][\w:]*(?:\s*<[^;(){}]*>)?(?:\s*::\s*\w+)*)(?:\s+const)?(?:\s*[&*]+\s*(?:const\s+)?|\s+)\Z"
-)
 
 
 def mentions(text: str, scope: Scope) -> bool:
@@ -85,7 +52,6 @@ class CppUses:
         self._aliases: dict[str, tuple[Interface, str]] = {}
         self._collect_aliases()
         self._declared: dict[int, dict[str, list[tuple[int, Type]]]] = {}
-        self._all: dict[str, list[tuple[int, str]]] = {}
 
     def found(self) -> Iterator[Found]:
         """Every use of a member that some version lacks."""
@@ -121,7 +87,7 @@ class CppUses:
     def _only(self, name: str) -> tuple[Interface, str] | None:
         """The one interface and section that has a member; None when others do, or the package's files declare it."""
         meant = [(i, s) for i, d in self.scope.definitions.items() for s in d.sections if name in d.sections[s]]
-        if len(meant) != 1 or any(any(_declarations_of(name, text)) for text in (self.text, *self.headers)):
+        if len(meant) != 1 or any(declarations_of(name, text) for text in (self.text, *self.headers)):
             return None
         return meant[0]
 
@@ -236,7 +202,7 @@ class CppUses:
                 yield assigned.group(1), start, type_
                 return
         declared = _DECLARED.match(text, end)
-        if declared and declared.group(1) not in _KEYWORDS and declared.start(1) > end:
+        if declared and declared.group(1) not in NO_TYPES and declared.start(1) > end:
             after = text[declared.end() : declared.end() + 2]
             if after == "::":
                 return
@@ -252,18 +218,11 @@ class CppUses:
                 yield more.group(1), more.start(1), type_
                 at = more.end()
 
-    def _others(self, name: str) -> list[tuple[int, str]]:
-        """Every declaration of a name in the file, whatever its type: offset and type as written."""
-        known = self._all.get(name)
-        if known is None:
-            known = self._all[name] = list(_declarations_of(name, self.text))
-        return known
-
     def _variable(self, name: str, offset: int, depth: int) -> Type | None:
         """The type of a variable where it is used."""
         here = [(at, type_) for at, type_ in self._declarations(0).get(name, ()) if at < offset]
-        others = [at for at, _ in self._others(name) if at < offset and self._in_scope(at, offset)]
-        here = [(at, type_) for at, type_ in here if self._in_scope(at, offset)]
+        others = [at for at, *_ in declarations_of(name, self.text) if at < offset and in_scope(self.text, at, offset)]
+        here = [(at, type_) for at, type_ in here if in_scope(self.text, at, offset)]
         if here:
             at, type_ = here[-1]
             latest = max(others, default=-1)
@@ -275,7 +234,7 @@ class CppUses:
             return self._inferred(name, max(others), depth)
         types = set()
         for which, header in enumerate(self.headers, 1):
-            written = _times_declared(name, header)
+            written = len(declarations_of(name, header)) if name in header else 0
             known = [type_ for _, type_ in self._declarations(which).get(name, ())] if written else []
             if written > len(known):
                 return None
@@ -300,21 +259,6 @@ class CppUses:
             return type_._replace(several=False) if type_.several else None
         return type_
 
-    def _in_scope(self, declared: int, used: int) -> bool:
-        """Whether a name declared at one offset can be meant at another: its block, or function, is still open."""
-        opened, parameter = 0, None
-        for match in _BRACES.finditer(self.text, declared, used):
-            if parameter is None:
-                parameter = self._is_parameter(declared, match.start())
-            opened += 1 if match.group() == "{" else -1
-            if opened < 0 or (opened == 0 and parameter):
-                return False
-        return True
-
-    def _is_parameter(self, declared: int, upto: int) -> bool:
-        between = self.text[declared:upto]
-        return between.count(")") > between.count("(")
-
     def _type_before(self, end: int, used: int, depth: int = 0) -> Type | None:
         """The type of the expression that ends at an offset."""
         steps = self._steps_before(end)
@@ -337,57 +281,14 @@ class CppUses:
         steps = self._steps_before(end)
         if steps is None or len(steps) > 1:
             return False
-        return any(not re.search(r"\bauto\b", type_) for _, type_ in self._others(steps[0]))
+        return any(not re.search(r"\bauto\b", type_) for _, type_, _ in declarations_of(steps[0], self.text))
 
     def _steps_before(self, end: int) -> list[str] | None:
-        """`a->b[0].at(1)` before an offset as `a`, `b`, `[]`, `at()`; None for what is not such a chain."""
-        text, steps, at = self.text, [], end
-        while True:
-            while at and text[at - 1] in " \t\n":
-                at -= 1
-            last = text[at - 1 : at]
-            if last == "]":
-                at = _opening(text, at)
-                if at < 0:
-                    return None
-                steps.append("[]")
-                continue
-            if last == ")":
-                inner = at
-                at = _opening(text, at)
-                if at < 0:
-                    return None
-                word = _WORD_BACK.search(text, max(0, at - 80), at)
-                if word is None:
-                    content = re.fullmatch(r"\(\s*\*?\s*([A-Za-z_]\w*)\s*\)", text[at:inner])
-                    if content is None:
-                        return None
-                    steps.append(content.group(1))
-                    break
-                steps.append(word.group(1) + "()")
-                at = word.start()
-            else:
-                word = _WORD_BACK.search(text, max(0, at - 80), at)
-                if word is None:
-                    return None
-                steps.append(word.group(1))
-                at = word.start()
-            while at and text[at - 1] in " \t\n":
-                at -= 1
-            if text[at - 1 : at] == ".":
-                at -= 1
-            elif text[at - 2 : at] == "->":
-                at -= 2
-            elif text[at - 2 : at] == "::":
-                return None
-            else:
-                break
-        steps.reverse()
-        if steps[0] == "this":
-            steps = steps[1:]
-        if not steps or steps[0].endswith(("()", "[]")):
+        """`a->b[0].at(1)` before an offset as `a`, `b`, `[]`, `at()`; None for what no variable begins."""
+        steps = chain_before(self.text, end)
+        if steps is None or steps[0].name.endswith(("()", "[]")) or "::" in steps[0].name:
             return None
-        return steps
+        return [step.name for step in steps]
 
     def _constant(self, member: str, end: int, offset: int) -> Found | None:
         """`pkg::msg::Type::CONSTANT`, also through an alias or a part (`Type::Request::CONSTANT`)."""
@@ -407,11 +308,6 @@ class CppUses:
         return None
 
 
-@lru_cache(maxsize=4096)
-def _times_declared(name: str, text: str) -> int:
-    return len(list(_declarations_of(name, text))) if name in text else 0
-
-
 @lru_cache(maxsize=1024)
 def _aliases_of(text: str) -> tuple[tuple[str, str], ...]:
     """Names that a text gives to others, with those."""
@@ -422,30 +318,3 @@ def _aliases_of(text: str) -> tuple[tuple[str, str], ...]:
 
 
 _ALIAS = re.compile(r"\busing\s+(\w+)\s*=\s*([\w:\s]+?)\s*;|\btypedef\s+([\w:\s]+?)\s+(\w+)\s*;")
-
-
-def _declarations_of(name: str, text: str) -> Iterator[tuple[int, str]]:
-    """Where a name is declared, behind the name, and with which type."""
-    for match in re.finditer(rf"(?<![\w.>:]){re.escape(name)}(?=\s*(?:[;=,){{(\[]|:(?!:)))", text):
-        # No type has any of these in it: what stands before them need not be looked at.
-        begins = max(text.rfind(mark, max(0, match.start() - FAR), match.start()) for mark in ";{}()") + 1
-        ahead = _TYPE_BACK.search(text, max(begins, match.start() - FAR, 0), match.start())
-        if ahead and ahead.group("type") not in _KEYWORDS:
-            yield match.end(), ahead.group("type")
-
-
-_PAIRS = {")": "(", "]": "["}
-
-
-def _opening(text: str, end: int) -> int:
-    """Where the bracket opens that closes right before an offset; -1 when it does not, or far away."""
-    closing = text[end - 1]
-    opening, depth = _PAIRS[closing], 0
-    for at in range(end - 1, max(-1, end - 2000), -1):
-        if text[at] == closing:
-            depth += 1
-        elif text[at] == opening:
-            depth -= 1
-            if depth == 0:
-                return at
-    return -1

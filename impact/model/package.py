@@ -24,6 +24,8 @@ from ..facts.python_objects import PythonUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, first_places, place_in, places_of_use, python_text
 from ..targets.fields import Fields
+from .api import Changes, Vocabulary
+from .api_cpp import ApiUses
 from .api_python import Changing, python_packages, uses_of
 from .build import At, Build
 from .macros import Macros
@@ -142,6 +144,26 @@ class PythonApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     role: str
 
 
+class CppApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A use of a C++ name of another package that only some stored versions of it have, or have in this form.
+
+    package, name: as in the surfaces. how: `name`, `call` or `override`. arguments, given, templated, sure, through: as
+    in api.Found. role and conditions as in NameUse."""
+
+    package: str
+    name: str
+    how: str
+    arguments: int
+    given: tuple[str, ...]
+    at: At
+    role: str
+    sure: bool
+    through: tuple[str, ...] = ()
+    templated: bool = False
+    conditions: tuple[Condition, ...] = ()
+    targets: tuple[str, ...] = ()
+
+
 class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """All that rules ask of one package."""
 
@@ -184,6 +206,8 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # Fields and constants of other packages' interfaces that only some versions have.
     members: tuple[MemberUse, ...] = ()
     python_api: tuple[PythonApiUse, ...] = ()
+    # C++ names of other packages that only some versions have, or have so.
+    cpp_api: tuple[CppApiUse, ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -235,6 +259,11 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     def changing_python(self) -> Changing | None:
         """Python names that surfaces tell to have changed."""
         return Changing(self.surfaces) if self.surfaces is not None else None
+
+    @cached_property
+    def changing_cpp(self) -> Changes | None:
+        """C++ names that surfaces tell to have changed."""
+        return Changes(self.surfaces.lines) if self.surfaces is not None else None
 
     def meant(self, text: str) -> str:
         """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
@@ -373,6 +402,7 @@ class _Join:
             functions=tuple(sorted({name for facts in self.cpp.values() for name in facts.functions})),
             members=(*self.members(roles), *self.python_members(python)),
             python_api=tuple(self.python_api(python)),
+            cpp_api=tuple(self.cpp_api(roles)),
         )
 
     # -- which file is compiled by what ------------------------------------------------------------------------------
@@ -565,6 +595,38 @@ class _Join:
                     yield MemberUse(found.interface.package, found.interface.ros, found.interface.name, found.section,
                                     found.member, At(path, line, column), role, "cpp", found.sure,
                                     conditions + around)  # fmt: skip
+
+    def cpp_api(self, roles) -> Iterator[CppApiUse]:
+        """Uses of C++ names of other packages that are not the same in all versions, in files that are compiled."""
+        if self.watched.changing_cpp is None:
+            return
+        spoken = {path: _spoken(facts) for path, facts in self.cpp.items() if path in roles}
+        packages = {i.path.partition("/")[0] for found in self.resolved.values() for to, i in found if to is None}
+        packages.update(dependency.name for dependency in self.manifest.dependencies)
+        packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
+        vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp)
+        changing = vocabulary.by_last.keys()
+        for path, (role, _, targets, conditions) in roles.items():
+            words = changing & spoken.get(path, frozenset())
+            if not words:
+                continue
+            reached = sorted(to for to in self.reached_files(path) if to in spoken)
+            near = spoken[path].union(*(spoken[to] for to in reached))
+            words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
+            if not words:
+                continue
+            scanned = self.scanned(path)
+            seen = set()
+            headers = (self.scanned(to).visible for to in reached)
+            heads = {include.partition("/")[0] for include in self.reach(path)}
+            for found in ApiUses(scanned.visible, headers, vocabulary, heads).found(words):
+                around = scanned.under(found.offset)
+                key = (*found._replace(offset=0), around)
+                if around is not None and key not in seen:
+                    seen.add(key)
+                    yield CppApiUse(found.package, found.name, found.how, found.arguments, found.given,
+                                 At(path, *scanned.place(found.offset)), role, found.sure, found.through,
+                                 found.templated, conditions + around, targets)  # fmt: skip
 
     def scanned(self, path: str) -> Scan:
         known = self._scanned.get(path)
@@ -762,6 +824,15 @@ class _Join:
         # catkin_python_setup() installs what setup.py names, which by custom lies in src/.
         inside = self.inside(path)
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
+
+
+def _spoken(facts: CppFile) -> frozenset[str]:
+    """Every word of a file that has four letters or more, and all parts of its qualified names."""
+    found = set(facts.words.split(" "))
+    for name in facts.qualified:
+        found.update(name.text.split("::"))
+    found.update(facts.using)
+    return frozenset(found)
 
 
 _TYPE_AHEAD = re.compile(rb"\b(?:class|struct|enum|typedef|using)\b[^;{}=]*(?<!\w)\Z")

@@ -25,6 +25,10 @@ class Overload(msgspec.Struct, frozen=True, array_like=True, gc=False):
     types: tuple[str, ...] = ()
     traits: tuple[str, ...] = ()
 
+    def accepts(self, arguments: int) -> bool:
+        """Whether it takes so many arguments."""
+        return self.fewest <= arguments and (self.most < 0 or arguments <= self.most)
+
 
 class Form(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """How a thing looked in a run of versions. overloads: in C++, empty for what is not called. parameters: of a Python

@@ -25,15 +25,19 @@ Not reported
     variables whose type does not show in the file.
 """
 
-from ...model.package import NameUse
+from collections.abc import Iterator
+
+from ...model.package import CppApiUse, NameUse
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.evidence import evidence_of
 from ...targets.library import default_standard, standard_year
+from ...targets.offers_cpp import Judged
 from ...targets.target import Change
 from ...targets.uses import function_of, standards_of
 from ...targets.version import at_least
 from ..rule import Hit, rule
+from .cpp_api import severity_of, uses_judged, when
 
 # What every C++ file is compiled with, whatever its package declares.
 _COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
@@ -41,6 +45,40 @@ _COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
 
 @rule(severity="error")
 def changed_signature(view: View):
+    told = set()
+    for hit in _reviewed(view):
+        told.add((hit.at.path, hit.at.line))
+        yield hit
+    for package in view:
+        for use, found in uses_judged(view, package):
+            if found.kind not in ("arguments", "types", "override") or (use.at.path, use.at.line) in told:
+                continue
+            severity = severity_of(view, use, found)
+            if found.kind == "override" and severity == "error" and "override" not in use.given:
+                severity = "warning"  # it compiles, and nobody calls it
+            yield Hit(
+                use.at,
+                use.name,
+                f"{_what(use, found)} in {found.offered.package} {found.offered.version}",
+                f"use `{found.offered.instead}`" if found.offered.instead else when(found),
+                package.name,
+                severity=severity,
+            )
+
+
+def _what(use: CppApiUse, found: Judged) -> str:
+    """What is wrong with a use, as a clause without its place."""
+    time = "no longer" if found.earlier else "not yet"
+    if found.kind == "override":
+        return f"this {time} overrides `{use.name}`" if found.earlier else f"this does not yet override `{use.name}`"
+    if found.kind == "types":
+        return f"`{use.name}` {'no longer takes' if found.earlier else 'does not yet take'} such arguments"
+    many = "one argument" if use.arguments == 1 else f"{use.arguments or 'no'} arguments"
+    return f"`{use.name}` {'no longer takes' if found.earlier else 'does not yet take'} {many}"
+
+
+def _reviewed(view: View) -> Iterator[Hit]:
+    """What the tables of known changes tell."""
     # What the workspace itself brings is as it brings it, whatever a release did.
     refused = {c.old: c for c in view.changes("call-changed") if c.package not in view.workspace.packages}
     coming = {label: c for label, c in view.later.items() if c.kind == "call-changed" and c.package not in _COMPILER}

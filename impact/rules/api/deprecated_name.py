@@ -20,15 +20,40 @@ Not reported
     Code that a version test excludes on the target.
 """
 
+from collections.abc import Iterator
+
 from ...model.view import View
 from ...targets.evidence import evidence_of
 from ..rule import Hit, rule
+from .cpp_api import uses_judged
 from .python_api import evidence_of as told_by
 from .python_api import uses_lost
 
 
 @rule(severity="note", deprecation=True)
 def deprecated_name(view: View):
+    told = set()
+    for hit in _reviewed(view):
+        told.add((hit.at.path, hit.at.line))
+        yield hit
+    for package in view:
+        for use, found in uses_judged(view, package):
+            if found.kind != "deprecated" or not use.sure or (use.at.path, use.at.line) in told:
+                continue
+            offered = found.offered
+            goes = f", and gone in {offered.gone_in}" if offered.gone_in else ""
+            message = offered.here.deprecated if offered.here is not None else ""
+            yield Hit(
+                use.at,
+                use.name,
+                f"`{use.name}` is deprecated in {offered.package} {offered.version}{goes}",
+                f"use `{offered.instead}`" if offered.instead else f"its header says: {message}" if message else "",
+                package.name,
+            )
+
+
+def _reviewed(view: View) -> Iterator[Hit]:
+    """What reviewed tables tell, and what Python files use."""
     old = {
         c.old: c
         for c in view.changes("api-removed", "api-renamed", "python-removed", "cmake-removed", "cmake-renamed")

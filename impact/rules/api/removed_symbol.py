@@ -37,6 +37,7 @@ from ...targets.stdlib import stood_in_for
 from ...targets.target import Change
 from ...targets.version import parts
 from ..rule import Hit, rule
+from .cpp_api import severity_of, uses_judged, when
 
 _KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
 
@@ -49,6 +50,28 @@ _ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
 
 @rule(severity="error")
 def removed_symbol(view: View):
+    told = set()
+    for hit in _reviewed(view):
+        told.add((hit.at.path, hit.at.line))
+        yield hit
+    for package in view:
+        for use, found in uses_judged(view, package):
+            if found.kind not in ("removed", "absent") or (use.at.path, use.at.line) in told:
+                continue
+            offered = found.offered
+            state = "is gone" if found.kind == "removed" else "is not there yet"
+            yield Hit(
+                use.at,
+                use.name,
+                f"`{use.name}` {state} in {offered.package} {offered.version}",
+                f"use `{offered.instead}`" if offered.instead else when(found),
+                package.name,
+                severity=severity_of(view, use, found),
+            )
+
+
+def _reviewed(view: View) -> Iterator[Hit]:
+    """What the tables of known changes tell."""
     cpp: dict[str, list[Change]] = {}
     python: dict[str, list[Change]] = {}
     for change in view.changes(*_KINDS):

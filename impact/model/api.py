@@ -1,0 +1,253 @@
+"""The C++ names of other packages that a package can mean and that only some stored versions have, or have so.
+
+What the files themselves say is read in api_cpp.py.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from ..targets.surface_changes import Event, Line, Overload
+
+CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))
+"""Kinds of names that are called."""
+CLASSES = frozenset(("class", "struct", "union"))
+
+
+class Found(NamedTuple):
+    """A use of such a name in a text.
+
+    package, name, offset: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments:
+    how many a call gives, or an override takes; -1: not to be told. given: of a call, what each argument shows itself
+    to be (see api_cpp.shown_as); of an override, the types of its parameters, then `const` and `override` where they
+    stand. templated: template arguments are written. sure: the name is written with its scopes, or the type of the
+    object shows. through: packages of classes between the object's and the one that has the name.
+    """
+
+    package: str
+    name: str
+    offset: int
+    how: str
+    arguments: int
+    given: tuple[str, ...]
+    templated: bool
+    sure: bool
+    through: tuple[str, ...]
+
+
+class Name(NamedTuple):
+    """A changing name. what: as in surface_changes.Told. there: some version has it not, or warns of it. forms: the
+    overloads of each form that it had. virtual: a method that some version lets others override. typed: parameters
+    whose types show in a call are of other types in some version. defaults: a default is another in some version."""
+
+    package: str
+    what: str
+    there: bool
+    forms: tuple[tuple[Overload, ...], ...]
+    virtual: bool
+    typed: bool
+    defaults: bool
+
+    @property
+    def matters(self) -> bool:
+        """Whether any use of it can be told to differ between versions."""
+        return self.there or self.virtual or self.typed or self.defaults or self.counts
+
+    @property
+    def counts(self) -> bool:
+        """Whether it does not take equally many arguments in all versions."""
+        return len({frozenset((one.fewest, one.most) for one in form) for form in self.forms}) > 1
+
+    def differs(self, how: str, arguments: int, given: tuple[str, ...]) -> bool:
+        """Whether a use of it is not the same to all versions."""
+        if self.there or how == "override":
+            return True
+        if how != "call":
+            return False
+        if self.typed and any(given):
+            return True
+        if arguments < 0:
+            return False
+        if self.defaults and any(one.fewest <= arguments < one.most for form in self.forms for one in form):
+            return True
+        return any(not any(one.accepts(arguments) for one in form) for form in self.forms)
+
+
+class Known(NamedTuple):
+    """What is asked of one package again and again. names: changing names of C++. by_last: those of which a
+    use can matter, by their last part.
+    bases: classes with the full names of their bases. classes: every class that shows. derived: last parts of classes
+    by the last part of a base. heads: first parts of bases, packages that may have them."""
+
+    names: dict[str, Name]
+    by_last: dict[str, tuple[str, ...]]
+    bases: dict[str, tuple[str, ...]]
+    classes: dict[str, str]
+    derived: dict[str, tuple[str, ...]]
+    heads: tuple[str, ...]
+
+
+class Changes:
+    """Where what changed in packages is asked for. lines: those of a package by ROS generation, none for one that is
+    not known."""
+
+    def __init__(self, lines: Callable[[str], Mapping[int, Line]]):
+        self._lines = lines
+        self._known: dict[str, Known | None] = {}
+
+    def known(self, package: str) -> Known | None:
+        """What of a package is not the same in all its versions."""
+        if package not in self._known:
+            lines = self._lines(package)
+            self._known[package] = _known(package, lines.values()) if lines else None
+        return self._known[package]
+
+
+_INTERNAL = frozenset(("detail", "details", "internal", "impl", "operator"))
+_MEMBERS = frozenset(("method", "field", "constructor", "destructor", "conversion"))
+
+
+def _known(package: str, lines: Iterable[Line]) -> Known:
+    names: dict[str, Name] = {}
+    by_last: dict[str, dict[str, None]] = {}
+    bases: dict[str, dict[str, None]] = {}
+    classes: dict[str, None] = {}
+    for line in lines:
+        for full, events in line.events.get("c++", {}).items():
+            outer, _, last = full.rpartition("::")
+            if not last.isidentifier() or "<" in full or not _INTERNAL.isdisjoint(full.split("::")):
+                continue
+            name = _name(package, events, names.get(full))
+            what = name.what
+            names[full] = name
+            if what in _MEMBERS:
+                classes[outer] = None
+            elif what in CLASSES:
+                classes[full] = None
+        for full, those in line.bases.items():
+            classes[full] = None
+            bases.setdefault(full, {}).update(dict.fromkeys(those))
+    for full, name in names.items():
+        if name.matters:
+            by_last.setdefault(full.rpartition("::")[2], {})[full] = None
+    derived: dict[str, dict[str, None]] = {}
+    heads: dict[str, None] = {}
+    for full, those in bases.items():
+        for base in those:
+            derived.setdefault(base.rpartition("::")[2], {})[full.rpartition("::")[2]] = None
+            if "::" in base:
+                heads[base.partition("::")[0]] = None
+    return Known(
+        names,
+        {last: tuple(fulls) for last, fulls in by_last.items()},
+        {full: tuple(those) for full, those in bases.items()},
+        dict.fromkeys(classes, package),
+        {base: tuple(those) for base, those in derived.items()},
+        tuple(heads),
+    )
+
+
+_COMES_OR_GOES = frozenset(("removed", "added", "moved", "deprecated", "access", "deleted"))
+_SHOWING = re.compile(r"rmw_qos_profile_t|QoS|\bNode\b|Node\*|string|\bchar\*|double|float|bool")
+
+
+def _name(package: str, events: Iterable[Event], known: Name | None) -> Name:
+    """A name by all that happened to it. known: what another generation told of it."""
+    forms = {form.overloads: None for event in events for form in (event.had, event.has) if form is not None}
+    forms.update(dict.fromkeys(known.forms if known is not None else ()))
+    told = [told for event in events for told in event.told]
+    what = told[0].what
+    types = [{one.types for one in form} for form in forms]
+    differing = {type_ for one in types for other in types for those in one ^ other for type_ in those}
+    name = Name(
+        package,
+        what,
+        any(t.kind in _COMES_OR_GOES and "overload" not in t.aspects for t in told),
+        tuple(forms),
+        what == "method" and any("virtual" in overload.traits for form in forms for overload in form),
+        any(_SHOWING.search(type_) for type_ in differing),
+        any(t.kind == "default" for t in told),
+    )
+    if known is None:
+        return name
+    return name._replace(there=name.there or known.there, defaults=name.defaults or known.defaults)
+
+
+class Vocabulary:
+    """What the files of a package (own) can name of some others: changing names, and all classes with their bases."""
+
+    def __init__(self, packages: Iterable[str], own: str, changes: Changes):
+        self.names: dict[str, Name] = {}
+        self.by_last: dict[str, tuple[str, ...]] = {}
+        self.classes: dict[str, str] = {}
+        """Full name of every known class to its package."""
+        self._known: dict[str, Known] = {}
+        self._members: dict[tuple[str, str], tuple[str, tuple[str, ...]] | None] = {}
+        self._speakers: dict[str, frozenset[str]] = {}
+        waiting = list(packages)
+        for package in waiting:  # classes of other packages come along with what is derived from them
+            known = changes.known(package) if package not in self._known and package != own else None
+            if known is not None:
+                self._add(package, known)
+                waiting.extend(known.heads)
+
+    def _add(self, package: str, known: Known) -> None:
+        self._known[package] = known
+        self.classes = {**known.classes, **self.classes}
+        self.names = {**known.names, **self.names}
+        for last, fulls in known.by_last.items():
+            listed = self.by_last.get(last)
+            self.by_last[last] = fulls if listed is None else tuple(dict.fromkeys((*listed, *fulls)))
+
+    def bases(self, full: str) -> tuple[str, ...]:
+        """The bases of a class."""
+        return self._known[self.classes[full]].bases.get(full, ()) if full in self.classes else ()
+
+    def line(self, full: str) -> list[str]:
+        """A class and those that it is derived from, nearest first."""
+        found = [full]
+        for one in found:
+            found.extend(base for base in self.bases(one) if base not in found)
+        return found
+
+    def member(self, full: str, last: str) -> tuple[str, tuple[str, ...]] | None:
+        """The changing name that a member of a class is, with the packages of the classes in between."""
+        key = full, last
+        if key not in self._members:
+            between: list[str] = []
+            found = None
+            for one in self.line(full):
+                name = f"{one}::{last}"
+                if name in self.names:
+                    found = name, tuple(dict.fromkeys(between))
+                    break
+                between.append(self.classes.get(one, ""))
+            self._members[key] = found
+        return self._members[key]
+
+    def can_be_meant(self, word: str, near: frozenset[str]) -> bool:
+        """Whether a word can be the last part of a changing name in a file that these words stand in, or in what it
+        includes: the class or namespace around the name, or a class that is derived from it, has to be there too."""
+        return any(
+            not owner or not near.isdisjoint(self.speakers(owner))
+            for owner in (name.rpartition("::")[0] for name in self.by_last[word])
+        )
+
+    def speakers(self, owner: str) -> frozenset[str]:
+        """Last parts of the classes that may have what a class has: one of them stands wherever a member of it is
+        used."""
+        last = owner.rpartition("::")[2]
+        found = self._speakers.get(last)
+        if found is None:
+            names = {last: None}
+            for name in (waiting := [last]):
+                for known in self._known.values():
+                    for other in known.derived.get(name, ()):
+                        if other not in names:
+                            names[other] = None
+                            waiting.append(other)
+            found = self._speakers[last] = frozenset(names)
+        return found

@@ -1,0 +1,60 @@
+"""Uses of C++ names of other packages that are otherwise on a target, for the rules that tell of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ...model.package import CppApiUse
+from ...model.view import View
+from ...model.workspace import Package
+from ...targets.offers_cpp import Judged, judged
+from ...targets.uses import function_of
+
+_REVIEWED = ("api-removed", "api-renamed", "api-changed")
+
+
+def uses_judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
+    """What a package uses that is not on the target as the use needs it, in the order of the digest. What the workspace
+    provides itself, what the target does not compile, and what reviewed tables speak of is left out."""
+    if not package.digest.cpp_api:
+        return
+    reviewed = {change.old for change in view.changes(*_REVIEWED)}
+    reviewed.update(change.new for change in view.changes(*_REVIEWED) if change.state == "absent")
+    calls = {function_of(change.old) for change in view.changes("call-changed")}
+    near = view.closure(package)
+    for use in package.digest.cpp_api:
+        if use.package in view.workspace.packages or use.package not in near or not view.active(use.conditions):
+            continue
+        if use.name.rpartition("::")[2] in calls or not reviewed.isdisjoint(_tails(use.name)):
+            continue
+        found = judged(view.offers, use.package, use.name, use.how, use.arguments, use.given)
+        if found is not None:
+            yield use, found
+
+
+def _tails(name: str) -> Iterator[str]:
+    """`a::b::c`, `b::c`, `c`."""
+    yield name
+    while "::" in name:
+        name = name.partition("::")[2]
+        yield name
+
+
+def severity_of(view: View, use: CppApiUse, found: Judged) -> str:
+    """How bad a use is that the compiler refuses."""
+    if use.role == "aside":
+        return "note"
+    if not view.certain(c for c in use.conditions if c.language in ("cpp", "macro")):
+        return "note"  # a test of the code itself most likely tells the versions apart
+    sure = use.sure and found.sure and not any(p in view.workspace.packages for p in use.through)
+    return "error" if sure and view.built(use.role) and view.certain(use.conditions) else "warning"
+
+
+def when(found: Judged) -> str:
+    """Since or from which version a use is taken, as a help line says it."""
+    offered = found.offered
+    if found.kind == "absent":
+        return f"it is there since {offered.package} {offered.first}"
+    if not found.earlier and offered.coming:
+        return f"it is so since {offered.package} {offered.coming}"
+    return ""

@@ -1,0 +1,162 @@
+"""What a target's version of a package makes of a use of a C++ name: gone, not yet there, not with these arguments, no
+longer overriding, on its way out. Asked of the names that only some stored versions have, or have so (offers.py)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from .offers import Offered, Offers
+from .surface_changes import Form, Overload
+
+
+class Judged(NamedTuple):
+    """What is wrong with a use on a target.
+
+    kind: `removed`, `absent`, `arguments`, `types`, `override`, `deprecated` or `default`. earlier: a version before
+    the target's took it; else a later one does. version: the first that is so, or, of what is not yet there, the first
+    that takes it; gone_in: of what is deprecated, the first without it. sure: nothing about it is guessed."""
+
+    kind: str
+    offered: Offered
+    earlier: bool
+    sure: bool
+
+
+def judged(
+    offers: Offers, package: str, name: str, how: str, arguments: int, given: tuple[str, ...]
+) -> Judged | None:
+    """What is wrong with a use of a package's name, described as in model.package.ApiUse; None for nothing, or where it
+    cannot be told."""
+    offer = offers.package(package)
+    offered = offer.get("c++", name) if offer is not None else None
+    if offered is None or offered.state == "moved":
+        return None
+    if offered.here is None and offered.state in ("removed", "absent"):
+        return _lacking(offers, offered, how)
+    if offered.here is None or (how != "override" and _is_alias(offers, package, name)):
+        return None
+    if how == "override":
+        return _override(offered, given)
+    if offered.state == "deprecated":
+        return Judged("deprecated", offered, True, offered.sure)
+    return _call(offered, arguments, given) if how == "call" and arguments >= 0 else None
+
+
+def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
+    name = offered.name
+    if any(
+        other != offered.package and offers.there("c++", name, other) for other in offers.surfaces.elsewhere(name)
+    ):
+        return None
+    if how == "override":
+        form = offered.before if offered.state == "removed" else None
+        virtual = form is not None and any("virtual" in one.traits for one in form.overloads)
+        return Judged("override", offered, True, offered.sure) if virtual else None
+    if _is_alias(offers, offered.package, name):
+        return None
+    sure = offered.sure
+    if offered.state == "absent":
+        offer = offers.package(offered.package)
+        owner = name.rpartition("::")[0]
+        # A base may have had it before; and what only a constructor's form tells, the compiler may make.
+        if offered.what in ("constructor", "destructor") or (offer is not None and offer.line.bases.get(owner)):
+            sure = False
+    elif offered.what in ("constructor", "destructor"):
+        return None
+    return Judged("removed" if offered.state == "removed" else "absent", offered, offered.state == "removed", sure)
+
+
+def _is_alias(offers: Offers, package: str, name: str) -> bool:
+    """Whether the class around a name is something else on some versions, so that its members are not comparable."""
+    offer = offers.package(package)
+    owner = name.rpartition("::")[0]
+    if offer is None or not owner:
+        return False
+    events = offer.line.events.get("c++", {}).get(owner, ())
+    return any("kind" in told.aspects or told.what == "alias" for event in events for told in event.told)
+
+
+# -- calls -------------------------------------------------------------------------------------------------------------
+
+
+def _call(offered: Offered, arguments: int, given: tuple[str, ...]) -> Judged | None:
+    here = _callable(offered.here)
+    if not here:
+        return None
+    if offered.what == "constructor" and arguments < 2:
+        return None  # what the compiler makes by itself is not told
+    if not any(one.accepts(arguments) for one in here):
+        for form, earlier in ((offered.before, True), (offered.after, False)):
+            if any(one.accepts(arguments) for one in _callable(form)):
+                return Judged("arguments", offered, earlier, offered.sure)
+        return None
+    if any(given) and not any(_takes(one, given) for one in here if one.accepts(arguments)):
+        for form, earlier in ((offered.before, True), (offered.after, False)):
+            if any(one.accepts(arguments) and _takes(one, given) for one in _callable(form)):
+                return Judged("types", offered, earlier, offered.sure)
+        return None
+    if offered.first and any(told.kind == "default" for told in offered.told):
+        relying = [one for one in here if one.accepts(arguments) and (one.most < 0 or arguments < one.most)]
+        if len(relying) == len([one for one in here if one.accepts(arguments)]):
+            return Judged("default", offered, True, offered.sure)
+    return None
+
+
+def _callable(form: Form | None) -> list[Overload]:
+    return [one for one in form.overloads if "deleted" not in one.traits] if form is not None else []
+
+
+def _takes(overload: Overload, given: Iterable[str]) -> bool:
+    """False when an argument shows itself to be what its parameter does not take."""
+    return not any(_clash(shown, type_) for shown, type_ in zip(given, overload.types, strict=False))
+
+
+def _clash(shown: str, type_: str) -> bool:
+    if shown == "profile":
+        return bool(re.search(r"\brclcpp::(?:\w*QoS)\b", type_))
+    if shown == "qos":
+        return "rmw_qos_profile_t" in type_
+    if shown == "this":
+        return "NodeInterfaces<" in type_ or type_.removesuffix("&").endswith("RequiredInterfaces")
+    if shown == "text":
+        return type_ in ("rmw_qos_profile_t", "const rmw_qos_profile_t&")
+    return False
+
+
+# -- overrides ---------------------------------------------------------------------------------------------------------
+
+
+def _override(offered: Offered, given: tuple[str, ...]) -> Judged | None:
+    """Whether a method that a class declares overrides none of its base's any more, or not yet."""
+    const = "const" in given
+    types = tuple(one for one in given if one not in ("const", "override"))
+    here = _virtual(offered.here)
+    if any(_same(one, types, const) is not False for one in here):
+        return None
+    for form, earlier in ((offered.before, True), (offered.after, False)):
+        if any(_same(one, types, const) for one in _virtual(form)):
+            return Judged("override", offered, earlier, offered.sure)
+    return None
+
+
+def _virtual(form: Form | None) -> list[Overload]:
+    return [one for one in form.overloads if "virtual" in one.traits] if form is not None else []
+
+
+def _same(overload: Overload, types: tuple[str, ...], const: bool) -> bool | None:
+    """Whether a method with these parameters overrides another; None where their types are spelt otherwise."""
+    if len(overload.types) != len(types) or ("const" in overload.traits) != const:
+        return False
+    mine, theirs = [_last(one) for one in types], [_last(one) for one in overload.types]
+    if mine == theirs:
+        return True
+    return None if any(a == b for a, b in zip(mine, theirs, strict=True)) or not mine else False
+
+
+def _last(type_: str) -> str:
+    """A type without its scopes and without what callers do not see."""
+    bare = re.sub(r"(?:\w+::)+(?=\w)", "", type_)
+    bare = re.sub(r"\bconst\b|\btypename\b", " ", bare) if not bare.endswith(("&", "*")) else bare
+    return "".join(bare.split())
