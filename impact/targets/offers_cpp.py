@@ -7,7 +7,8 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from .offers import Offered, Offers
+from ..facts.usage import arguments_at
+from .offers import Offer, Offered, Offers, declarations
 from .surface_changes import Form, Overload
 
 
@@ -31,7 +32,7 @@ def judged(
     cannot be told."""
     offer = offers.package(package)
     offered = offer.get("c++", name) if offer is not None else None
-    if offered is None or offered.state == "moved":
+    if offer is None or offered is None or offered.state == "moved" or _between(offer, offered):
         return None
     if offered.here is None and offered.state in ("removed", "absent"):
         return _lacking(offers, offered, how)
@@ -42,6 +43,14 @@ def judged(
     if offered.state == "deprecated":
         return Judged("deprecated", offered, True, offered.sure)
     return _call(offered, arguments, given) if how == "call" and arguments >= 0 else None
+
+
+def _between(offer: Offer, offered: Offered) -> bool:
+    """Whether the target's version lies before the first stored one with the next change, and may have it already."""
+    if offer.exact or offer.place + 1 >= len(offer.line.versions):
+        return False
+    following = offer.line.versions[offer.place + 1]
+    return following in (offered.coming, offered.first if offered.state == "absent" else "", offered.gone_in)
 
 
 def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
@@ -97,7 +106,7 @@ def _call(offered: Offered, arguments: int, given: tuple[str, ...]) -> Judged | 
             if any(one.accepts(arguments) and _takes(one, given) for one in _callable(form)):
                 return Judged("types", offered, earlier, offered.sure)
         return None
-    if offered.first and any(told.kind == "default" for told in offered.told):
+    if offered.first and all(told.kind == "default" for told in offered.told):
         relying = [one for one in here if one.accepts(arguments) and (one.most < 0 or arguments < one.most)]
         if len(relying) == len([one for one in here if one.accepts(arguments)]):
             return Judged("default", offered, True, offered.sure)
@@ -123,6 +132,40 @@ def _clash(shown: str, type_: str) -> bool:
     if shown == "text":
         return type_ in ("rmw_qos_profile_t", "const rmw_qos_profile_t&")
     return False
+
+
+def defaults_changed(offers: Offers, found: Judged, arguments: int) -> tuple[str, str] | None:
+    """The default of the first argument left out that was another before, then and now; None where they mean the same,
+    or it cannot be told. Reads both versions."""
+    offered = found.offered
+    old, new = (
+        [_defaults(one, offered.name) for one in declarations(offers.surfaces, offered.package, "c++", offered.name, v)]
+        for v in (offered.last, offered.first)
+    )
+    if len(old) != 1 or len(new) != 1:
+        return None
+    for was, now in list(zip(old[0], new[0], strict=False))[arguments:]:
+        if was and now and _meaning(was) != _meaning(now) and not (_constant(was) or _constant(now)):
+            return was, now
+    return None
+
+
+def _defaults(declaration: str, name: str) -> list[str]:
+    """The defaults of a function's parameters, empty for those without."""
+    at = declaration.find(f"{name}(")
+    found = arguments_at(declaration, at + len(name)) if at >= 0 else None
+    return [one.partition(" = ")[2].strip() for one in found[0]] if found is not None else []
+
+
+def _constant(default: str) -> bool:
+    """Whether a name stands for the value."""
+    return default.replace("::", "").isidentifier() and default not in ("true", "false", "nullptr", "NULL")
+
+
+def _meaning(default: str) -> str:
+    """A default without what only its spelling tells."""
+    text = re.sub(r"(?:\w+::)+(?=\w)", "", "".join(default.split()))
+    return {"NULL": "nullptr", "0": "nullptr", "string()": '""', "{}": "", '""': '""'}.get(text, text.rstrip("."))
 
 
 # -- overrides ---------------------------------------------------------------------------------------------------------

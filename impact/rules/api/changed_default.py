@@ -1,8 +1,8 @@
 """changed-default: a call leaves out an argument whose default another version has otherwise.
 
 What it does
-    Reports calls of C++ functions of other packages that rely on a default argument which changed with the target's
-    version of the package, or with the last version before it at which anything of the function changed.
+    Reports calls of C++ functions of other packages that rely on a default argument which changed, after the long-term
+    distro before the target's, up to the target's version.
 
 Why it matters
     It compiles everywhere, and does something else for those who have the other version.
@@ -11,16 +11,25 @@ Severity
     note.
 
 Example
-    node->create_client<Empty>("reset");        // the quality of service by default is another since rclcpp 28
+    client.get_state();                         // nav2_util waits for 2 s since Humble, and waited for ever
 
 Use instead
     The argument, written out.
 
 Not reported
-    Calls that give the argument; methods of objects whose type does not show; what the workspace provides itself.
+    Calls that give the argument; methods of objects whose type does not show; what the workspace provides itself;
+    functions of which there are several.
 """
 
+from functools import cache
+
 from ...model.view import View
+from ...targets.distro import DistroTarget, known_distros
+from ...targets.evidence import of_offered
+from ...targets.offers import Offered
+from ...targets.offers_cpp import defaults_changed
+from ...targets.target import Target
+from ...targets.version import at_least
 from ..rule import Hit, rule
 from .cpp_api import uses_judged
 
@@ -29,14 +38,35 @@ from .cpp_api import uses_judged
 def changed_default(view: View):
     for package in view:
         for use, found in uses_judged(view, package):
-            if found.kind != "default" or not use.sure:
-                continue
             offered = found.offered
+            if found.kind != "default" or not use.sure or not _came_lately(view.target, offered):
+                continue
+            values = defaults_changed(view.offers, found, use.arguments)
+            if values is None:
+                continue
             yield Hit(
                 use.at,
                 use.name,
-                f"a default of `{use.name}` that this call relies on is another since "
+                f"`{use.name}` takes `{values[1]}` for an argument that is left out, and took `{values[0]}` before "
                 f"{offered.package} {offered.first}",
                 "give the argument where it matters",
                 package.name,
+                evidence=of_offered(offered),
             )
+
+
+def _came_lately(target: Target, offered: Offered) -> bool:
+    """Whether a change came after the long-term distro before the target's."""
+    earlier = _long_term_before(target.distro)
+    version = DistroTarget(earlier).version(offered.package) if earlier else None
+    return version is None or not at_least(version, offered.first)
+
+
+@cache
+def _long_term_before(distro: str) -> str:
+    known = {one.name: one for one in known_distros()}
+    here = known.get(distro)
+    if here is None:
+        return ""
+    earlier = [one for one in known.values() if one.lts and one.ros == here.ros and one.released < here.released]
+    return max(earlier, key=lambda one: one.released).name if earlier else ""

@@ -30,7 +30,7 @@ from collections.abc import Iterator
 from ...model.package import CppApiUse, NameUse
 from ...model.view import View
 from ...model.workspace import Package
-from ...targets.evidence import evidence_of
+from ...targets.evidence import evidence_of, of_offered
 from ...targets.library import default_standard, standard_year
 from ...targets.offers_cpp import Judged
 from ...targets.target import Change
@@ -63,6 +63,7 @@ def changed_signature(view: View):
                 f"use `{found.offered.instead}`" if found.offered.instead else when(found),
                 package.name,
                 severity=severity,
+                evidence=of_offered(found.offered),
             )
 
 

@@ -23,7 +23,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.view import View
-from ...targets.evidence import evidence_of
+from ...targets.evidence import evidence_of, of_offered
 from ..rule import Hit, rule
 from .cpp_api import uses_judged
 from .python_api import evidence_of as told_by
@@ -49,6 +49,7 @@ def deprecated_name(view: View):
                 f"`{use.name}` is deprecated in {offered.package} {offered.version}{goes}",
                 f"use `{offered.instead}`" if offered.instead else f"its header says: {message}" if message else "",
                 package.name,
+                evidence=of_offered(offered),
             )
 
 

@@ -31,7 +31,7 @@ from ...facts.condition import Condition
 from ...model.package import NameUse, is_header
 from ...model.view import View
 from ...targets.changes import excuses, removed_in
-from ...targets.evidence import evidence_of
+from ...targets.evidence import evidence_of, of_offered
 from ...targets.library import include_roots
 from ...targets.stdlib import stood_in_for
 from ...targets.target import Change
@@ -67,6 +67,7 @@ def removed_symbol(view: View):
                 f"use `{offered.instead}`" if offered.instead else when(found),
                 package.name,
                 severity=severity_of(view, use, found),
+                evidence=of_offered(offered),
             )
 
 
