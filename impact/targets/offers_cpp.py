@@ -25,11 +25,9 @@ class Judged(NamedTuple):
     sure: bool
 
 
-def judged(
-    offers: Offers, package: str, name: str, how: str, arguments: int, given: tuple[str, ...]
-) -> Judged | None:
-    """What is wrong with a use of a package's name, described as in model.package.ApiUse; None for nothing, or where it
-    cannot be told."""
+def judged(offers: Offers, package: str, name: str, how: str, arguments: int, given: tuple[str, ...]) -> Judged | None:
+    """What is wrong with a use of a package's name; None for nothing, or where it cannot be told. The use is described
+    as in model.package.CppApiUse."""
     offer = offers.package(package)
     offered = offer.get("c++", name) if offer is not None else None
     if offer is None or offered is None or offered.state == "moved" or _between(offer, offered):
@@ -55,9 +53,7 @@ def _between(offer: Offer, offered: Offered) -> bool:
 
 def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
     name = offered.name
-    if any(
-        other != offered.package and offers.there("c++", name, other) for other in offers.surfaces.elsewhere(name)
-    ):
+    if any(other != offered.package and offers.there("c++", name, other) for other in offers.surfaces.elsewhere(name)):
         return None
     if how == "override":
         form = offered.before if offered.state == "removed" else None
@@ -69,12 +65,19 @@ def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
     if offered.state == "absent":
         offer = offers.package(offered.package)
         owner = name.rpartition("::")[0]
-        # A base may have had it before; and what only a constructor's form tells, the compiler may make.
-        if offered.what in ("constructor", "destructor") or (offer is not None and offer.line.bases.get(owner)):
-            sure = False
+        bases = offer.line.bases.get(owner, ()) if offer is not None else ()
+        # The compiler may make it, or a base has had it before.
+        if offered.what in ("constructor", "destructor") or any(not _known(offers, base) for base in bases):
+            return None
+        sure = sure and not bases
     elif offered.what in ("constructor", "destructor"):
         return None
     return Judged("removed" if offered.state == "removed" else "absent", offered, offered.state == "removed", sure)
+
+
+def _known(offers: Offers, class_: str) -> bool:
+    """Whether a class is of a package whose surfaces are stored."""
+    return class_.partition("::")[0] in offers.surfaces.packages
 
 
 def _is_alias(offers: Offers, package: str, name: str) -> bool:
@@ -179,7 +182,8 @@ def _override(offered: Offered, given: tuple[str, ...]) -> Judged | None:
     if any(_same(one, types, const) is not False for one in here):
         return None
     for form, earlier in ((offered.before, True), (offered.after, False)):
-        if any(_same(one, types, const) for one in _virtual(form)):
+        # A method that is not to override anything need not do so yet.
+        if any(_same(one, types, const) for one in _virtual(form)) and (earlier or "override" in given):
             return Judged("override", offered, earlier, offered.sure)
     return None
 

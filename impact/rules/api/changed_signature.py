@@ -2,8 +2,11 @@
 
 What it does
     Reports calls with arguments, template arguments, or in a form that the known-changes table says the target's
-    version of a package or library takes no longer, or not yet; what the C++ standard that the package is compiled with
-    refuses or lacks; and what libraries of the newest distro take no longer.
+    version of a package or library takes no longer, or not yet; calls of C++ functions with so many arguments as no
+    overload of the target's stored version takes and another version's does, or with arguments that show themselves to
+    be of another type; methods that override none of their base's there and did, or do, in another version; what the
+    C++ standard that the package is compiled with refuses or lacks; and what libraries of the newest distro take no
+    longer.
 
 Why it breaks
     The compiler finds no matching function, or Python raises a TypeError or an AttributeError: the name is there, but
@@ -12,7 +15,8 @@ Why it breaks
 Severity
     error for code that is built or run, tests of ROS 2 included; warning in tests of ROS 1 and in Python's, under CMake
     conditions that are not known, and for the first call of a library, in tests too, that only the newest distro
-    refuses, where that is at most two long-term distros ahead; note in examples, under an `#if` that is not known, and for the rest.
+    refuses, where that is at most two long-term distros ahead; note in examples, under an `#if` that is not known, and
+    for the rest. A method that no longer overrides, and does not say `override`, compiles: warning.
 
 Example
     auto timeout = rclcpp::Duration(0.5);       // Humble's Duration takes no floating point number
@@ -37,7 +41,7 @@ from ...targets.target import Change
 from ...targets.uses import function_of, standards_of
 from ...targets.version import at_least
 from ..rule import Hit, rule
-from .cpp_api import severity_of, uses_judged, when
+from .cpp_api import line_of, severity_of, uses_judged, when
 
 # What every C++ file is compiled with, whatever its package declares.
 _COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
@@ -47,7 +51,7 @@ _COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
 def changed_signature(view: View):
     told = set()
     for hit in _reviewed(view):
-        told.add((hit.at.path, hit.at.line))
+        told.add(line_of(hit))
         yield hit
     for package in view:
         for use, found in uses_judged(view, package):

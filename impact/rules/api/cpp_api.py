@@ -9,6 +9,7 @@ from ...model.view import View
 from ...model.workspace import Package
 from ...targets.offers_cpp import Judged, judged
 from ...targets.uses import function_of
+from ..rule import Hit
 
 _REVIEWED = ("api-removed", "api-renamed", "api-changed")
 
@@ -25,6 +26,9 @@ def uses_judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judge
     for use in package.digest.cpp_api:
         if use.package in view.workspace.packages or use.package not in near or not view.active(use.conditions):
             continue
+        head = use.name.partition("::")[0]
+        if head != use.package and head in near:
+            continue  # a name of that package, which this one took over for a while
         if use.name.rpartition("::")[2] in calls or not reviewed.isdisjoint(_tails(use.name)):
             continue
         found = judged(view.offers, use.package, use.name, use.how, use.arguments, use.given)
@@ -58,3 +62,8 @@ def when(found: Judged) -> str:
     if not found.earlier and offered.coming:
         return f"it is so since {offered.package} {offered.coming}"
     return ""
+
+
+def line_of(hit: Hit) -> tuple[str, int]:
+    """The file and line that a finding is about: one finding tells enough of it."""
+    return getattr(hit.at, "path", ""), getattr(hit.at, "line", 0)

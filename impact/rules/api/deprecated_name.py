@@ -2,7 +2,8 @@
 
 What it does
     Reports classes, functions, constants and CMake names that the target still has and has marked as deprecated: by the
-    known-changes table, and of Python names by what the sources of the target's version say.
+    known-changes table, and of C++ and Python names by what the sources of the target's version say; of C++ with the
+    first stored version that has them no more.
 
 Why it matters
     The version that drops the name may be on a colleague's machine already.
@@ -25,7 +26,7 @@ from collections.abc import Iterator
 from ...model.view import View
 from ...targets.evidence import evidence_of, of_offered
 from ..rule import Hit, rule
-from .cpp_api import uses_judged
+from .cpp_api import line_of, uses_judged
 from .python_api import evidence_of as told_by
 from .python_api import uses_lost
 
@@ -34,7 +35,7 @@ from .python_api import uses_lost
 def deprecated_name(view: View):
     told = set()
     for hit in _reviewed(view):
-        told.add((hit.at.path, hit.at.line))
+        told.add(line_of(hit))
         yield hit
     for package in view:
         for use, found in uses_judged(view, package):

@@ -2,8 +2,9 @@
 
 What it does
     Reports names that the known-changes table says the target's version of a package or library no longer has, in
-    packages that declare or include that package or library; and names of platform libraries that the newest distro no
-    longer has.
+    packages that declare or include that package or library; names of platform libraries that the newest distro no
+    longer has; and C++ names that the stored versions of a released package tell to be gone, or not there yet, on the
+    target: written with their scopes, members of objects whose type shows, inherited ones.
 
 Why it breaks
     The compiler stops with "was not declared in this scope", or Python with an AttributeError or ImportError.
@@ -22,7 +23,8 @@ Use instead
 Not reported
     Code that a version test excludes on the target, or a `try` whose except catches the missing name; names that a
     header which the file includes brings back (`cv_bridge` brings OpenCV's C constants); names that the package defines
-    itself.
+    itself, or that another package of the target offers under the same spelling; members of objects whose type does not
+    show.
 """
 
 from collections.abc import Iterator
@@ -37,7 +39,7 @@ from ...targets.stdlib import stood_in_for
 from ...targets.target import Change
 from ...targets.version import parts
 from ..rule import Hit, rule
-from .cpp_api import severity_of, uses_judged, when
+from .cpp_api import line_of, severity_of, uses_judged, when
 
 _KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
 
@@ -52,7 +54,7 @@ _ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
 def removed_symbol(view: View):
     told = set()
     for hit in _reviewed(view):
-        told.add((hit.at.path, hit.at.line))
+        told.add(line_of(hit))
         yield hit
     for package in view:
         for use, found in uses_judged(view, package):
