@@ -551,7 +551,7 @@ class View:
     def misnamed_interface(self, path: str) -> Misnamed | None:
         """What is wrong with the spelling of a generated header on this target's generation, None when nothing is."""
         head, _, rest = path.partition("/")
-        if not rest or not self._generates_interfaces(head):
+        if not rest or not self.generates_interfaces(head):
             return None
         parts = rest.split("/")
         name = parts[-1].rsplit(".", 1)[0]
@@ -567,7 +567,8 @@ class View:
             return Misnamed(f"`{path}` is the ROS 2 name of a generated header", f"include `{head}/<Name>.h`")
         return None
 
-    def _generates_interfaces(self, name: str) -> bool:
+    def generates_interfaces(self, name: str) -> bool:
+        """True for packages that make headers from messages, services or actions, as far as their name tells it."""
         package = self.workspace.packages.get(name)
         if package is not None:
             return package.is_interface_package
@@ -870,6 +871,7 @@ class View:
         found = list(self.providers.header(path))
         if any(not p.name for p in found):
             return found
+        found = self._having(path, found)
         if "/" in path and not any(p.name == head for p in found) and self.is_package(head) and head not in _UMBRELLAS:
             convention = Provider("ros", head, "", False)
             if self.target.version(head) is not None or not found or head in self.workspace.packages:
@@ -878,6 +880,18 @@ class View:
                 found.append(convention)
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
         return [p for p in found if p.name not in _BROAD]
+
+    def _having(self, path: str, found: list[Provider]) -> list[Provider]:
+        """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""
+        if len(found) < 2:
+            return found
+        has = {
+            p.name: self.providers.has_header(p.name, path, self.target.distro, version)
+            for p in found
+            if p.kind == "ros" and p.name not in self.workspace.packages
+            and (version := self.target.version(p.name))
+        }  # fmt: skip
+        return [p for p in found if has.get(p.name) is not False] if True in has.values() else found
 
     def is_package(self, name: str) -> bool:
         """True when the workspace has a package of this name, or any distro ever released one."""

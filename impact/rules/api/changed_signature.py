@@ -31,6 +31,7 @@ Not reported
 
 from collections.abc import Iterator
 
+from ...model.build import At
 from ...model.package import CppApiUse, NameUse
 from ...model.view import View
 from ...model.workspace import Package
@@ -93,7 +94,7 @@ def _reviewed(view: View) -> Iterator[Hit]:
         # A method that the package or what it is built with declares may be meant wherever its name is called.
         within = [view.workspace.packages[name] for name in view.closure(package) if name in view.workspace.packages]
         own = {function for each in within for function in each.digest.functions}
-        warned: set[str] = set()
+        soon: list[tuple[NameUse, Change, bool]] = []
         for use in package.digest.uses:
             if function_of(use.text) in own:
                 continue
@@ -113,18 +114,7 @@ def _reviewed(view: View) -> Iterator[Hit]:
             shown = use.shown or use.text
             certain = use.language == "cpp" and view.certain(use.conditions)
             if later is not None:
-                loud = view.horizon_is_near and certain and use.role != "aside" and later.package not in warned
-                if loud:
-                    warned.add(later.package)
-                yield Hit(
-                    use.at,
-                    shown,
-                    f"`{shown}` is taken, and no longer by {later.package} {later.version} of {view.horizon}",
-                    later.new,
-                    package.name,
-                    severity="warning" if loud else "note",
-                    evidence=evidence_of(later, ahead=True),
-                )
+                soon.append((use, later, view.horizon_is_near and certain and use.role != "aside"))
                 continue
             when = "is no longer" if change.state == "removed" else "is not yet"
             yield Hit(
@@ -136,6 +126,30 @@ def _reviewed(view: View) -> Iterator[Hit]:
                 severity=_how_bad(view, use, certain),
                 evidence=evidence_of(change),
             )
+        yield from _what_is_coming(view, package, soon)
+
+
+def _what_is_coming(view: View, package: Package, soon: list[tuple[NameUse, Change, bool]]) -> Iterator[Hit]:
+    """Of each library the first place loudly, the rest as notes."""
+    first: dict[str, At] = {}
+    for use, later, loud in soon:
+        if loud:
+            first[later.package] = min(first.get(later.package, use.at), use.at, key=_place)
+    for use, later, loud in soon:
+        shown = use.shown or use.text
+        yield Hit(
+            use.at,
+            shown,
+            f"`{shown}` is taken, and no longer by {later.package} {later.version} of {view.horizon}",
+            later.new,
+            package.name,
+            severity="warning" if loud and first[later.package] == use.at else "note",
+            evidence=evidence_of(later, ahead=True),
+        )
+
+
+def _place(at: At) -> tuple[str, int, int]:
+    return at.path, at.line, at.column
 
 
 def _how_bad(view: View, use: NameUse, certain: bool) -> str:

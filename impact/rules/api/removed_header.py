@@ -3,17 +3,19 @@
 What it does
     Reports `#include` lines whose header the target's version of the providing package does not install: removed,
     renamed, or only added in a later version; headers of platform libraries that the newest distro no longer has;
-    generated headers whose interface the version lacks, or another package of the workspace has; and spellings of
-    generated headers that belong to the other ROS generation.
+    generated headers whose interface the version lacks, or another package of the workspace has; spellings of
+    generated headers that belong to the other ROS generation, or to C where rclcpp is used; and headers of
+    generate_parameter_library by a path that its version does not make, or does not install.
 
 Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
     error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for the first
-    include of each header that only the newest distro lacks, and for interfaces that go when a dated target's distro is
-    updated; note for examples, for installed headers that the package does not compile itself, and under conditions
-    that are not known.
+    include of each header that only the newest distro lacks, for interfaces that go when a dated target's distro is
+    updated, for headers of C where nothing else brings the C++ types, and for installed headers that include what is
+    not installed; note for examples, for installed headers that the package does not compile itself, and under
+    conditions that are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -26,13 +28,15 @@ Not reported
     ROS 1 names in a package that also includes ROS 1 headers, as bridges do.
 """
 
+import re
 from collections.abc import Iterator
 
 from ...model.package import IncludeUse, is_header
-from ...model.view import View
+from ...model.view import Misnamed, View
 from ...model.workspace import Package
 from ...targets.evidence import evidence_of
 from ...targets.target import Change
+from ...targets.version import at_least
 from ..rule import Hit, rule
 from .moved_header import respelt
 
@@ -46,12 +50,16 @@ def removed_header(view: View):
     }
     early = {c.new: c for c in view.changes("header-renamed", "header-moved") if c.state == "absent" and c.new}
     quiet: set[str] = set()  # paths of which nothing can be said, whoever includes them
+    parameters = _Parameters(view)
     for package in view:
         dual = view.target.ros == 2 and any(i.path.startswith("ros/") for i in package.digest.includes)
         coming: list[tuple[IncludeUse, Change, bool]] = []
         for include in package.digest.includes:
             path = include.path
             if path in quiet or not view.active(include.conditions):
+                continue
+            if (made := parameters.lost(package, include)) is not None:
+                yield made
                 continue
             if view.workspace.provides_header(path):
                 quiet.add(path)
@@ -117,6 +125,10 @@ def removed_header(view: View):
                     evidence=soon.evidence,
                 )
                 continue
+            if wrong is None and (in_c := _in_c(view, path)) is not None:
+                if include.role != "aside" and (of_cpp := _of_cpp(view, package, include)) is not None:
+                    yield Hit(include.at, path, in_c.message, in_c.help, package.name, severity=of_cpp)
+                continue
             if wrong is None and path not in gone and path not in early and path not in view.later:
                 quiet.add(path)
             if wrong and not dual:
@@ -130,6 +142,70 @@ def removed_header(view: View):
                     evidence=wrong.evidence,
                 )
         yield from _what_is_coming(view, package, coming)
+
+
+_C_HEADER = re.compile(r"(?P<stem>(?P<package>\w+)/(?:msg|srv|action)/[a-z0-9_]+)\.h\Z")
+
+
+def _in_c(view: View, path: str) -> Misnamed | None:
+    """What is wrong with a generated header of ROS 2 for C, where C++ includes it."""
+    found = _C_HEADER.match(path) if view.target.ros == 2 else None
+    if found is None or not view.generates_interfaces(found["package"]):
+        return None
+    return Misnamed(f"`{path}` has the types of C, not those of C++", f"include `{found['stem']}.hpp`")
+
+
+def _of_cpp(view: View, package: Package, include: IncludeUse) -> str | None:
+    """How bad it is that a file includes a header of C; None where the file may be about C."""
+    beside = {i.path for i in package.digest.includes if i.at.path == include.at.path} - {include.path}
+    if not any(path.startswith("rclcpp") for path in beside):
+        return None
+    own = any(path == include.at.path and inner for path, inner in package.digest.inner)
+    if own or not is_header(include.at.path) or not view.certain(include.conditions):
+        return "note"  # what the package's own headers bring along is not followed
+    machine, wanted = view.machine, include.path + "pp"
+    known = frozenset(beside)
+    unknown = [path for path in machine.outside(known) if path in known and not view.is_standard(path)]
+    brought = machine.bits((wanted,)) & machine.mask(known)
+    return "note" if unknown or brought else "warning"
+
+
+class _Parameters:
+    """Headers that generate_parameter_library makes, which have been `name.hpp`, and are `package/name.hpp`.
+
+    Source: its CMake at the tags: from 0.4.0 on `package/name.hpp` is installed, and the other is made for the package
+    itself only; 1.0.0 makes that no more."""
+
+    def __init__(self, view: View):
+        version = view.target.version("generate_parameter_library")
+        own = "generate_parameter_library" in view.workspace.packages
+        self.version = "" if own else version or ""
+        self.owner = {
+            item.target: package.name
+            for package in view.workspace
+            for item in package.build.generated
+            if item.how == "parameters" and self.version
+        }
+
+    def lost(self, package: Package, include: IncludeUse) -> Hit | None:
+        """What is wrong with the include of such a header."""
+        head, _, file = include.path.rpartition("/")
+        owner = self.owner.get(file.removesuffix(".hpp")) if file.endswith(".hpp") else None
+        if owner is None or head not in ("", owner) or include.role == "aside":
+            return None
+        new = f"{owner}/{file}"
+        if head and not at_least(self.version, "0.4.0"):
+            return self._hit(package, include, f"`{new}` is not made by", f"include `{file}`", "error")
+        if not head and at_least(self.version, "1.0.0"):
+            return self._hit(package, include, f"`{file}` is no longer made by", f"include `{new}`", "error")
+        if not head and include.public and at_least(self.version, "0.4.0"):
+            text = f"an installed header includes `{file}`, which is installed as `{new}` by"
+            return self._hit(package, include, text, f"include `{new}`", "warning")
+        return None
+
+    def _hit(self, package: Package, include: IncludeUse, text: str, cure: str, severity: str) -> Hit:
+        message = f"{text} generate_parameter_library {self.version}"
+        return Hit(include.at, include.path, message, cure, package.name, severity=severity)
 
 
 def _what_is_coming(view: View, package: Package, coming: list[tuple[IncludeUse, Change, bool]]) -> Iterator[Hit]:

@@ -2,7 +2,8 @@
 
 What it does
     Reports names of the standard library, of Boost and of ROS packages in files that do not include the header that
-    offers them, when the headers that they do include stopped bringing it along.
+    offers them, when the headers that they do include stopped bringing it along; and names of Boost that none of them
+    brings, where some of them are Boost's.
 
 Why it breaks
     Some other header brought it. The next compiler or library version stops including it, and the build fails on the
@@ -10,8 +11,9 @@ Why it breaks
 
 Severity
     error when a source compiles the file, all headers that reach it there are known, and none of them brings the name
-    on the target; warning when some are not known, and none of those depends on the package at issue; note for files
-    that no source compiles, and for what lies ahead, in the newest distro.
+    on the target; warning when some are not known, and none of those depends on the package at issue, when nothing is
+    known to have brought the name before, and in installed headers that only tests compile; note for files that no
+    source compiles, and for what lies ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
@@ -49,6 +51,9 @@ def missing_include(view: View):
         told = set()
         built = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         compiled = {path for path, targets in package.digest.source_targets if built.intersection(targets)}
+        offered_to_others = {path for path, _ in package.digest.source_targets}.intersection(
+            package.digest.public_headers
+        )
         for need in package.digest.needed_headers:
             if need.role == "aside" or not view.active(need.conditions):
                 continue
@@ -58,14 +63,24 @@ def missing_include(view: View):
             if lost is None or (need.at.path, lost.header) in told:
                 continue
             told.add((need.at.path, lost.header))
-            here = now and need.at.path in compiled
-            sure = here and lost.sure and need.role == "build" and view.certain(need.conditions)
+            here = now and (need.at.path in compiled or need.at.path in offered_to_others)
+            sure = (
+                need.at.path in compiled
+                and now
+                and lost.sure
+                and need.role == "build"
+                and view.certain(need.conditions)
+            )
             where = "" if now else f" of {view.horizon}"
+            how = (
+                f", which {lost.by} {lost.version}{where} no longer brings along"
+                if lost.once
+                else f", and nothing that is included brings it along with {lost.by} {lost.version}{where}"
+            )
             yield Hit(
                 need.at,
                 lost.header,
-                f"`{need.name}` is used without `<{lost.header}>`, which {lost.by} {lost.version}{where} no longer "
-                "brings along",
+                f"`{need.name}` is used without `<{lost.header}>`{how}",
                 f"#include <{lost.header}>",
                 package.name,
                 severity="error" if sure else "warning" if here else "note",
@@ -74,12 +89,14 @@ def missing_include(view: View):
 
 
 class _Lost(NamedTuple):
-    """A header that nothing brings along any more. by, version: what did; sure: all that is included is known."""
+    """A header that nothing brings along. by, version: what did, or else whose it is; sure: all that is included is
+    known; once: something did."""
 
     header: str
     by: str
     version: str
     sure: bool
+    once: bool
 
 
 def _lost(
@@ -89,7 +106,8 @@ def _lost(
     machine: Machine,
     earlier: tuple[Machine, ...],
 ) -> _Lost | None:
-    """What one of the sources that compile a file misses on a machine although an earlier one brought it along."""
+    """What one of the sources that compile a file misses on a machine: what an earlier one brought along, or nothing
+    ever did."""
     offering = DEFINED_IN.get(need.name) or offered().get(need.name)
     if offering is None:
         return None
@@ -104,12 +122,21 @@ def _lost(
         outside = _outside(view, need.name, reach, machine)
         if outside is None:
             continue
-        found = _dropped(view, wanted, reach, machine, earlier)
+        dropped = _dropped(view, wanted, reach, machine, earlier)
+        found = dropped or _never(need.name, wanted, reach, machine)
         if found is None or (best is not None and (best.sure or outside)):
             continue
-        sure = not outside and not pointed & machine.mask(reach)
-        best = _Lost(offering[0], *found, sure)
+        sure = dropped is not None and not outside and not pointed & machine.mask(reach)
+        best = _Lost(offering[0], *found, sure, dropped is not None)
     return best
+
+
+def _never(name: str, wanted: frozenset[str], reach: frozenset[str], machine: Machine) -> tuple[str, str] | None:
+    """A library and its version, where a file includes some of its headers, and none that offers a name of its."""
+    if not name.startswith("boost::"):
+        return None
+    owners = {owner for header in wanted if (owner := machine.owner(header)) is not None}
+    return next((owner for header in sorted(reach) if (owner := machine.owner(header)) in owners), None)
 
 
 def _dropped(
