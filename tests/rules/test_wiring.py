@@ -557,3 +557,14 @@ def test_no_error_without_all_the_evidence(files: Files, old: str, new: str, sai
     assert ("warning", "angles") in said(files, "humble", "undeclared-package")
     sure = {path: text.replace(old, new) for path, text in files.items()}
     assert ("error", "angles") in said(sure, "humble", "undeclared-package")
+
+
+def test_what_a_dependency_brings_in_another_distro_is_no_error(said: Said):
+    """The manifest that movie_publisher has in Indigo is not known; in the nearest distro it brings no image_transport,
+    in another one it does."""
+    source = "#include <image_transport/image_transport.h>\n" + MAIN
+    built = "catkin_package()\nadd_executable(run run.cpp)"
+    files = catkin("sled", "", built, "roscpp", "movie_publisher", run_cpp=source)
+    assert said(files, "indigo", "undeclared-package") == [("warning", "image_transport")]
+    sure = {path: text.replace("<depend>movie_publisher</depend>", "") for path, text in files.items()}
+    assert said(sure, "indigo", "undeclared-package") == [("error", "image_transport")]
