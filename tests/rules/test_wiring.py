@@ -216,6 +216,16 @@ ROWS = {
         ("sled/CMakeLists.txt", "PROGRAMS", "FILES"),
         ("warning", "run.py"),
     ),
+    "a node installed as a program": Row(
+        "missing-install",
+        "noetic",
+        catkin(
+            "sled", "", "catkin_package()\ninstall(PROGRAMS scripts/run.py DESTINATION share/sled)\n", "rospy",
+            scripts__run_py="#!/usr/bin/env python3\nimport rospy\n",
+        ),
+        ("sled/CMakeLists.txt", "PROGRAMS", "FILES"),
+        ("error", "run.py"),
+    ),
     "a script among programs that may be executed": Row(
         "missing-install",
         "noetic",

@@ -11,10 +11,10 @@ Why it breaks
 
 Severity
     error for an install rule of something that does not exist, or with a variable that nothing sets; and where the
-    installed package is sure to fail: a program that an installed launch file starts in any case, a script that lies
-    among programs and cannot be executed, the description of plugins whose library is installed, headers in a folder
-    where another package of the workspace, which compiles them, does not look. warning otherwise: in a workspace that
-    is never installed all of this works.
+    installed package is sure to fail: a program that an installed launch file starts in any case, a script among
+    programs, or a node in Python, that cannot be executed, the description of plugins whose library is installed,
+    headers in a folder where another package of the workspace, which compiles them, does not look. warning otherwise:
+    in a workspace that is never installed all of this works.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
@@ -155,14 +155,20 @@ def _not_executable(view: View, package, installs):
             started = among_programs or inside.split("/")[0] in ("scripts", "nodes", "bin")
             if path in package.digest.scripts and started and path not in programs and not inside.endswith(_RUN_BY):
                 name = posixpath.basename(path)
+                lost = among_programs or _is_node(view, package, path)
                 yield Hit(
                     install.at,
                     name,
                     f"`{name}` is installed with install(FILES), so it cannot be executed",
                     "install(PROGRAMS ...)",
                     package.name,
-                    severity="error" if among_programs and view.certain(install.conditions) else "warning",
+                    severity="error" if lost and view.certain(install.conditions) else "warning",
                 )
+
+
+def _is_node(view: View, package, script: str) -> bool:
+    """True for a node of ROS 1, which rosrun and roslaunch start from the package's share folder too."""
+    return view.target.ros == 1 and any(i.at.path == script and i.module == "rospy" for i in package.digest.imports)
 
 
 # Scripts that other programs run, as data.
