@@ -16,7 +16,7 @@ from . import memo
 from .config import Config, PathSetting, load, parse
 from .facts.store import Store
 from .gather import Gathered, gather
-from .guarded import with_evidence
+from .guarded import Split, with_evidence
 from .judge import Crashes, hits_of
 from .model.flow.wanted import code_kinds
 from .model.view import View
@@ -141,7 +141,9 @@ def judged(
     if any(finding.evidence for finding in found):
         for view in views:
             memo.prepare(store, view.target)
-        found = with_evidence(found, views)
+        found, parted = with_evidence(found, views)
+        if parted and "unguarded-split" in chosen:
+            found = after.in_order([*found, *_splits(parted, opened, chosen, settings, sources)])
     if any(finding.fix for finding in found):
         from . import fix
 
@@ -173,6 +175,31 @@ def judged(
         impact=reached,
     )
     return Checked(report, config, tree)
+
+
+def _splits(
+    parted: Sequence[tuple[Finding, Split]],
+    opened: Opened,
+    rules: Mapping[str, Rule],
+    settings: Sequence[PathSetting],
+    sources: Sources,
+) -> list[Finding]:
+    """Findings of unguarded-split, which rest on findings of other rules; new where all of those are."""
+    from .rules.api.unguarded_split import split
+
+    hits = split((finding, one.evidence, one.old_only, one.new_only) for finding, one in parted)
+    found = after.merge(
+        (("unguarded-split", target, hit) for target, hit in hits),
+        targets=[view.target.name for view in opened.views],
+        rules=rules,
+        line_text=sources.line,
+    )
+    old = {finding.package for finding, _ in parted if not finding.new}
+    families = {name: rule.family for name, rule in rules.items()}
+    marked = [finding._replace(new=finding.package not in old) for finding in found]
+    allows = {path: comments for package in opened.workspace for path, comments in package.digest.allows}
+    told = after.with_settings(marked, settings, families)
+    return after.suppressed(told, allows, families=families, ran=()).kept
 
 
 def _reached(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
@@ -413,7 +440,10 @@ def judge(
 
     allows = {path: comments for package in workspace for path, comments in package.digest.allows}
     result = after.suppressed(
-        made(hits_of(opened, rules.values(), crashed, before, jobs)), allows, families=families, ran=rules
+        made(hits_of(opened, rules.values(), crashed, before, jobs)),
+        allows,
+        families=families,
+        ran=[name for name in rules if name != "unguarded-split"],  # it speaks last, see _splits()
     )
     kept = list(result.kept)
     if "unused-suppression" in rules and result.unused:

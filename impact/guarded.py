@@ -36,11 +36,13 @@ class Split(NamedTuple):
     ros: int
 
 
-def with_evidence(findings: Iterable[Finding], views: Sequence[View]) -> list[Finding]:
+def with_evidence(
+    findings: Iterable[Finding], views: Sequence[View]
+) -> tuple[list[Finding], list[tuple[Finding, Split]]]:
     """The findings with how every target stands to the change that each rests on, and with the guarded form as help
-    where the targets asked for need different spellings."""
+    where the targets asked for need different spellings; and these alone."""
     known: dict[tuple[Evidence, tuple[str, ...]], tuple[Evidence | None, Split | None]] = {}
-    result = []
+    result, parted = [], []
     for finding in findings:
         if finding.evidence is not None:
             key = (finding.evidence, finding.targets)
@@ -48,8 +50,10 @@ def with_evidence(findings: Iterable[Finding], views: Sequence[View]) -> list[Fi
                 known[key] = _joined(*key, views)
             evidence, split = known[key]
             finding = finding._replace(evidence=evidence, help=_guarded(split) if split else finding.help)
+            if split is not None:
+                parted.append((finding, split))
         result.append(finding)
-    return result
+    return result, parted
 
 
 def _joined(

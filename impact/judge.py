@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..corpus.told import unforeseen
 from . import memo, processes
@@ -57,6 +57,9 @@ def hits_of(
                 yield from ((name, target, hit) for name, hit in kept[target] if name == rule.name)
         elif rule.installed:
             yield from _of_install(opened, rule, crashed)
+        elif rule.across:
+            hits = _tried(rule, "", crashed, lambda rule=rule: rule.run(opened.views))
+            yield from ((rule.name, view.target.name, hit) for view, hit in hits)
         elif rule.flow:
             yield from ((name, "", hit) for name, hit in of_flow if name == rule.name)
         else:
@@ -150,7 +153,7 @@ def _run(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], I
     return lambda: rule.run(opened.workspace, before) if before is not None else ()
 
 
-def _tried(rule: Rule, target: str, crashed: Crashes, run: Callable[[], Iterable[Hit]]) -> Iterator[Hit]:
+def _tried(rule: Rule, target: str, crashed: Crashes, run: Callable[[], Iterable[Any]]) -> Iterator[Any]:
     """The hits of a rule up to where it fails, if it does."""
     try:
         yield from run()

@@ -7,6 +7,7 @@ import re
 from functools import cache
 
 from ..facts.usage import Pattern
+from ..targets.behaviour import all_behaviour
 from ..targets.changes import all_rows, transitive_includes
 from ..targets.fields import default_fields
 from ..targets.includes import offered
@@ -46,6 +47,9 @@ def watched() -> Watched:
     for row in all_uses():
         if row.pattern.language == "python":
             modules.setdefault(row.package, []).append((row.label, row.pattern))
+    for row in all_behaviour().values():
+        for module in row.imports:
+            modules.setdefault(module, []).append((row.label, row.pattern))
     fields = default_fields()
     version = hashlib.sha1(
         repr(

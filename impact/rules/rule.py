@@ -68,7 +68,8 @@ class Rule(NamedTuple):
 
     per_target: asked once for each target. compares: asked about a workspace and its base, and silent without one.
     flow: rests on the message flow, and on nothing that is not remembered with it. installed: asked about the built
-    files of an install space, on each machine, and silent without one. deprecation: warns of what will go."""
+    files of an install space, on each machine, and silent without one. deprecation: warns of what will go. across:
+    asked once about all targets together."""
 
     name: str
     family: str
@@ -81,6 +82,7 @@ class Rule(NamedTuple):
     flow: bool = False
     installed: bool = False
     deprecation: bool = False
+    across: bool = False
 
 
 _RULES: dict[str, Rule] = {}
@@ -95,21 +97,24 @@ def rule(
     flow: bool = False,
     installed: bool = False,
     deprecation: bool = False,
+    across: bool = False,
 ):
     """Registers the decorated generator as a rule. It is called as f(view), a workspace as one target sees it, and
     reports on the packages that the view iterates over, which may be a part of the workspace; or as f(workspace) when
     per_target is False or it asks for the flow; or as f(workspace, base) when it compares; or as f(view, installed,
-    shelf) when it is about built files. The name is the module's, with dashes."""
+    shelf) when it is about built files; or as f(views) across targets, and then yields each hit with its view. The name
+    is the module's, with dashes."""
 
     def register(function):
         parts = function.__module__.split(".")
         module = importlib.import_module(function.__module__)
         name = parts[-1].replace("_", "-")
-        per = per_target and not compares and not flow and not installed
+        per = per_target and not (compares or flow or installed or across)
         documentation = module.__doc__ or ""
         _RULES[name] = Rule(
-            name, parts[-2], severity, preview, per, function, documentation, compares, flow, installed, deprecation
-        )
+            name, parts[-2], severity, preview, per, function, documentation, compares, flow, installed, deprecation,
+            across,
+        )  # fmt: skip
         return function
 
     return register

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import msgspec
 
 from ..facts.usage import Pattern, Table
+from . import behaviour
 from .changes import reached, version_of
 from .snapshot import DATA, SnapshotError
 from .target import Change, Target
@@ -84,15 +85,16 @@ def all_uses() -> tuple[Use, ...]:
 
 @cache
 def stamp() -> str:
-    """Differs whenever the table does."""
-    return hashlib.sha1(b"".join(path.read_bytes() for path in sorted(DATA.glob("uses*.json")))).hexdigest()[:16]
+    """Differs whenever the table, or that of behaviour.py, does."""
+    files = [path.read_bytes() for path in sorted(DATA.glob("uses*.json"))]
+    return hashlib.sha1(b"".join((*files, behaviour.stamp().encode()))).hexdigest()[:16]
 
 
 @cache
 def looked_for() -> Table:
-    """The uses of C++ as files are searched for them."""
+    """The uses of C++, and what behaves otherwise, as files are searched for them."""
     found: dict[str, list[tuple[str, Pattern]]] = {}
-    for row in all_uses():
+    for row in (*all_uses(), *behaviour.all_behaviour().values()):
         if row.pattern.language == "cpp":
             found.setdefault(row.pattern.word, []).append((row.label, row.pattern))
     return Table(found)

@@ -1,0 +1,95 @@
+"""changed-behaviour: a call that is written rightly does something else on a target.
+
+What it does
+    Reports the first use in each package of what, as the reviewed table of behaviour says, does, returns or expects
+    something else since a version of a package or library: where the targets asked for lie on both sides of that
+    version, or, when one target is asked for, where the long-term distro before it was on the other side.
+
+Why it matters
+    Everything compiles and starts, and one developer's robot does other than another's.
+
+Severity
+    note.
+
+Example
+    float angle = cv::minAreaRect(points).angle;      // between -90 and 0 until OpenCV 4.5.1, then between 0 and 90
+
+Use instead
+    float angle = std::fmod(box.angle + 90.0F, 90.0F); // the same on every version, beside a like step for the size
+
+Not reported
+    Code that a version test excludes on the target; tests and examples; uses that show that they know, such as a
+    default that is given.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from ...model.package import NameUse
+from ...model.view import View
+from ...model.workspace import Package
+from ...targets.behaviour import Behaviour, all_behaviour
+from ...targets.distro import DistroTarget, known_distros
+from ...targets.evidence import Evidence
+from ..rule import Hit, rule
+
+
+@rule(severity="note", across=True)
+def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Hit]]:
+    if not views:
+        return
+    table = all_behaviour()
+    workspace = views[0].workspace
+    own = {function for package in workspace for function in package.digest.functions}
+    fresh: dict[str, bool] = {}
+    for package in workspace:
+        told: set[tuple[str, str]] = set()
+        for use in package.digest.uses:
+            row = table.get(use.text)
+            if row is None or use.role not in ("build", "run") or (row.clause, row.package) in told:
+                continue
+            if row.package in workspace.packages or (row.pattern.calls and row.pattern.word in own):
+                continue
+            asked = [view for view in views if _counts(view, package, use, row)]
+            with_it = [view for view in asked if row.holds(view.target)]
+            if not with_it:
+                continue
+            if len(with_it) == len(asked):
+                if row.label not in fresh:
+                    fresh[row.label] = len(views) == 1 and _is_new(row, views[0])
+                if not fresh[row.label]:
+                    continue
+            told.add((row.clause, row.package))
+            for view in with_it:
+                since = f"{row.package} {row.since}" if row.since[0].isdigit() else row.since
+                yield (
+                    view,
+                    Hit(
+                        use.at,
+                        use.shown or use.text,
+                        f"`{use.shown or use.text}` does otherwise since {since}: {row.clause}",
+                        row.help,
+                        package.name,
+                        evidence=Evidence(
+                            row.package, "changed", row.label, first=row.since, library=row.library, source=row.source
+                        ),
+                    ),
+                )
+
+
+def _counts(view: View, package: Package, use: NameUse, row: Behaviour) -> bool:
+    """Whether a use is compiled or run on a target that has the package in some version."""
+    if package.build_type.startswith("ament") and view.target.ros == 1:
+        return False
+    if package.build_type == "catkin" and view.target.ros == 2:
+        return False
+    if row.holds(view.target) is None or not view.active(use.conditions):
+        return False
+    return view.concerned(package, row.change, use.at.path)
+
+
+def _is_new(row: Behaviour, view: View) -> bool:
+    """Whether the long-term distro before the target's has the old behaviour."""
+    known = known_distros()
+    here = next((one.released for one in known if one.name == view.target.distro), "")
+    earlier = [one.name for one in known if one.lts and one.ros == view.target.ros and one.released < here]
+    return bool(earlier) and row.holds(DistroTarget(earlier[-1])) is False

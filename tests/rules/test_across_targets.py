@@ -1,0 +1,55 @@
+"""What is known only when all targets are looked at together: other behaviour, and spellings that part them."""
+
+from pathlib import Path
+
+import pytest
+from rosimpact.impact.check import Options, check
+
+CASES = Path(__file__).parent / "api"
+
+
+@pytest.fixture
+def told(tmp_path):
+    def run(case, *targets):
+        findings = check(CASES / case / "before", Options(targets=targets, cache=tmp_path / "cache", jobs=1)).findings
+        rule = case.replace("_", "-")
+        return [(f.targets, [one[:3] for one in f.evidence.targets] if f.evidence else []) for f in findings
+                if f.rule == rule]  # fmt: skip
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("targets", "expected"),
+    [
+        # MultiThreadedExecutor has two threads at least since rclcpp 17.1.0: Humble has 16, Iron 21, Jazzy 28.
+        (("humble", "jazzy"), [(("jazzy",), [("humble", "16.0.19", False), ("jazzy", "28.1.21", True)])]),
+        (("jazzy", "rolling"), []),  # both have it, and nobody is surprised
+        (("jazzy",), [(("jazzy",), [("jazzy", "28.1.21", True)])]),  # it came since the long-term distro before
+        (("kilted",), []),  # that was Jazzy
+        (("humble",), []),
+    ],
+)
+def test_behaviour_is_told_where_targets_differ_or_a_target_is_the_first_with_it(told, targets, expected):
+    assert told("changed_behaviour", *targets) == expected
+
+
+@pytest.mark.parametrize(
+    ("targets", "parted"),
+    [(("humble", "jazzy"), True), (("humble",), False), (("jazzy",), False), (("jazzy", "rolling"), False)],
+)
+def test_spellings_part_only_targets_that_need_different_ones(told, targets, parted):
+    assert told("unguarded_split", *targets) == ([(targets, [])] if parted else [])
+
+
+def test_an_allow_comment_silences_what_is_said_last(tmp_path):
+    source = tmp_path / "winch/src/winch.cpp"
+    for path in (CASES / "unguarded_split/before").rglob("*"):
+        if path.is_file():
+            copy = tmp_path / path.relative_to(CASES / "unguarded_split/before")
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(path.read_bytes())
+    code = source.read_text()
+    source.write_text(code.replace("cv_bridge.h>", "cv_bridge.h>  // rosimpact: allow(unguarded-split)", 1))
+    found = check(tmp_path, Options(targets=("humble", "jazzy"), cache=tmp_path / "cache", jobs=1)).findings
+    assert [finding.rule for finding in found] == ["removed-header"]
