@@ -76,9 +76,7 @@ class PythonOffers:
             return lost
         # The target's version lies between two that are stored: both have to say the same.
         after = self._at(offer, use, offer.place + 1) if offer.place + 1 < len(offer.line.versions) else lost
-        if after is None or (after.state, after.name) != (lost.state, lost.name):
-            return lost._replace(sure=False)
-        return lost
+        return lost if after is not None and (after.state, after.name) == (lost.state, lost.name) else None
 
     def _at(self, offer: Offer, use: PythonUse, place: int) -> Lost | None:
         names = self.names(offer.package, offer.line.versions[place])

@@ -137,9 +137,9 @@ def test_what_a_branch_stands_for_is_not_spoken_of(offers):
     assert (lost.last, lost.first) == ("1.0.0", "3.0.0")
 
 
-def test_between_two_stored_versions_only_what_both_say_is_sure(offers):
-    assert offers("2.5.0", "def f(): pass", "", "def f(): pass").lost(use("arm.f"), ["arm"]).sure is False
-    assert offers("2.5.0", "def f(): pass", "", "").lost(use("arm.f"), ["arm"]).sure is True
+def test_between_two_stored_versions_only_what_both_say_is_told(offers):
+    assert offers("2.5.0", "def f(): pass", "", "def f(): pass").lost(use("arm.f"), ["arm"]) is None
+    assert offers("2.5.0", "def f(): pass", "", "").lost(use("arm.f"), ["arm"]).state == "removed"
 
 
 @pytest.mark.parametrize(

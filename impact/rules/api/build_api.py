@@ -44,8 +44,7 @@ def lacking(view: View, side: str, name: str, packages: Iterable[str]) -> Lackin
             return None
         offer = view.offers.package(package)
         offered = offer.get(side, name) if offer is not None else None
-        # A branch may hold something else than the release that it stands for.
-        if offer is None or offered is None or _by_branch(offer, offered):
+        if offer is None or offered is None or _guessed(offer, offered):
             continue
         if offered.state not in ("removed", "moved", "absent") or name in there(offer.build):
             return None
@@ -54,8 +53,13 @@ def lacking(view: View, side: str, name: str, packages: Iterable[str]) -> Lackin
     return found
 
 
-def _by_branch(offer: Offer, offered: Offered) -> bool:
-    return any(version in offer.line.approximate for version in (offer.stored, offered.last, offered.first))
+def _guessed(offer: Offer, offered: Offered) -> bool:
+    """Whether a branch, which may hold something else than the release, or one of two stored versions that differ in
+    this is what it rests on."""
+    if any(version in offer.line.approximate for version in (offer.stored, offered.last, offered.first)):
+        return True
+    events = offer.line.events[offered.side][offered.name]
+    return not offer.exact and any(event.place == offer.place + 1 for event in events)
 
 
 def _told(offered: Offered, name: str) -> tuple[str, str]:
