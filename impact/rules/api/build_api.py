@@ -65,12 +65,10 @@ def _guessed(offer: Offer, offered: Offered) -> bool:
 def _told(offered: Offered, name: str) -> tuple[str, str]:
     where = f"{offered.package} {offered.version}"
     if offered.state == "absent":
-        return f"`{name}` is not yet in {where}", f"it is there since {offered.package} {offered.first}"
+        return f"`{name}` is not yet in {where}", ""
     if offered.state == "moved" and offered.moved_to:
-        return f"`{name}` is gone from {where}", f"`{offered.moved_to}` has it now"
-    if offered.instead:
-        return f"`{name}` is gone from {where}", f"use `{offered.instead}`"
-    return f"`{name}` is gone from {where}", f"{offered.package} {offered.last} was the last with it"
+        return f"`{name}` is gone in {where}", f"`{offered.moved_to}` has it now"
+    return f"`{name}` is gone in {where}", f"use `{offered.instead}`" if offered.instead else ""
 
 
 def of_another_distro(view: View, path: str, files: Collection[str]) -> bool:

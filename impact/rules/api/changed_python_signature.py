@@ -37,14 +37,13 @@ def changed_python_signature(view: View):
             where = f"{lost.package} {lost.version}"
             severity = severity_of(found, lost)
             given = found.use.given.keywords if found.use.given is not None else ()
-            cure = f"{lost.package} {lost.last} was the last that took it"
+            cure = ""
             if lost.state == "refused":
                 message = f"`{lost.name}` of {where} no longer takes this call: {lost.why}"
                 names = [f"`{renamed[key]}` for `{one}`" for one in given if (key := f"{lost.name}.{one}") in renamed]
-                cure = f"write {' and '.join(names)}" if names else cure
+                cure = f"write {' and '.join(names)}" if names else ""
             elif lost.state == "early":
                 message = f"`{lost.name}` of {where} does not take this call yet: {lost.why}"
-                cure = f"it does since {lost.package} {lost.first}"
             elif lost.state == "override":
                 message = f"`{lost.name}`, overridden here, has changed in {where}: {lost.why}"
                 cure = f"it is called as `{lost.new}`"

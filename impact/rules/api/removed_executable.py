@@ -81,12 +81,10 @@ def _arguments(view: View, package: str, use: ReferenceUse, path: str) -> Iterat
         if any(name == known for launch in offer.build.launches for known, _ in launch.arguments):
             continue
         lost = found.offered
-        when = "no longer" if lost.state == "removed" else "not yet"
+        have = f"no longer has an argument `{name}`" if lost.state != "absent" else f"has no argument `{name}` yet"
         certain = view.target.ros == 1 and not reference.conditional
         severity = severity_of(use.role, certain=certain, sure=found.sure)
         yield Hit(
-            use.at, f"{path} {name}", f"`{path}` of {lost.package} {lost.version} has {when} an argument `{name}`",
-            f"{lost.package} {lost.last} was the last with it" if lost.state == "removed"
-            else f"it is there since {lost.package} {lost.first}",
-            package, severity=severity, evidence=of_offered(lost),
+            use.at, f"{path} {name}", f"`{path}` of {lost.package} {lost.version} {have}",
+            package=package, severity=severity, evidence=of_offered(lost),
         )  # fmt: skip

@@ -44,11 +44,7 @@ def removed_python_name(view: View):
                     worst[key] = rank, found, lost
         for rank, found, lost in worst.values():
             where = f"{lost.package} {lost.version}"
-            if lost.state == "removed":
-                message = f"`{lost.name}` is gone in {where}"
-                cure = f"use `{lost.instead}`" if lost.instead else f"{lost.package} {lost.last} was the last with it"
-            else:
-                message = f"`{lost.name}` is not yet in {where}"
-                cure = f"it is there since {lost.package} {lost.first}"
+            message = f"`{lost.name}` is {'gone' if lost.state == 'removed' else 'not yet'} in {where}"
+            cure = f"use `{lost.instead}`" if lost.instead else ""
             yield Hit(found.at, lost.name, message, cure, package.name, severity=SEVERITIES[rank],
                       evidence=evidence_of(lost))  # fmt: skip
