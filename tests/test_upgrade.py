@@ -217,6 +217,26 @@ def test_named_machines_and_a_revision(say, ws):
     assert f"rosimpact check {ws} --target robot --rev HEAD --diff" in said.out
 
 
+def test_a_configuration_that_lies_elsewhere(say, ws, tmp_path):
+    config = tmp_path / "ours.toml"
+    config.write_text(
+        '[targets.old]\ndistro = "humble"\n[targets.next]\ndistro = "kilted"\n[check]\nfail_on = "never"\n'
+    )
+    said = say("upgrade", ws, "--from", "old", "--to", "next", "--config", config)
+    assert said.status == 0, "the configuration says what fails"
+    assert said.out.startswith("old → next breaks 2 of 4 packages")
+    assert f"rosimpact check {ws} --target next --config {config} --fix" in said.out
+
+
+def test_the_output_in_the_documentation_is_real(say, monkeypatch):
+    """Run the command and paste what it prints when this fails; only the seconds may differ."""
+    page = (ROOT / "docs/upgrade.md").read_text(encoding="utf-8")
+    command, shown = page.partition("```console\n$ ")[2].partition("\n```")[0].split("\n", 1)
+    monkeypatch.chdir(ROOT)
+    said = say(*command.split()[1:])
+    assert said.out.rpartition(" · ")[0] == shown.rpartition(" · ")[0]
+
+
 # -- the comparison ----------------------------------------------------------------------------------------------------
 
 
