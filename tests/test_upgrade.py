@@ -304,10 +304,10 @@ def test_the_page_shows_the_work(page, ws):
 def test_further_places_are_unfolded(page):
     browser = page()
     assert texts(browser, "#list .place")[:2] == ["zoom/src/far.cpp:2:10", "arm/src/look.cpp:1:10"]
-    browser.find_element("css selector", "#list details summary").click()
+    browser.find_element("css selector", "#list details.places summary").click()
     # A browser tells that something was unfolded when it next has time.
     wait = pytest.importorskip("selenium.webdriver.support.ui").WebDriverWait(browser, 60)
-    assert wait.until(lambda _: texts(browser, "#list details .place")) == ["zoom/src/near.cpp:1:10"]
+    assert wait.until(lambda _: texts(browser, "#list details.places .place")) == ["zoom/src/near.cpp:1:10"]
 
 
 @pytest.mark.parametrize(
