@@ -24,7 +24,7 @@ def uses_lost(view: View, package: Package) -> Iterator[tuple[PythonApiUse, Lost
         head = use.name.partition(".")[0]
         if head in view.own_modules or not use.alone or not view.certain(use.conditions):
             continue
-        if (found.at.path, found.at.line) in patterns or any(_within(use.name, name) for name in reviewed):
+        if (found.at.path, found.at.line) in patterns or not reviewed.isdisjoint(_heads(use.name)):
             continue
         lost = view.python_offers.lost(use, packages_of(head))
         if lost is not None:
@@ -49,5 +49,8 @@ def evidence_of(lost: Lost) -> Evidence:
     )  # fmt: skip
 
 
-def _within(name: str, outer: str) -> bool:
-    return name == outer or name.startswith(f"{outer}.")
+def _heads(name: str) -> Iterator[str]:
+    """`a.b.c`, `a.b`, `a`."""
+    while name:
+        yield name
+        name = name.rpartition(".")[0]
