@@ -8,6 +8,7 @@ the class around it. Where that cannot be told, nothing is said.
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -19,6 +20,7 @@ from .expressions_cpp import (
     FAR,
     Region,
     Step,
+    blocks,
     chain_before,
     declarations_of,
     in_scope,
@@ -49,6 +51,7 @@ _CLASS = re.compile(
 _QUALIFIERS = re.compile(r"\b(?:const|volatile|typename|class|struct|mutable|static|constexpr|inline)\b")
 _TEMPLATE = re.compile(r"([\w:\s]+?)\s*<(.*)>\s*((?:::\s*\w+\s*)*)\Z", re.DOTALL)
 _VARIABLE = re.compile(r"\s+[A-Za-z_]\w*\s*(?=[({])")
+_CLOSED = re.compile(r"\s*>\s*(?=\()")
 _MADE = re.compile(r"\s*(?:std|boost)?\s*(?:::)?\s*(make_shared|make_unique|allocate_shared)\s*<")
 _AUTO = re.compile(r"\s*([=:])\s*")
 _NOT_BEFORE = re.compile(r"(?:\b(?:class|struct|enum|namespace|goto|typename)\s+|[#\"'])\Z")
@@ -161,6 +164,7 @@ class ApiUses:
         self._types: dict[str, Type | None] = {}
         self._meanings: dict[str, tuple[str, ...]] = {}
         self._by_name: dict[str, Type | None] = {}
+        self._meanings_of: dict[tuple[str, int, int], Type | None] = {}
 
     def found(self, words: Iterable[str]) -> Iterator[Found]:
         """Every use of a changing name whose last part is among the words."""
@@ -219,6 +223,8 @@ class ApiUses:
         if _NOT_BEFORE.search(ahead) and not ahead.rstrip().endswith("typename"):
             return None
         scope = without_templates(self.text[begins:end]).removesuffix("::")
+        if scope == "std" or scope.startswith("std::"):
+            return None
         for full in self._meant(scope):
             name = f"{full}::{word}"
             if name in self.vocabulary.names:
@@ -266,7 +272,8 @@ class ApiUses:
         ahead = self.text[max(0, at - FAR) : at]
         if follows == "(" and declares_next(ahead):
             return None
-        if any(at_ < at and in_scope(self.text, at_, at) for at_, *_ in declarations_of(word, self.text)):
+        end = at + len(word)
+        if any(it == end or (it < at and in_scope(self.text, it, at)) for it, *_ in declarations_of(word, self.text)):
             return None
         return self._of_own(class_, word, at)
 
@@ -288,25 +295,29 @@ class ApiUses:
                 return None
             end, templated = types.end(), True
         ahead = self.text[max(0, begins - FAR) : begins]
-        inside = any(r.kind == "function" and r.start <= at < r.end for r in self.told.regions)
-        closed = re.compile(r"\s*>\s*(?=\()").match(self.text, end)
-        variable = _VARIABLE.match(self.text, end) if inside else None
+        closed = _CLOSED.match(self.text, end)
+        variable = _VARIABLE.match(self.text, end)
         if closed is not None:
             if not re.search(r"\b(?:make_shared|make_unique)\s*<\s*\Z", ahead):
                 return None
             opened = closed.end()
         elif variable is not None:
+            if not self._in_function(at):
+                return None
             opened = variable.end()
         else:
             opened = _SPACE.match(self.text, end).end()  # type: ignore[union-attr]
             if not self.text.startswith("(", opened) or declares_next(ahead):
                 return None
-            if not inside and not re.search(r"(?:(?<!:):|,)\s*\Z", ahead):
+            if not re.search(r"(?:(?<!:):|,)\s*\Z", ahead) and not self._in_function(at):
                 return None
         count, given = given_to(self.text, opened)
         name = f"{type_.name}::{word}"
         package = self.vocabulary.names[name].package
         return Found(package, name, at, "call", count, given, templated, True, ())
+
+    def _in_function(self, at: int) -> bool:
+        return any(region.kind == "function" and region.start <= at < region.end for region in self.told.regions)
 
     def _use(self, name: str, at: int, sure: bool, through: tuple[str, ...]) -> Found:
         """The use that a name at a place is."""
@@ -515,13 +526,23 @@ class ApiUses:
                 type_ = self._named(without_templates(outer))
                 return type_._replace(pointer=True) if type_ is not None else None
             return None
-        plain = name.removesuffix("()")
         known = self._variables.get(name)
+        plain = name.removesuffix("()")
         if known is None:
             known = self._variables[name] = [
                 (at, None if re.search(r"\bauto\b", written) else self.type_of(written + mark))
                 for at, written, mark in declarations_of(plain, self.text)
             ]
+        # Where the same declarations come before, in the same block, a name means the same.
+        braces = blocks(self.text)
+        key = name, sum(at < used for at, _ in known), braces.around[bisect_left(braces.marks, used)]
+        if key not in self._meanings_of:
+            self._meanings_of[key] = self._find(name, plain, known, used, depth)
+        return self._meanings_of[key]
+
+    def _find(self, name: str, plain: str, known: list[tuple[int, Type | None]], used: int, depth: int) -> Type | None:
+        """The type of a variable, or what a function gives back, by the declarations of its name."""
+        types: set[Type | None]
         if not name.endswith("()"):
             for at, type_ in reversed(known):
                 if at < used and in_scope(self.text, at, used):
@@ -588,7 +609,7 @@ class ApiUses:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
         virtual = {word for word in words if any(names[name].virtual for name in self.vocabulary.by_last[word])}
-        if not virtual:
+        if not virtual or not self.told.defined:
             return
         for region in self.told.regions:
             if region.kind != "class" or not region.bases:

@@ -6,6 +6,7 @@ Nothing is parsed as a whole: each question is answered by what stands around on
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
@@ -75,17 +76,55 @@ def _declarations_of(name: str, text: str) -> Iterator[tuple[int, str, str]]:
         at = text.find(name, end)
 
 
+class Blocks:
+    """The braces of a text. marks: where they stand; closes: for each, where its block ends (of a closing one, the
+    place itself); around: for each stretch before a brace, and behind the last, where the block around it ends."""
+
+    def __init__(self, text: str):
+        self.marks: list[int] = []
+        self.closes: list[int] = []
+        self.around: list[int] = []
+        opened: list[int] = []
+        inside: list[list[int]] = [[]]  # the stretches right in each open block
+        for number, match in enumerate(_BRACES.finditer(text)):
+            at = match.start()
+            self.marks.append(at)
+            self.around.append(len(text))
+            inside[-1].append(number)
+            if match.group() == "{":
+                self.closes.append(len(text))
+                opened.append(number)
+                inside.append([])
+            else:
+                self.closes.append(at)
+                if opened:
+                    self.closes[opened.pop()] = at
+                    for stretch in inside.pop():
+                        self.around[stretch] = at
+                else:
+                    # It closes what nothing opened: what stands before it is no longer in scope.
+                    for stretch in inside[-1]:
+                        self.around[stretch] = at
+                    inside[-1] = []
+        self.around.append(len(text))
+
+
+@lru_cache(maxsize=256)
+def blocks(text: str) -> Blocks:
+    """The braces of a text, which are asked for again and again."""
+    return Blocks(text)
+
+
 def in_scope(text: str, declared: int, used: int) -> bool:
     """Whether a name declared at one offset can be meant at another: its block, or function, is still open."""
-    opened, parameter = 0, None
-    for match in _BRACES.finditer(text, declared, used):
-        if parameter is None:
-            between = text[declared : match.start()]
-            parameter = between.count(")") > between.count("(")
-        opened += 1 if match.group() == "{" else -1
-        if opened < 0 or (opened == 0 and parameter):
-            return False
-    return True
+    known = blocks(text)
+    following = bisect_left(known.marks, declared)
+    if following == len(known.marks) or known.marks[following] >= used:
+        return True
+    between = text[declared : known.marks[following]]
+    if between.count(")") > between.count("("):  # a parameter of the function whose body opens here
+        return text[known.marks[following]] == "{" and known.closes[following] >= used
+    return known.around[following] >= used
 
 
 class Step(NamedTuple):
@@ -220,45 +259,32 @@ _TEMPLATE = re.compile(r"<[^<>]*>")
 
 def regions(text: str) -> tuple[Region, ...]:
     """Namespaces, classes and functions of a file; what is in a function is not looked into."""
+    known = blocks(text)
     found: list[Region] = []
     opened: list[tuple[str, str, tuple[str, ...], int]] = []
-    begins, inside, depth = 0, False, 0  # inside: a function, so many braces deep
-    pending = ""
-    for match in _MARKS.finditer(text):
+    begins, at, pending = 0, 0, ""
+    while True:
+        match = _MARKS.search(text, at)
+        if match is None:
+            break
         mark, at = match.group(), match.start()
-        if inside:
-            if mark == "{":
-                depth += 1
-            elif mark == "}":
-                depth -= 1
-                if depth == 0:
-                    kind, name, bases, start = opened.pop()
-                    found.append(Region(kind, name, bases, start, at))
-                    inside = False
-                    begins = at + 1
-                    rest = text[at + 1 : at + 80].lstrip()
-                    # The braces were of an initialiser before the body.
-                    pending = name if kind == "function" and rest[:1] in (",", "{") else ""
-            continue
-        if mark == ";":
-            begins = at + 1
-        elif mark == "}":
-            if opened:
-                kind, name, bases, start = opened.pop()
-                found.append(Region(kind, name, bases, start, at))
-            begins = at + 1
-        else:
-            kind, name, bases = _head(text[begins:at])
-            if pending:
-                kind, name, bases = "function", pending, ()
-                pending = ""
-            opened.append((kind, name, bases, at + 1))
-            begins = at + 1
-            if kind in ("function", "other"):
-                inside, depth = True, 1
-    while opened:
-        kind, name, bases, start = opened.pop()
-        found.append(Region(kind, name, bases, start, len(text)))
+        if mark == "{":
+            kind, name, bases = ("function", pending, ()) if pending else _head(text[begins:at])
+            pending = ""
+            if kind in ("namespace", "class"):
+                opened.append((kind, name, bases, at + 1))
+            else:
+                end = known.closes[bisect_left(known.marks, at)]
+                found.append(Region(kind, name, bases, at + 1, end))
+                # The braces were of an initialiser before the body.
+                rest = text[end + 1 : end + 80].lstrip()
+                pending = name if kind == "function" and rest[:1] in (",", "{") else ""
+                at = end
+        elif mark == "}" and opened:
+            found.append(Region(*opened.pop(), at))
+        at += 1
+        begins = at
+    found.extend(Region(*one, len(text)) for one in opened)
     return tuple(sorted(found, key=lambda region: (region.start, -region.end)))
 
 

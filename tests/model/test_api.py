@@ -103,6 +103,7 @@ def uses(text: str, changes: Changes, *headers: str) -> list[str]:
         ("class M : public arm::Arm, public Strange { void g() { went(1); } };", ["?arm::Base::went/1"]),
         ("class M : public leg::Leg { void g() { old(); } };", ["leg::Leg::old/0"]),
         ("class N { void g() { went(1); } };", []),
+        ("class M : public arm::Arm { void g() { auto went = [&](int a) {}; went(1); } };", []),
         # overrides
         ("class M : public arm::Arm { void tick() override; };", ["arm::Base::tick/0!"]),
         ("class M : public arm::Arm { void tick(double dt) {} void g() { x.tick(); } };", ["arm::Base::tick/1!"]),
