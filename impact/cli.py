@@ -366,7 +366,12 @@ _REPOS_OR_SHIPPED = f"{_REPOS_HELP} Without it, what is shipped answers."
 
 @surface_app.command("show")
 def surface_show(
-    package: Annotated[str, typer.Argument(help="PACKAGE, PACKAGE@28.1.0, PACKAGE@jazzy or PACKAGE@jazzy@2024-08-01.")],
+    package: Annotated[
+        str,
+        typer.Argument(
+            help="PACKAGE, PACKAGE@28.1.0, PACKAGE@jazzy, PACKAGE@jazzy@2024-08-01 or PACKAGE@/opt/ros/jazzy."
+        ),
+    ],
     repos: Annotated[Path | None, typer.Option(help=_REPOS_OR_SHIPPED)] = None,
     all: Annotated[bool, typer.Option("--all", help="Members of classes, constants and macros too.")] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
@@ -382,7 +387,9 @@ def surface_show(
 @surface_app.command("diff")
 def surface_diff(
     what: Annotated[str, typer.Argument(help="A package, or the path of a clone (then without --repos).")],
-    old: Annotated[str, typer.Argument(help="A version or a distro, such as 16.0.0 or humble; of a clone a revision.")],
+    old: Annotated[
+        str, typer.Argument(help="A version, a distro, an installed prefix or a .deb; of a clone a revision.")
+    ],
     new: Annotated[str, typer.Argument(help="The same of what it is compared with.")],
     repos: Annotated[Path | None, typer.Option(help=_REPOS_OR_SHIPPED)] = None,
     packages: Annotated[list[str] | None, typer.Option(help="Of a clone, only these packages.")] = None,

@@ -533,8 +533,12 @@ def _surface(package: str, asked: str, repos: Path | None, store, jobs):
     from .report.surface import Source
     from .targets.clones import Clones
     from .targets.stored_versions import StoredVersions
+    from .targets.surface_installed import is_installed, surface_at
     from .targets.surface_store import shipped
 
+    if is_installed(asked):
+        surface, state = surface_at(package, asked)
+        return Source(asked, surface.version, asked, "installed"), state
     if repos is None:
         versions = StoredVersions(shipped())
         asked = asked or versions.newest(package)

@@ -11,7 +11,7 @@ import fnmatch
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -89,7 +89,7 @@ class BuildSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     system: what it brings by DEPENDS of catkin_package().
     commands: functions and macros; variables: besides those that every package has.
     standard: the C++ standard that its users need, 0 where nothing says. unknown: (part, why) of what cannot be told,
-    part being `targets`, `libraries`, `headers`, `commands`, `programs` or `launches`.
+    part being `targets`, `libraries`, `headers`, `commands`, `programs`, `launches` or `system`.
     """
 
     package: str
@@ -468,15 +468,20 @@ class _Surface:
             data = self.workspace.read(path)
         except OSError:
             return
-        seen: set[str] = set()
-        for action in _actions(flow_launch.extract(data, kind).actions):
-            name = plain(action.get("name"))
-            if action.kind != "argument" or name is None or name in seen or action.get("value") is not None:
-                continue
-            seen.add(name)
-            default = action.get("default")
-            text = plain(default)
-            yield name, None if default is None else "?" if text is None else text
+        yield from launch_arguments(flow_launch.extract(data, kind).actions)
+
+
+def launch_arguments(actions: Iterable[Any]) -> Iterator[tuple[str, str | None]]:
+    """Name and default of each argument that a launch file takes, as LaunchFile has them."""
+    seen: set[str] = set()
+    for action in _actions(actions):
+        name = plain(action.get("name"))
+        if action.kind != "argument" or name is None or name in seen or action.get("value") is not None:
+            continue
+        seen.add(name)
+        default = action.get("default")
+        text = plain(default)
+        yield name, None if default is None else "?" if text is None else text
 
 
 _ROS1 = {
@@ -536,7 +541,7 @@ _PARTS: tuple[tuple[str, str, Callable[[BuildSurface], dict[str, tuple[str, bool
     ("target", "targets", lambda s: {t.name: (t.kind, t.sure) for t in s.targets}),
     ("library", "libraries", lambda s: {name: ("", True) for name in s.libraries}),
     ("dependency", "", lambda s: {name: ("", True) for name in s.dependencies}),
-    ("system dependency", "", lambda s: {name: ("", True) for name in s.system}),
+    ("system dependency", "system", lambda s: {name: ("", True) for name in s.system}),
     ("command", "commands", lambda s: {name: ("", True) for name in s.commands}),
     ("variable", "commands", lambda s: {name: ("", True) for name in s.variables}),
     ("executable", "programs", lambda s: {p.name: ("", p.sure) for p in s.programs}),
