@@ -48,6 +48,8 @@ class PythonOffers:
         self._offers = offers
         self._names: dict[tuple[str, str], Names | None] = {}
         self._lost: dict[tuple, Lost | None] = {}
+        # By package and the last part of a name, the places in the line of versions around its changes.
+        self._places: dict[str, dict[str, set[int]]] = {}
 
     def lost(self, use: PythonUse, packages: Iterable[str]) -> Lost | None:
         """What is wrong with a use of a name that one of the packages may have; None for nothing that is known."""
@@ -110,7 +112,14 @@ class PythonOffers:
         parts = use.name.split(".")
         gone = next(name for n in range(1, len(parts) + 1) if names.find(name := ".".join(parts[:n])) is None)
         versions = offer.line.versions
-        for other in range(place - 1, -1, -1):
+        earlier, later = self._telling(offer, gone, place)
+        # Versions of older distros that got it meanwhile stand before those of newer ones that have not.
+        for other in later:
+            has = self._entry(offer, other, gone)
+            if has is not None:
+                return self._told("absent", offer, gone, first=versions[other], new=_shown(gone, has),
+                                  sure=not has.conditional)  # fmt: skip
+        for other in earlier:
             had = self._entry(offer, other, gone)
             if had is not None:
                 if any(self._has(package, gone) for package in self._offers.surfaces.elsewhere(gone)):
@@ -118,12 +127,20 @@ class PythonOffers:
                 instead = self._instead(offer, gone, had)
                 return self._told("removed", offer, gone, last=versions[other], first=self._next(offer, other),
                                   instead=instead, old=_shown(gone, had), sure=not had.conditional)  # fmt: skip
-        for other in range(place + 1, len(versions)):
-            has = self._entry(offer, other, gone)
-            if has is not None:
-                return self._told("absent", offer, gone, first=versions[other], new=_shown(gone, has),
-                                  sure=not has.conditional)  # fmt: skip
         return None
+
+    def _telling(self, offer: Offer, name: str, place: int) -> tuple[list[int], list[int]]:
+        """Places of the versions before and after one in which a name may be otherwise, the nearest first: those on
+        both sides of each change of a name that ends alike."""
+        if offer.package not in self._places:
+            known = self._places[offer.package] = {}
+            for changed, events in offer.line.events.get("python", {}).items():
+                parts = changed.split(".")
+                last = parts[-2] if parts[-1] in ("__init__", "__new__") and len(parts) > 1 else parts[-1]
+                known.setdefault(last, set()).update(at for event in events for at in (event.place - 1, event.place))
+        last = name.removesuffix(".__init__").rpartition(".")[2]
+        places = sorted(at for at in self._places[offer.package].get(last, ()) if at >= 0)
+        return [at for at in reversed(places) if at < place], [at for at in places if at > place]
 
     def _entry(self, offer: Offer, place: int, name: str) -> Entry | None:
         """What a name is in a stored version; None where it is not there, or that cannot be told."""
@@ -158,8 +175,8 @@ class PythonOffers:
         if here is None or not why:
             return None
         versions = offer.line.versions
-        nearest = sorted((n for n in range(len(versions)) if n != place), key=lambda n: (n > place, abs(n - place)))
-        for other in nearest:
+        earlier, later = self._telling(offer, use.name, place)
+        for other in (*earlier, *later):
             took = self._entry(offer, other, use.name)
             known = self.names(offer.package, versions[other])
             then = called_with(known, took) if known is not None and took is not None else None
@@ -184,7 +201,7 @@ class PythonOffers:
         here = entry.bound.parameters
         why = unlike(own, here)
         versions = offer.line.versions
-        for other in range(place - 1, -1, -1) if why else ():
+        for other in self._telling(offer, use.name, place)[0] if why else ():
             had = self._entry(offer, other, use.name)
             if had is None or had.bound is None or had.bound.kind != "method":
                 continue

@@ -51,6 +51,11 @@ def test_a_name_that_comes_later_is_not_there_yet(offers):
     assert (lost.state, lost.first) == ("absent", "3.0.0")
 
 
+def test_what_an_older_distro_got_and_this_one_not_yet_is_not_called_gone(offers):
+    lost = offers("2.0.0", "def f(): pass", "", "def f(): pass").lost(use("arm.f"), ["arm"])
+    assert (lost.state, lost.first) == ("absent", "3.0.0")
+
+
 @pytest.mark.parametrize("name", ["arm.always", "arm.never", "other.f"])
 def test_what_never_changed_or_never_was_is_not_spoken_of(offers, name):
     assert offers("2.0.0", "always = 1\ndef f(): pass", "always = 1").lost(use(name), ["arm"]) is None
