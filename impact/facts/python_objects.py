@@ -92,6 +92,8 @@ class Objects(Values):
         self.conditional = False
         # Tests about the interpreter or the machine that hold here.
         self.use_conditions: tuple[Condition, ...] = ()
+        # The same of calls alone.
+        self.call_conditions: tuple[Condition, ...] = ()
 
     @property
     def may_not_run(self) -> bool:
@@ -201,7 +203,7 @@ class Objects(Values):
     def note(self, type_: str, attribute: str, member: str, given: Given | None, node) -> None:
         if not type_ or (type_[0] != _OWN and _standard(type_)):
             return
-        conditions = self.use_conditions
+        conditions = self.use_conditions if given is None else (*self.use_conditions, *self.call_conditions)
         lazy = self.may_not_run
         key = (type_, attribute, member, given, conditions, lazy)
         if key not in self.raw:

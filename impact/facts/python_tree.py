@@ -330,7 +330,12 @@ class Reader(Objects):
                 caught.add("Exception" if kind is None else getattr(kind, "id", None) or getattr(kind, "attr", ""))
         covers_import = not caught.isdisjoint(_IMPORT_ERRORS)
         covers_use = covers_import or not caught.isdisjoint(_NAME_ERRORS)
+        # An except for TypeError expects that a call is refused, and nothing else of what is looked for here.
+        outside = self.call_conditions
+        refusal = "TypeError" in caught and not covers_use
+        self.call_conditions = (*outside, TRY) if refusal else outside
         self.under(node.body, TRY if covers_import else None, TRY if covers_use else None)
+        self.call_conditions = (*outside, EXCEPT) if refusal else outside
         for handler in node.handlers:
             if handler.type is not None:
                 self.visit(handler.type)
@@ -338,6 +343,7 @@ class Reader(Objects):
                 self.scope.bound.add(handler.name)
                 self.hold(handler.name, "")
             self.under(handler.body, EXCEPT if covers_import else None, EXCEPT if covers_use else None)
+        self.call_conditions = outside
         self.under(node.orelse, TRY if covers_import else None, TRY if covers_use else None)
         self.block(node.finalbody)
 

@@ -144,3 +144,19 @@ def test_arguments_that_an_include_in_xml_gives(attributes, inside, expected):
     source = f'<launch><include file="$(find p)/launch/a.launch" {attributes}>{inside}</include></launch>'
     (reference,) = extract_launch(source.encode(), "launch_xml").references
     assert reference.arguments == expected
+
+
+def test_an_except_for_type_errors_guards_calls_alone():
+    found = uses(
+        """
+        from a import C
+        c = C()
+        try:
+            c.f(1)
+            c.x
+        except TypeError:
+            c.g(2)
+        """
+    )
+    shown = {use.name: [(c.text, c.negated) for c in use.conditions] for use in found}
+    assert shown == {"a.C": [], "a.C.f": [("try", False)], "a.C.x": [], "a.C.g": [("try", True)]}
