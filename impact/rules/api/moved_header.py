@@ -1,7 +1,8 @@
 """moved-header: an included header has a new name, and the old one will go.
 
 What it does
-    Reports includes of headers that the target still installs as a deprecated forwarder.
+    Reports includes of headers that the target still installs as a deprecated forwarder, as the reviewed tables or the
+    stored surfaces of its packages say.
 
 Why it matters
     The next version, which another developer may have already, is without the old name.
@@ -22,7 +23,8 @@ Not reported
 from ...model.package import IncludeUse
 from ...model.view import View
 from ...model.workspace import Package
-from ...targets.evidence import evidence_of
+from ...targets.evidence import evidence_of, of_offered
+from ...targets.offers import Offered
 from ...targets.target import Change
 from ..cure import Replace
 from ..rule import Hit, rule
@@ -35,22 +37,40 @@ def moved_header(view: View):
         for c in view.changes("header-removed", "header-renamed", "header-moved")
         if c.state == "deprecated" and c.old
     }
+    offered: dict[str, Offered | None] = {}
     for package in view:
         for include in package.digest.includes:
-            change = moved.get(include.path)
-            if change is None or not view.active(include.conditions) or view.workspace.provides_header(include.path):
+            path = include.path
+            change = moved.get(path)
+            if change is None and path not in offered:
+                offered[path] = _deprecated(view, path)
+            evidence = evidence_of(change) if change is not None else None
+            if change is None and (found := offered[path]) is not None:
+                change, evidence = _change(found), of_offered(found)
+            if change is None or not view.active(include.conditions) or view.workspace.provides_header(path):
                 continue
             yield Hit(
                 include.at,
-                include.path,
-                f"`{include.path}` is deprecated in {change.package} {change.version}".strip(),
+                path,
+                f"`{path}` is deprecated in {change.package} {change.version}".strip(),
                 f"include `{change.new}`" + (f", there since {change.since}" if change.since else "")
                 if change.new
                 else "",
                 package.name,
                 fix=respelt(view, package, include, change),
-                evidence=evidence_of(change),
+                evidence=evidence,
             )
+
+
+def _deprecated(view: View, path: str) -> Offered | None:
+    """A header that warns in the target's version of who provides it, by the stored surfaces."""
+    owners = [p.name for p in view.header(path) if p.kind == "ros" and p.name not in view.workspace.packages]
+    found = view.offers.find("header", path, owners)
+    return found if found is not None and found.state == "deprecated" and found.sure else None
+
+
+def _change(found: Offered) -> Change:
+    return Change("header-renamed", found.package, found.name, found.instead, "deprecated", found.version, "", "")
 
 
 def respelt(view: View, package: Package, include: IncludeUse, change: Change) -> tuple[Replace, ...]:
