@@ -97,14 +97,13 @@ class Offers:
 
 
 class Offer:
-    """One package on one target. stored: the version that stands for the target's; exact: it is the same, read at its
-    tag."""
+    """One package on one target. stored: the version that stands for the target's; exact: it is the same."""
 
     def __init__(self, offers: Offers, package: str, version: str, line: Line, place: int):
         self._offers, self.package, self.version = offers, package, version
         self.line, self.place = line, place
         self.stored = line.versions[place]
-        self.exact = self.stored == version and self.stored not in line.approximate
+        self.exact = self.stored == version
         self._known: dict[tuple[str, str], Offered | None] = {}
 
     def get(self, side: str, name: str) -> Offered | None:
@@ -147,8 +146,6 @@ class Offer:
         else:
             state = "removed" if past else "absent"
         sure = all(t.sure >= 1 for event in deciding for t in event.told)
-        if any(versions[event.place] in self.line.approximate for event in deciding):
-            sure = False
         if not self.exact and future and future[0].place == self.place + 1:
             # Which of the versions between the two stored ones made the next change is not known.
             sure = False

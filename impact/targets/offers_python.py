@@ -71,8 +71,6 @@ class PythonOffers:
         return self._names[key]
 
     def _judged(self, offer: Offer, use: PythonUse) -> Lost | None:
-        if offer.stored in offer.line.approximate:
-            return None  # a branch may hold something else than the release
         lost = self._at(offer, use, offer.place)
         if lost is None or lost.state == "deprecated" or offer.exact:
             return lost

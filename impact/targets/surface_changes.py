@@ -76,8 +76,10 @@ class Line(msgspec.Struct, frozen=True, array_like=True, gc=False):
     approximate: tuple[str, ...] = ()
 
     def place(self, version: str) -> int | None:
-        """The stored version that stands for one: itself, or the newest before it; None for one older than all."""
-        found = [place for place, known in enumerate(self.versions) if at_least(version, known)]
+        """The version that stands for one: itself, or the newest before it that was read at its tag; None for one older
+        than all."""
+        read = (place for place, known in enumerate(self.versions) if known not in self.approximate)
+        found = [place for place in read if at_least(version, self.versions[place])]
         return found[-1] if found else None
 
 

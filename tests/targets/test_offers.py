@@ -158,9 +158,11 @@ def test_a_version_that_is_not_stored_is_sure_only_between_equal_ones(store):
     assert Offers(target(arm="0.1.0"), surfaces).package("arm") is None
 
 
-def test_a_branch_is_not_sure(store):
+def test_a_branch_answers_for_no_release(store):
     surfaces = store(surface("arm", "1.0.0", "void f();"), surface("arm", "2.0.0"), approximate=("2.0.0",))
-    assert not Offers(target(arm="2.0.0"), surfaces).package("arm").get("c++", "f").sure
+    package = Offers(target(arm="2.0.0"), surfaces).package("arm")
+    assert (package.stored, package.exact) == ("1.0.0", False)
+    assert (package.get("c++", "f").state, package.get("c++", "f").sure) == ("changed", False)
 
 
 def test_generations_of_ros_have_lines_of_their_own(store):
