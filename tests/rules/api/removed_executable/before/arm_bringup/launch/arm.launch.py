@@ -7,8 +7,8 @@ from launch_ros.substitutions import FindPackageShare
 
 
 def generate_launch_description():
-    navigation = PathJoinSubstitution([FindPackageShare('nav2_bringup'), 'launch', 'rviz_launch.py'])
+    driver = PathJoinSubstitution([FindPackageShare('ur_robot_driver'), 'launch', 'ur_control.launch.py'])
     return LaunchDescription([
         Node(package='controller_manager', executable='spawner.py', arguments=['arm_controller']),
-        IncludeLaunchDescription(PythonLaunchDescriptionSource(navigation), launch_arguments={'use_namespace': 'true', 'namespace': 'arm'}.items()),
+        IncludeLaunchDescription(PythonLaunchDescriptionSource(driver), launch_arguments={'ur_type': 'ur5e', 'use_fake_hardware': 'true'}.items()),
     ])
