@@ -96,14 +96,15 @@ class Changes:
 
     def __init__(self, lines: Callable[[str], Mapping[int, Line]]):
         self._lines = lines
-        self._known: dict[str, Known | None] = {}
+        self._known: dict[tuple[str, int], Known | None] = {}
 
-    def known(self, package: str) -> Known | None:
-        """What of a package is not the same in all its versions."""
-        if package not in self._known:
-            lines = self._lines(package)
-            self._known[package] = _known(package, lines.values()) if lines else None
-        return self._known[package]
+    def known(self, package: str, ros: int = 0) -> Known | None:
+        """What of a package is not the same in all its versions of a ROS generation (0: of any)."""
+        key = package, ros
+        if key not in self._known:
+            lines = [line for generation, line in self._lines(package).items() if ros in (0, generation)]
+            self._known[key] = _known(package, lines) if lines else None
+        return self._known[key]
 
 
 _INTERNAL = frozenset(("detail", "details", "internal", "impl", "operator"))
@@ -177,9 +178,10 @@ def _name(package: str, events: Iterable[Event], known: Name | None) -> Name:
 
 
 class Vocabulary:
-    """What the files of a package (own) can name of some others: changing names, and all classes with their bases."""
+    """What the files of a package (own) can name of some others: changing names, and all classes with their bases. ros:
+    the generation that it is built for, 0 for both."""
 
-    def __init__(self, packages: Iterable[str], own: str, changes: Changes):
+    def __init__(self, packages: Iterable[str], own: str, changes: Changes, ros: int = 0):
         self.names: dict[str, Name] = {}
         self.by_last: dict[str, tuple[str, ...]] = {}
         self.classes: dict[str, str] = {}
@@ -187,9 +189,12 @@ class Vocabulary:
         self._known: dict[str, Known] = {}
         self._members: dict[tuple[str, str], tuple[str, tuple[str, ...]] | None] = {}
         self._speakers: dict[str, frozenset[str]] = {}
+        self._constructors: dict[str, tuple[str, ...]] = {}
+        self._of_classes: dict[str, bool] = {}
+        self._around: dict[str, tuple[bool, frozenset[str]]] = {}
         waiting = list(packages)
         for package in waiting:  # classes of other packages come along with what is derived from them
-            known = changes.known(package) if package not in self._known and package != own else None
+            known = changes.known(package, ros) if package not in self._known and package != own else None
             if known is not None:
                 self._add(package, known)
                 waiting.extend(known.heads)
@@ -228,13 +233,33 @@ class Vocabulary:
             self._members[key] = found
         return self._members[key]
 
-    def can_be_meant(self, word: str, near: frozenset[str]) -> bool:
-        """Whether a word can be the last part of a changing name in a file that these words stand in, or in what it
-        includes: the class or namespace around the name, or a class that is derived from it, has to be there too."""
-        return any(
-            not owner or not near.isdisjoint(self.speakers(owner))
-            for owner in (name.rpartition("::")[0] for name in self.by_last[word])
-        )
+    def constructors(self, word: str) -> tuple[str, ...]:
+        """Changing constructors of classes whose name ends so."""
+        known = self._constructors.get(word)
+        if known is None:
+            ending = f"::{word}::{word}"
+            known = tuple(name for name in self.by_last[word] if f"::{name}".endswith(ending))
+            self._constructors[word] = known
+        return known
+
+    def of_classes(self, word: str) -> bool:
+        """Whether a member of a class is so called."""
+        known = self._of_classes.get(word)
+        if known is None:
+            known = any(name.rpartition("::")[0] in self.classes for name in self.by_last[word])
+            self._of_classes[word] = known
+        return known
+
+    def can_be_meant(self, word: str, near: Iterable[frozenset[str]]) -> bool:
+        """Whether a word can be the last part of a changing name in a file. near: the words of the file, and of each
+        that it includes: the class or namespace around the name, or a class that is derived from it, has to be there
+        too."""
+        around = self._around.get(word)
+        if around is None:
+            owners = [name.rpartition("::")[0] for name in self.by_last[word]]
+            speakers = frozenset().union(*(self.speakers(owner) for owner in owners if owner))
+            around = self._around[word] = "" in owners, speakers
+        return around[0] or any(not words.isdisjoint(around[1]) for words in near)
 
     def speakers(self, owner: str) -> frozenset[str]:
         """Last parts of the classes that may have what a class has: one of them stands wherever a member of it is

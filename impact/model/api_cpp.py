@@ -246,11 +246,9 @@ class ApiUses:
             if known.what not in ("macro", "function", "enumerator") or "_" not in word or self._own_name(word):
                 return None
             return self._use(word, at, known.package in self.heads, ())
-        for told_by in self._texts:
-            full = told_by.using.get(word)
-            if full is not None:
-                full = next(iter(self._meant(full)), full)
-                return self._use(full, at, True, ()) if full in names else None
+        full = self._using.get(word)
+        if full is not None:
+            return self._use(full, at, True, ()) if full in names else None
         inner = self._of_this(word, at)
         if inner is not None:
             return inner
@@ -262,7 +260,7 @@ class ApiUses:
 
     def _of_this(self, word: str, at: int) -> Found | None:
         """A member of the class around a place that one of its bases in another package has."""
-        if not any(name.rpartition("::")[0] in self.vocabulary.classes for name in self.vocabulary.by_last[word]):
+        if not self.vocabulary.of_classes(word):
             return None
         class_ = self._class_around(at)
         if class_ is None:
@@ -279,7 +277,7 @@ class ApiUses:
 
     def _construction(self, word: str, at: int) -> Found | None:
         """A constructor that is called where the name of its class stands."""
-        owners = [name for name in self.vocabulary.by_last[word] if f"::{name}".endswith(f"::{word}::{word}")]
+        owners = self.vocabulary.constructors(word)
         if not owners:
             return None
         begins = scopes_before(self.text, at)
@@ -335,6 +333,11 @@ class ApiUses:
         return Found(known.package, name, at, how, count, given, templated, sure, through)
 
     # -- names ---------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _using(self) -> dict[str, str]:
+        """Names that `using a::b` makes known, in full; the file's own count first."""
+        return {word: full for text in reversed(self._texts) for word, full in text.using.items()}
 
     @cached_property
     def _opened(self) -> tuple[str, ...]:

@@ -604,14 +604,15 @@ class _Join:
         packages = {i.path.partition("/")[0] for found in self.resolved.values() for to, i in found if to is None}
         packages.update(dependency.name for dependency in self.manifest.dependencies)
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
-        vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp)
+        ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
+        vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp, ros)
         changing = vocabulary.by_last.keys()
         for path, (role, _, targets, conditions) in roles.items():
             words = changing & spoken.get(path, frozenset())
             if not words:
                 continue
             reached = sorted(to for to in self.reached_files(path) if to in spoken)
-            near = spoken[path].union(*(spoken[to] for to in reached))
+            near = [spoken[path], *(spoken[to] for to in reached)]
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
             if not words:
                 continue

@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property, lru_cache
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..config import Config
 from ..facts.condition import Condition
@@ -124,6 +124,8 @@ class View:
         self._standard: dict[str, bool] = {}
         self._outward_of: dict[tuple[str, ...], tuple[frozenset[str], frozenset[str]]] = {}
         self._lost: dict[str, Misnamed | None] = {}
+        # What rules worked out for each package and several of them ask for.
+        self.worked_out: dict[tuple[str, str], Any] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
 
     def __iter__(self) -> Iterator[Package]:

@@ -136,8 +136,8 @@ def test_what_headers_tell(text, headers, found, changes):
 
 def test_a_name_is_looked_for_where_its_class_can_be_meant(changes):
     vocabulary = Vocabulary(["arm", "leg"], "mine", changes)
-    assert vocabulary.can_be_meant("went", frozenset({"Leg"}))
-    assert not vocabulary.can_be_meant("went", frozenset({"Grip"}))
+    assert vocabulary.can_be_meant("went", [frozenset(), frozenset({"Leg"})])
+    assert not vocabulary.can_be_meant("went", [frozenset({"Grip"})])
 
 
 def test_a_package_does_not_look_for_its_own_names(changes):

@@ -14,11 +14,16 @@ from ..rule import Hit
 _REVIEWED = ("api-removed", "api-renamed", "api-changed")
 
 
-def uses_judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
+def uses_judged(view: View, package: Package) -> list[tuple[CppApiUse, Judged]]:
     """What a package uses that is not on the target as the use needs it, in the order of the digest. What the workspace
     provides itself, what the target does not compile, and what reviewed tables speak of is left out."""
-    if not package.digest.cpp_api:
-        return
+    key = "C++ uses", package.name
+    if key not in view.worked_out:
+        view.worked_out[key] = list(_judged(view, package)) if package.digest.cpp_api else []
+    return view.worked_out[key]
+
+
+def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
     reviewed = {change.old for change in view.changes(*_REVIEWED)}
     reviewed.update(change.new for change in view.changes(*_REVIEWED) if change.state == "absent")
     calls = {function_of(change.old) for change in view.changes("call-changed")}
