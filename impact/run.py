@@ -674,6 +674,9 @@ def data_status(format: str = "text") -> int:
         if found.last_syncs:
             newest = ", ".join(f"{name} {day}" for name, day in sorted(found.last_syncs.items()))
             lines.append(f"newest syncs: {newest}")
+        kept = found.surfaces
+        told_of = f"{counted(kept['packages'], 'package')}, {counted(kept['versions'], 'version')}"
+        lines.append(f"surfaces of {told_of}, as of {kept['date']}, of {kept['distros']}")
         return "\n".join(lines)
 
     return _answered(answer, format, _TEXT_OR_JSON)

@@ -3,7 +3,7 @@
 import datetime
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -12,6 +12,7 @@ from . import snapshot as snapshots
 from .build.git import BuildError, Report
 from .build.write import DistroRow, Sync
 from .snapshot import Snapshot
+from .surface_store import shipped
 
 __all__ = ["BuildError", "Built", "Status", "Updated", "build", "status", "update"]
 
@@ -33,7 +34,8 @@ class Built(NamedTuple):
 class Status(NamedTuple):
     """What data is in use. sources: repository → commit. folder: where it lies; updated: it is not the shipped one.
 
-    last_syncs: newest sync known for each distro that has any; packed: bytes.
+    last_syncs: newest sync known for each distro that has any; packed: bytes. surfaces: what is shipped of
+    them (see surface_store.About), which no update changes.
     """
 
     date: str
@@ -42,6 +44,7 @@ class Status(NamedTuple):
     updated: bool
     packed: int
     last_syncs: dict[str, str]
+    surfaces: dict[str, Any]
 
 
 class Updated(NamedTuple):
@@ -66,6 +69,7 @@ def status(snapshot: Snapshot | None = None) -> Status:
         used.data != snapshots.DATA,
         (used.data / "distros.sqlite.zst").stat().st_size,
         dict(used.rows("SELECT d.name, max(s.day) FROM sync s JOIN distro d ON d.id = s.distro GROUP BY d.id")),
+        shipped().about._asdict(),
     )
 
 

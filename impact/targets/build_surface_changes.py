@@ -9,7 +9,7 @@ import msgspec
 from ..facts.surface import CLASSES, FUNCTIONS, Entity
 from ..facts.surface_python import Parameter
 from .surface import Change, State, compare
-from .surface_changes import Event, Form, Line, Overload, Told, pack
+from .surface_changes import Event, Form, Line, Overload, Told, brief, pack
 from .surface_python import UNKNOWN, Entry
 
 # What other tables tell (messages), and what a package has for itself.
@@ -42,6 +42,8 @@ class Lines:
                 if id(before) not in compared:
                     compared[id(before)] = tuple(_events(package, before, state))
                 for thing, event in compared[id(before)]:
+                    if thing not in self._events.get(key, {}) and _may_have_been(thing, event):
+                        continue
                     placed = msgspec.structs.replace(event, place=len(versions))
                     self._events.setdefault(key, {}).setdefault(thing, []).append(placed)
             versions.append(version)
@@ -62,6 +64,11 @@ class Lines:
         return {package: pack(lines) for package, lines in found.items()}
 
 
+def _may_have_been(thing: tuple[str, str], event: Event) -> bool:
+    """Whether a name of C++ seems new because the header that has it was generated before, or is not known well."""
+    return thing[0] == "c++" and all(told.kind == "added" and told.sure < 1 for told in event.told)
+
+
 def _side(change: Change) -> str:
     if change.what == "header":
         return "header"
@@ -76,7 +83,7 @@ def _events(package: str, before: State, after: State) -> Iterator[tuple[tuple[s
             continue
         name = change.name.partition("(")[0] if change.what == "parameter" else change.name
         kept = change.kind in ("deprecated", "value") or (change.kind == "default" and change.side != "c++")
-        told = Told(change.kind, change.what, change.aspects, change.now if kept else "", change.instead,
+        told = Told(change.kind, change.what, change.aspects, brief(change.now) if kept else "", change.instead,
                     change.moved_to, change.breaks, change.sure)  # fmt: skip
         each = found.setdefault((_side(change), name), [])
         if told not in each:
@@ -99,13 +106,13 @@ def _form(package: str, side: str, name: str, state: State) -> Form | None:
         called = [one for one in entities if one.kind in _CALLED and one.parameters is not None]
         overloads = dict.fromkeys(map(_overload, called))
         messages = [one.deprecated for one in entities]
-        return Form(tuple(overloads), None, None if None in messages else messages[0])
+        return Form(tuple(overloads), None, None if None in messages else brief(messages[0] or ""))
     if side == "python":
         entry = state.python(package).find(name)
         if entry is None or entry is UNKNOWN:
             return None
         deprecated = entry.bound.deprecated if entry.bound is not None else ""
-        return Form((), _parameters(package, entry, state), deprecated or None)
+        return Form((), _parameters(package, entry, state), brief(deprecated) if deprecated else None)
     return None
 
 

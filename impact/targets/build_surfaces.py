@@ -250,12 +250,10 @@ def build(
                 written[package] = Packed(*packed)
             (why,) = db.execute("SELECT failed FROM done WHERE key = ?", (key,)).fetchone()
             failed += why.split("\n") if why else []
-    write(output, written)
+    about = write(output, written, distros, default().date)
     work.unlink()
-    histories = [History(package, packed.data) for package, packed in written.items()]
-    read = sum(len(history.versions) for history in histories)
-    approximate = sum(bool(history.approximate) for history in histories)
-    return Built(len(written), read, missing, approximate, tuple(failed))
+    approximate = sum(bool(History(package, packed.data).approximate) for package, packed in written.items())
+    return Built(about.packages, about.versions, missing, approximate, tuple(failed))
 
 
 def _results(todo: list[Job], jobs: int | None, dask: str | None) -> Generator[tuple[Job, Result], None, None]:

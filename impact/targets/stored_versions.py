@@ -33,7 +33,7 @@ class StoredVersions:
 
     def find(self, package: str, asked: str) -> StoredVersion:
         """What stands for a version or a distro's version: of the latter the newest one before it, when it is not
-        there itself. Raises VersionError when there is none."""
+        there itself, at a tag. Raises VersionError when there is none."""
         lines = self.surfaces.lines(package)
         if asked[:1].isdigit():
             version = asked

@@ -83,6 +83,16 @@ class Line(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return found[-1] if found else None
 
 
+def brief(message: str) -> str:
+    """A message of a deprecation, cut where it is longer than a sentence."""
+    if len(message) <= _SENTENCE:
+        return message
+    return message[: message.rindex(" ", 0, _SENTENCE) if " " in message[:_SENTENCE] else _SENTENCE] + " ..."
+
+
+_SENTENCE = 160
+
+
 def pack(lines: Mapping[int, Line]) -> bytes:
     """Lines by generation as they are stored."""
     return zstandard.ZstdCompressor(level=19).compress(_encoder.encode(lines))

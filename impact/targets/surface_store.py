@@ -26,16 +26,18 @@ from ..facts.surface_python import Bound, ModuleSurface, Taken
 from .snapshot import DATA, SnapshotError
 from .surface import Surface
 from .surface_build import BuildSurface
-from .surface_changes import Line, unpack
+from .surface_changes import Line, brief, unpack
 from .surface_python import Module, PythonSurface
 from .version import parts
 
 _SCHEMA = """
 CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL) WITHOUT ROWID;
 CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE about(packages INTEGER, versions INTEGER, distros TEXT, date TEXT);
 """
-"""package: what its versions offer, and what changed between them (see surface_changes.py). elsewhere: names that some
-version of a package lost, and the packages, space separated, that have or had one of that name."""
+"""about: one row, see About. package: what its versions offer, and what changed between them (see surface_changes.py).
+elsewhere: names that some version of a package lost, and the packages, space separated, that have or had one of that
+name."""
 _LEVEL = 19
 # (kind, scope, value as JSON-like data)
 _Row = tuple[str, str, Any]
@@ -58,6 +60,16 @@ class Packed(NamedTuple):
 
     data: bytes
     changes: bytes
+
+
+class About(NamedTuple):
+    """What a file holds. versions: of all packages together. distros: whose versions were read, space separated. date:
+    the newest day of what was known of them."""
+
+    packages: int
+    versions: int
+    distros: str
+    date: str
 
 
 class History:
@@ -209,26 +221,50 @@ def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
 def _rows(kind: str, name: str, value: Any) -> Iterator[_Row]:
     plain = msgspec.to_builtins
     if kind == "header":
-        yield "header", name, [value.inline, value.deprecated, value.instead, value.lost]
+        yield "header", name, [value.inline, _brief(value.deprecated), value.instead, value.lost]
         for one in value.entities:
-            parameters = one.parameters
-            if parameters is not None:
-                parameters = tuple(msgspec.structs.replace(p, name="") for p in parameters)
-            yield "entity", name, _short(plain(msgspec.structs.replace(one, line=0, parameters=parameters)), _ENTITY)
+            yield "entity", name, _short(plain(_without_text(one)), _ENTITY)
         for include in value.includes:
             yield "include", name, plain(msgspec.structs.replace(include, line=0, column=0))
     elif kind == "module":
         told = value.surface
-        yield "module", name, [value.path, value.package, told.all, told.all_open, told.open, told.deprecated,
+        yield "module", name, [value.path, value.package, told.all, told.all_open, told.open, _brief(told.deprecated),
                                told.parsed]  # fmt: skip
         for bound in told.names:
-            yield "bound", name, _short(plain(msgspec.structs.replace(bound, line=0)), _BOUND)
+            bound = msgspec.structs.replace(bound, line=0, deprecated=_brief(bound.deprecated))
+            yield "bound", name, _short(plain(bound), _BOUND)
         for taken in told.imports:
             yield "taken", name, plain(msgspec.structs.replace(taken, line=0))
     elif kind == "interface":
         yield kind, name, plain(_without_lines(value))
     else:
         yield kind, name, plain(value)
+
+
+def _brief(message: str | None) -> str | None:
+    return None if message is None else brief(message)
+
+
+def _without_text(one: Entity) -> Entity:
+    """An entity without its line, names of parameters, statements and long messages."""
+    parameters = one.parameters
+    if parameters is not None:
+        parameters = tuple(
+            msgspec.structs.replace(p, name="", default=None if p.default is None else _without_statements(p.default))
+            for p in parameters
+        )
+    return msgspec.structs.replace(
+        one,
+        line=0,
+        parameters=parameters,
+        value=_without_statements(one.value),
+        deprecated=_brief(one.deprecated),
+    )
+
+
+def _without_statements(value: str) -> str:
+    """A default or a constant; of one that calls a lambda only a digest, which tells it from another."""
+    return f"[](){{{hashlib.sha1(value.encode()).hexdigest()[:8]}}}()" if "{" in value and ";" in value else value
 
 
 def _without_lines(definition: Interface) -> Interface:
@@ -356,6 +392,11 @@ class Surfaces:
         row = next(self._rows("SELECT changes FROM package WHERE name = ?", package), None)
         return unpack(row[0]) if row else {}
 
+    @cached_property
+    def about(self) -> About:
+        """What the file holds."""
+        return About(*next(self._rows("SELECT packages, versions, distros, date FROM about")))
+
     def elsewhere(self, name: str) -> tuple[str, ...]:
         """The packages that have, or had, a name that some package lost."""
         row = next(self._rows("SELECT packages FROM elsewhere WHERE name = ?", name), None)
@@ -386,8 +427,10 @@ def shipped() -> Surfaces:
         raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
 
 
-def write(file: Path, packages: Mapping[str, Packed]) -> None:
-    """Writes packed packages; a file that is there is replaced as a whole."""
+def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (), date: str = "") -> About:
+    """Writes packed packages; a file that is there is replaced as a whole. distros, date: see About."""
+    versions = sum(len(History(name, packed.data).versions) for name, packed in packages.items())
+    about = About(len(packages), versions, " ".join(distros), date)
     file.parent.mkdir(parents=True, exist_ok=True)
     fresh = file.with_name(f"{file.name}.new")
     fresh.unlink(missing_ok=True)
@@ -398,9 +441,11 @@ def write(file: Path, packages: Mapping[str, Packed]) -> None:
             "INSERT INTO package VALUES(?, ?, ?)", ((name, *packed) for name, packed in sorted(packages.items()))
         )
         db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_elsewhere(packages).items()))
+        db.execute("INSERT INTO about VALUES(?, ?, ?, ?)", about)
         db.commit()
         db.execute("VACUUM")
     fresh.replace(file)
+    return about
 
 
 def _elsewhere(packages: Mapping[str, Packed]) -> dict[str, str]:

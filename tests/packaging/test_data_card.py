@@ -10,6 +10,7 @@ import yaml
 import zstandard
 from rosimpact.impact.targets.changes import all_rows, transitive_includes
 from rosimpact.impact.targets.snapshot import DATA
+from rosimpact.impact.targets.surface_store import shipped
 
 CARD = (Path(__file__).parents[2] / "DATA.md").read_text(encoding="utf-8")
 SNAPSHOT = json.loads((DATA / "snapshot.json").read_text())
@@ -63,6 +64,25 @@ def test_date_and_sources_are_those_of_the_snapshot():
 def test_counts_are_those_of_the_tables(tables, table, said):
     found = re.search(said, CARD)
     assert found and int(found[1].replace(",", "")) == tables[table]
+
+
+def test_surfaces_are_counted():
+    about = shipped().about
+    said = re.search(
+        r"`surfaces.sqlite` holds ([\d,]+) packages in ([\d,]+) versions, each that ([\w,\s]+?) released", CARD
+    )
+    assert said
+    assert [int(number.replace(",", "")) for number in said.groups()[:2]] == [about.packages, about.versions]
+    assert [name for name in re.findall(r"\w+", said[3]) if name != "and"] == about.distros.split()
+    size = re.search(r"^\| `surfaces.sqlite` \|.*\| ([\d.]+) MB \|$", CARD, re.MULTILINE)
+    assert size and float(size[1]) == pytest.approx((DATA / "surfaces.sqlite").stat().st_size / 1e6, abs=0.06)
+    assert (DATA / "surfaces.sqlite").stat().st_size <= 12_000_000
+
+
+def test_all_that_is_shipped_is_summed():
+    said = re.search(r"^([\d.]+) MB in all", CARD, re.MULTILINE)
+    assert said
+    assert float(said[1]) == pytest.approx(sum(path.stat().st_size for path in DATA.iterdir()) / 1e6, abs=0.1)
 
 
 def test_library_versions_are_counted():

@@ -11,6 +11,7 @@ from rosimpact.impact.targets.build.git import BuildError
 from rosimpact.impact.targets.build_data import build, status, update
 from rosimpact.impact.targets.distro import DistroTarget
 from rosimpact.impact.targets.snapshot import Snapshot
+from rosimpact.impact.targets.surface_store import shipped
 
 INDEX = """\
 %YAML 1.1
@@ -319,6 +320,7 @@ def test_update_adds_newer_syncs_and_rules(built, online, tmp_path):
     assert DistroTarget("groovy", data=after).version("roscpp") == "1.2.0"
     assert status(after).updated
     assert status(after).last_syncs == {"humble": "2022-10-01"}
+    assert status(after).surfaces == shipped().about._asdict()
 
 
 def test_update_tells_what_failed_and_keeps_the_rest(built, online, tmp_path):

@@ -48,10 +48,11 @@ def versions(tmp_path):
         ("humble", (HUMBLE, HUMBLE, False)),
         ("humble@2024-03-01", (EARLY, EARLY, False)),
         (HUMBLE, (HUMBLE, HUMBLE, False)),
-        # A branch was read for it.
-        ("jazzy", (JAZZY, JAZZY, True)),
+        # A branch was read for it, which answers for no distro.
+        (JAZZY, (JAZZY, JAZZY, True)),
         # The newest before what it has.
-        ("kilted", (DistroTarget("kilted").version("rclcpp"), JAZZY, True)),
+        ("jazzy", (JAZZY, HUMBLE, True)),
+        ("kilted", (DistroTarget("kilted").version("rclcpp"), HUMBLE, True)),
     ],
 )
 def test_what_stands_for_what(versions, asked, found):
@@ -74,7 +75,7 @@ def test_what_does_not(versions, package, asked, why):
 
 
 def test_packages_that_were_released_together_are_seen_together(versions):
-    (_, before), (_, after) = (versions.surface("rclcpp", asked) for asked in ("humble", "jazzy"))
+    (_, before), (_, after) = (versions.surface("rclcpp", asked) for asked in ("humble", JAZZY))
     changes = compare(before.surfaces["rclcpp"], after.surfaces["rclcpp"], before, after)
     assert [(c.kind, c.name, c.moved_to) for c in changes] == [("moved", "f", "rclcpp_action")]
 

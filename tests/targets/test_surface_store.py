@@ -86,13 +86,28 @@ def test_nothing_but_facts_is_stored():
     assert b"secret" not in plain and b"told" not in plain and b"count_of_things" not in plain
 
 
+def test_statements_and_long_messages_are_not_stored():
+    message = "no more of this, " * 20
+    lambda_ = "[](){ int told = 1; return told; }()"
+    code = f"[[deprecated(\"{message}\")]] void f(int n = {lambda_}, char c = ';');"
+    history = stored(surface("1.0.0", code))
+    (one,) = (e for _, h in history.surface("1.0.0").headers for e in h.entities)
+    assert message.startswith(one.deprecated.removesuffix(" ...")) and 100 < len(one.deprecated) <= 164
+    assert "told" not in one.parameters[0].default and one.parameters[1].default == "';'"
+    # Another lambda is another default still.
+    changed = stored(surface("2.0.0", code.replace("told", "tale"))).surface("2.0.0")
+    assert [(c.kind, c.name) for c in compare(history.surface("1.0.0"), changed)] == [("default", "f")]
+
+
 def test_a_file_of_packages(tmp_path):
     file = tmp_path / "surfaces.sqlite"
     one = surface("1.0.0")
     lines = Lines()
     lines.add("arm", "1.0.0", (2,), State({"arm": one}))
-    write(file, {"arm": Packed(pack([Stored("1.0.0", True, one)]), lines.packed()["arm"])})
+    arm = Packed(pack([Stored("1.0.0", True, one)]), lines.packed()["arm"])
+    about = write(file, {"arm": arm}, ("humble", "jazzy"), "2026-08-22")
     surfaces = Surfaces(file)
+    assert surfaces.about == about == (1, 1, "humble jazzy", "2026-08-22")
     assert surfaces.packages == {"arm"}
     assert surfaces.history("arm").approximate == {"1.0.0"}
     assert {generation: line.versions for generation, line in surfaces.lines("arm").items()} == {2: ("1.0.0",)}
