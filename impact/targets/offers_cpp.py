@@ -10,6 +10,7 @@ from typing import NamedTuple
 from ..facts.usage import arguments_at
 from .offers import Offer, Offered, Offers, declarations
 from .surface_changes import Form, Overload
+from .version import at_least
 
 
 class Judged(NamedTuple):
@@ -45,10 +46,15 @@ def judged(offers: Offers, package: str, name: str, how: str, arguments: int, gi
 
 def _between(offer: Offer, offered: Offered) -> bool:
     """Whether the target's version lies before the first stored one with the next change, and may have it already."""
-    if offer.exact or offer.place + 1 >= len(offer.line.versions):
+    if offer.exact:
         return False
-    following = offer.line.versions[offer.place + 1]
-    return following in (offered.coming, offered.first if offered.state == "absent" else "", offered.gone_in)
+    versions = offer.line.versions
+    newer = next((n for n, known in enumerate(versions) if not at_least(offer.version, known)), len(versions))
+    following = versions[offer.place + 1 : newer + 1]
+    return any(
+        version in following
+        for version in (offered.coming, offered.first if offered.state == "absent" else "", offered.gone_in)
+    )
 
 
 def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
