@@ -59,6 +59,8 @@ def _between(offer: Offer, offered: Offered) -> bool:
 
 def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
     name = offered.name
+    if not offered.sure or _by_macro(offers, offered):
+        return None  # headers that are made or brought while building may have it
     if any(other != offered.package and offers.there("c++", name, other) for other in offers.surfaces.elsewhere(name)):
         return None
     if how == "override":
@@ -67,7 +69,7 @@ def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
         return Judged("override", offered, True, offered.sure) if virtual else None
     if _is_alias(offers, offered.package, name):
         return None
-    sure = offered.sure
+    sure = True
     if offered.state == "absent":
         offer = offers.package(offered.package)
         owner = name.rpartition("::")[0]
@@ -79,6 +81,15 @@ def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
     elif offered.what in ("constructor", "destructor"):
         return None
     return Judged("removed" if offered.state == "removed" else "absent", offered, offered.state == "removed", sure)
+
+
+_POINTER = re.compile(r"(?:Const|Shared|Unique|Weak)*Ptr\Z")
+
+
+def _by_macro(offers: Offers, offered: Offered) -> bool:
+    """Whether a name is one that macros of other packages declare: a pointer to a class that is still there."""
+    class_ = _POINTER.sub("", offered.name)
+    return class_ != offered.name and offers.there("c++", class_, offered.package)
 
 
 def _known(offers: Offers, class_: str) -> bool:

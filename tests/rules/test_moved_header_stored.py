@@ -23,7 +23,7 @@ ament_package()
 
 @pytest.mark.parametrize(("target", "told"), [("foxy", False), ("galactic", True)])
 def test_a_header_that_warns_since_galactic(tmp_path, target, told):
-    """rosidl_typesupport_cpp/type_support_map.h forwards to rosidl_typesupport_c since 1.2.0, with a warning."""
+    """rosidl_typesupport_cpp/type_support_map.h forwards to rosidl_typesupport_c since 1.1.0, with a warning."""
     (tmp_path / "src").mkdir()
     (tmp_path / "package.xml").write_text(MANIFEST)
     (tmp_path / "CMakeLists.txt").write_text(CMAKE)
@@ -31,5 +31,5 @@ def test_a_header_that_warns_since_galactic(tmp_path, target, told):
     options = Options(targets=(target,), select=("moved-header",), cache=tmp_path / "cache", jobs=1)
     found = check(tmp_path, options).findings
     assert [(f.line, f.help, f.evidence is not None and f.evidence.first) for f in found] == (
-        [(1, "include `rosidl_typesupport_c/type_support_map.h`", "1.2.1")] if told else []
+        [(1, "include `rosidl_typesupport_c/type_support_map.h`", "1.1.0")] if told else []
     )

@@ -9,8 +9,8 @@ Why it breaks
     CMake stops at an unknown command or target; an unknown variable is empty and the build fails later.
 
 Severity
-    error for commands and targets that are surely reached; warning for variables, under conditions that are not known,
-    and where the exports of the target's version cannot be told whole.
+    error for commands and targets that are surely reached; warning for variables, which only the table tells of, under
+    conditions that are not known, and where the exports of the target's version cannot be told whole.
 
 Example
     ament_target_dependencies(node rclcpp)      # removed in ament_cmake 2.8.5
@@ -67,7 +67,8 @@ def _by_surfaces(view: View, package: Package, names: list[tuple]) -> Iterator[H
     own = {target.name for one in view.workspace for target in one.build.targets}
     places: dict[tuple[str, str], tuple[At, bool]] = {}
     for name, at, conditions, kind in names:
-        if kind == "target" and ("::" not in name or "$" in name or name in own):
+        # A variable may be set in more ways than its package shows.
+        if kind == "variable" or (kind == "target" and ("::" not in name or "$" in name or name in own)):
             continue
         if not view.active(conditions):
             continue
@@ -79,7 +80,7 @@ def _by_surfaces(view: View, package: Package, names: list[tuple]) -> Iterator[H
         packages = [name.partition("::")[0]] if kind == "target" else list(found)
         lost = lacking(view, kind, name, packages)
         if lost is not None:
-            severity = "error" if certain and lost.sure and kind != "variable" else "warning"
+            severity = "error" if certain and lost.sure else "warning"
             yield Hit(
                 at, name, lost.message, lost.help, package.name, severity=severity, evidence=of_offered(lost.offered)
             )

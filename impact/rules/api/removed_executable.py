@@ -9,9 +9,9 @@ Why it breaks
     not declared has no effect in ROS 2, and stops roslaunch.
 
 Severity
-    error for what is started or included in every run; warning for what stands under a condition, for arguments, for
-    tests, and where something about the target's version is guessed; note in examples, and for launch files of ROS 1
-    that a package still carries along.
+    error for what is started or included in every run of ROS 2; warning for what stands under a condition, for
+    arguments, for tests, where something about the target's version is guessed, and in ROS 1, where releases carry many
+    a launch file that nobody starts any more; note in examples, and for launch files of ROS 1 in a package of ROS 2.
 
 Example
     Node(package='controller_manager', executable='spawner.py')     # gone in controller_manager 2.0
@@ -54,7 +54,8 @@ def removed_executable(view: View):
 def _lost(view: View, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Hit]:
     found = lacking(view, side, name, (use.reference.package,))
     if found is not None:
-        severity = severity_of(use.role, certain=not use.reference.conditional, sure=found.sure)
+        certain = view.target.ros == 2 and not use.reference.conditional
+        severity = severity_of(use.role, certain=certain, sure=found.sure)
         if view.target.ros == 2 and name.endswith((".launch", ".launch.xml")):
             severity = "note"
         yield Hit(
@@ -82,8 +83,7 @@ def _arguments(view: View, package: str, use: ReferenceUse, path: str) -> Iterat
             continue
         lost = found.offered
         have = f"no longer has an argument `{name}`" if lost.state != "absent" else f"has no argument `{name}` yet"
-        certain = view.target.ros == 1 and not reference.conditional
-        severity = severity_of(use.role, certain=certain, sure=found.sure)
+        severity = severity_of(use.role, certain=False, sure=found.sure)
         yield Hit(
             use.at, f"{path} {name}", f"`{path}` of {lost.package} {lost.version} {have}",
             package=package, severity=severity, evidence=of_offered(lost),
