@@ -173,8 +173,9 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     place. standards: every one, with its place and conditions. standard_default_only: it is only set where the user or
     a toolchain has not chosen one. standard_by_flag: by -std= flags alone, so that CMake adds what linked targets ask
     for only where the compiler's default is lower. project_by_variable: its CMakeLists.txt calls targets after
-    ${PROJECT_NAME} rather than by the project's name. macros: what is given to the compiler with -D. message_files: (path, at) of add_message_files and friends.
-    unresolved: (place, reason) of what could not be told. files: the CMake files read, relative to the root."""
+    ${PROJECT_NAME} rather than by the project's name. macros: what is given to the compiler with -D. message_files:
+    (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told. files: the CMake
+    files read, relative to the root."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None

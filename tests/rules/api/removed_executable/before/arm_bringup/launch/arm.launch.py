@@ -10,5 +10,6 @@ def generate_launch_description():
     driver = PathJoinSubstitution([FindPackageShare('ur_robot_driver'), 'launch', 'ur_control.launch.py'])
     return LaunchDescription([
         Node(package='controller_manager', executable='spawner.py', arguments=['arm_controller']),
-        IncludeLaunchDescription(PythonLaunchDescriptionSource(driver), launch_arguments={'ur_type': 'ur5e', 'use_fake_hardware': 'true'}.items()),
+        IncludeLaunchDescription(PythonLaunchDescriptionSource(driver),
+                                 launch_arguments={'ur_type': 'ur5e', 'use_fake_hardware': 'true'}.items()),
     ])
