@@ -73,7 +73,8 @@ def test_a_target_more_takes_nothing_away():
     both = {
         (f.rule, f.path, f.line, f.subject)
         for f in check(EXAMPLE, Options(targets=("jazzy", "humble"))).findings
-        if "jazzy" in f.targets
+        # That no spelling serves all targets is only said of several.
+        if "jazzy" in f.targets and f.rule != "unguarded-split"
     }
     assert alone == both
 

@@ -435,7 +435,7 @@ def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (
     fresh = file.with_name(f"{file.name}.new")
     fresh.unlink(missing_ok=True)
     with closing(sqlite3.connect(fresh)) as db:
-        db.execute("PRAGMA page_size=4096")
+        db.execute("PRAGMA page_size=512")  # each packed value ends in a page that it fills in part
         db.executescript(_SCHEMA)
         db.executemany(
             "INSERT INTO package VALUES(?, ?, ?)", ((name, *packed) for name, packed in sorted(packages.items()))

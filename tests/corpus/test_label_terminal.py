@@ -65,7 +65,9 @@ class Terminal:
             stdin=theirs,
             stdout=theirs,
             stderr=theirs,
-            env={**os.environ, "TERM": "xterm-256color", "LANG": "C.UTF-8", **environment},
+            # What the tests run in may have told its own size.
+            env={k: v for k, v in os.environ.items() if k not in ("LINES", "COLUMNS")}
+            | {"TERM": "xterm-256color", "LANG": "C.UTF-8", **environment},
             start_new_session=True,
         )
         self.raw = b""
