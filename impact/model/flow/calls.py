@@ -7,9 +7,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ...facts.flow import Call, Expr
+from ..expressions_cpp import split_at_commas
 from .code import Code, Fn, Variable, around, parts_of, tail
 from .frameworks import Frameworks, Row, Spot
-from .types import Type, parsed, split
+from .types import Type, parsed
 
 # Names that mean something else in most code: their receiver has to be known to be of the framework.
 _COMMON = frozenset(
@@ -339,7 +340,7 @@ class Calls:
 
     def template_argument(self, use: Use, number: int) -> str:
         """A template argument as written, empty when there is none."""
-        arguments = split(use.call.types) if use.call.types else []
+        arguments = split_at_commas(use.call.types) if use.call.types else []
         return arguments[number] if number < len(arguments) else ""
 
     def receiver_of(self, use: Use) -> str:

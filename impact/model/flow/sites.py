@@ -12,12 +12,13 @@ from typing import NamedTuple
 from msgspec import structs
 
 from ...facts.flow import Expr
+from ..expressions_cpp import split_at_commas
 from .calls import Calls, Use
 from .code import Code, Fn, Variable, around, parameter_of, tail
 from .defined import Defined
 from .graph import Role
 from .templates import Templates
-from .types import interface_of, interface_of_header, parsed, split
+from .types import interface_of, interface_of_header, parsed
 from .values import Value, Values, beside
 
 _HANDLES = frozenset(("handle", "image_transport", "cloud_transport"))
@@ -335,7 +336,7 @@ class Sites:
         if options is not None and options.kind == "name":
             for _, call in code.results(code.identity(options.text, fn)):
                 if "Options::" in call.callee and call.types:
-                    return interface_of(code.meant_type(split(call.types)[0], fn.source, fn.scope).name)
+                    return interface_of(code.meant_type(split_at_commas(call.types)[0], fn.source, fn.scope).name)
         kept = self.calls.kept_in(use)
         if kept is not None:
             kind = code.type_of_variable(kept, fn)

@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
+from ..expressions_cpp import split_at_commas
 from .code import Cls, Code, Fn, Source, made_in, tail
-from .types import parsed, split
+from .types import parsed
 
 _DEEPEST = 4
 
@@ -70,7 +71,7 @@ class Templates:
 
     def _of_callers(self, fn: Fn, number: int) -> Iterator[tuple[Given, Fn | None]]:
         for caller, call in self.code.callers.get(id(fn), ()):
-            types = split(call.types) if call.types else []
+            types = split_at_commas(call.types) if call.types else []
             if number < len(types):
                 yield Given(types[number], caller.source, caller.scope, "", id(caller)), caller
 

@@ -6,6 +6,8 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
+from ..expressions_cpp import split_at_commas
+
 _QUALIFIERS = re.compile(
     r"\b(?:const|constexpr|static|mutable|volatile|inline|extern|typename|struct|class|explicit|virtual|thread_local)\b"
 )
@@ -67,7 +69,7 @@ def _template(text: str) -> tuple[str, tuple[str, ...], str]:
     if start < 0:
         bracket = text.find("[")
         if bracket > 0 and text.endswith("]"):
-            return text[:bracket].strip(), tuple(split(text[bracket + 1 : -1])), ""
+            return text[:bracket].strip(), tuple(split_at_commas(text[bracket + 1 : -1])), ""
         return text, (), ""
     depth = 0
     for at in range(start, len(text)):
@@ -76,23 +78,8 @@ def _template(text: str) -> tuple[str, tuple[str, ...], str]:
         elif text[at] == ">" and text[at - 1] != "-":
             depth -= 1
             if depth == 0:
-                return text[:start].strip(), tuple(split(text[start + 1 : at])), text[at + 1 :].strip()
-    return text[:start].strip(), tuple(split(text[start + 1 :])), ""
-
-
-def split(text: str) -> list[str]:
-    """The pieces between the commas that stand in no bracket."""
-    found, depth, start = [], 0, 0
-    for at, character in enumerate(text):
-        if character in "<([{":
-            depth += 1
-        elif character in ")]}" or (character == ">" and text[at - 1 : at] != "-"):
-            depth -= 1
-        elif character == "," and depth == 0:
-            found.append(text[start:at].strip())
-            start = at + 1
-    last = text[start:].strip()
-    return [*found, last] if last or found else found
+                return text[:start].strip(), tuple(split_at_commas(text[start + 1 : at])), text[at + 1 :].strip()
+    return text[:start].strip(), tuple(split_at_commas(text[start + 1 :])), ""
 
 
 _HEADER = re.compile(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)\.h(?:pp)?\Z")
