@@ -12,11 +12,16 @@ from ...targets.evidence import Evidence
 from ...targets.offers_python import Lost
 
 
-def uses_lost(view: View, package: Package) -> Iterator[tuple[PythonApiUse, Lost]]:
+def uses_lost(view: View, package: Package) -> list[tuple[PythonApiUse, Lost]]:
     """What is used and is otherwise on the target than the use needs it, in the order of the digest; what the workspace
     provides and what reviewed tables tell is left out."""
-    if not package.digest.python_api:
-        return
+    key = "Python uses", package.name
+    if key not in view.worked_out:
+        view.worked_out[key] = list(_lost(view, package)) if package.digest.python_api else []
+    return view.worked_out[key]
+
+
+def _lost(view: View, package: Package) -> Iterator[tuple[PythonApiUse, Lost]]:
     reviewed = {change.old for change in view.changes("python-removed", "python-api") if change.old}
     patterns = {(use.at.path, use.at.line) for use in package.digest.uses if use.language == "python"}
     for found in package.digest.python_api:
