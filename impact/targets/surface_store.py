@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 import zstandard
@@ -24,11 +24,11 @@ from ..facts.interface import Interface
 from ..facts.surface import Entity, HeaderSurface
 from ..facts.surface_python import Bound, ModuleSurface, Taken
 from .snapshot import DATA, SnapshotError
-from .surface import Surface
-from .surface_build import BuildSurface
 from .surface_changes import Line, brief, unpack
-from .surface_python import Module, PythonSurface
 from .version import parts
+
+if TYPE_CHECKING:
+    from .surface import Surface
 
 _SCHEMA = """
 CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL) WITHOUT ROWID;
@@ -205,6 +205,8 @@ def _spans(places: Sequence[int], count: int) -> list[int]:
 
 def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
     """What a surface consists of: kind, name, value. Each gives rows of its own."""
+    from .surface_build import BuildSurface
+
     yield from (("header", path, header) for path, header in surface.headers)
     yield from (("module", module.name, module) for module in surface.python.modules)
     for what, listed in (("unknown", surface.python.unknown), ("unresolved", surface.python.unresolved)):
@@ -292,6 +294,11 @@ _BOUND = msgspec.to_builtins(Bound("\0", "\0", -1))
 
 
 def _surface(package: str, version: str, rows: Iterable[_Row]) -> Surface:
+    # What only changed is asked far more often than a whole version is.
+    from .surface import Surface
+    from .surface_build import BuildSurface
+    from .surface_python import Module, PythonSurface
+
     headers: dict[str, list[Any]] = {}
     modules: dict[str, list[Any]] = {}
     inside: dict[tuple[str, str], list[Any]] = {}
@@ -312,8 +319,9 @@ def _surface(package: str, version: str, rows: Iterable[_Row]) -> Surface:
         else:
             inside.setdefault((kind, scope), []).append(value)
     known = {field.name: field.type for field in msgspec.structs.fields(BuildSurface)}
+    empty = BuildSurface("")
     given = {
-        name: msgspec.convert(values, known[name]) if isinstance(getattr(_EMPTY, name), tuple) else values[-1]
+        name: msgspec.convert(values, known[name]) if isinstance(getattr(empty, name), tuple) else values[-1]
         for name, values in build.items()
     }
 
@@ -364,9 +372,6 @@ def _surface(package: str, version: str, rows: Iterable[_Row]) -> Surface:
         guessed,
         runs_with,
     )
-
-
-_EMPTY = BuildSurface("")
 
 
 # -- the file ----------------------------------------------------------------------------------------------------------
