@@ -99,11 +99,11 @@ class PythonUses:
             bind(match.group(1), match.start(), match.group(2), self._end_of_block(match.start()))
         callbacks = re.compile(
             rf"\b(?:create_subscription|create_service|Subscriber|Service)\s*\((?:[^()]*?,)??\s*(?:\w+\s*=\s*)?{names}\s*,"
-            r"(?:[^()]|\([^()]*\))*?(?<!\w)(?:self\.)?(_*[a-z]\w*)\s*[,)]"
+            r"((?:[^()]|\([^()]*\))*)\)"
         )
         for match in callbacks.finditer(self.text):
             told = self._names[match.group(1).split(".")[0]]
-            for name in re.findall(r"(?:self\.)?(\w+)", match.group()[match.end(1) - match.start() :]):
+            for name in set(re.findall(r"(?<![\w.])(?:self\.)?([A-Za-z_]\w*)", match.group(2))):
                 for definition in re.finditer(
                     rf"^[ \t]*(?:async[ \t]+)?def[ \t]+{name}[ \t]*\(\s*(?:self\s*,\s*)?(\w+)\s*(?:,\s*(\w+)\s*)?\)",
                     self.text, re.MULTILINE,

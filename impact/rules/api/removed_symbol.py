@@ -10,9 +10,9 @@ Why it breaks
     The compiler stops with "was not declared in this scope", or Python with an AttributeError or ImportError.
 
 Severity
-    error for unguarded names in code that is built or run, ROS 2's tests in C++ included; warning in other tests, under
-    conditions that are not known, where the name stays and changed its meaning, and for the first name of a library
-    that only the newest distro lacks; note in examples and for the rest of those.
+    error for unguarded names in code that is built or run, tests in Python and ROS 2's in C++ included; warning in
+    other tests, under conditions that are not known, where the name stays and changed its meaning, and for the first
+    name of a library that only the newest distro lacks; note in examples and for the rest of those.
 
 Example
     cv::imread(path, CV_LOAD_IMAGE_ANYDEPTH)    // gone in OpenCV 4
@@ -134,7 +134,7 @@ def _reviewed(view: View) -> Iterator[Hit]:
                 if any(path.endswith(endings) for path in included.get(use.at.path, included[""])):
                     continue
             guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
-            built = view.built(use.role) if use.language == "cpp" else use.role in ("build", "run")
+            built = view.built(use.role) if use.language == "cpp" else use.role in ("build", "run", "test")
             brought_back = use.language == "python" and stood_in_for(use.text)
             sure = built and not brought_back and not guarded and change.kind != "api-changed"
             if endings and sure and included is not None:

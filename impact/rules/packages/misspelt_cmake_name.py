@@ -94,13 +94,15 @@ def _wrong_case(view: View, package):
         meant = [n for n in view.providers.spellings(f.name) if n != f.name]
         if len(meant) != 1 or not view.cmake(f.name) or meant[0] == f.name.lower():
             continue
+        # Whoever brings the module along under the other name means that one, whatever the platform has.
+        sure = f"Find{meant[0]}.cmake" in own or view.target.platform in view.providers.platforms
         yield Hit(
             f.at,
             f.name,
             f"nobody provides `{f.name}`; CMake minds the case of `{meant[0]}`",
             f"write `{meant[0]}`",
             package.name,
-            severity="error" if view.target.platform in view.providers.platforms else "warning",
+            severity="error" if sure else "warning",
             fix=(Replace(f.at.path, f.at.line, f.at.column, f.name, meant[0]),),
         )
 

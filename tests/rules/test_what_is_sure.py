@@ -1,0 +1,41 @@
+"""What is an error because nothing about it hangs on chance, where its neighbour is a warning."""
+
+from pathlib import Path
+
+import pytest
+from rosimpact.impact.check import Options, check
+
+MANIFEST = (
+    '<package format="2"><name>sled</name><version>1.0.0</version><description>sled</description>'
+    '<maintainer email="robots@example.org">Robots</maintainer><license>MIT</license>'
+    "<buildtool_depend>catkin</buildtool_depend><depend>roscpp</depend><depend>rospy</depend></package>"
+)
+CMAKE = "cmake_minimum_required(VERSION 3.0)\nproject(sled)\nfind_package(catkin REQUIRED COMPONENTS roscpp rospy)\n"
+
+
+def severities(folder: Path, rule: str, subject: str, target: str, **files: str) -> set[str]:
+    (folder / "package.xml").write_text(MANIFEST)
+    (folder / "CMakeLists.txt").write_text(CMAKE + files.pop("cmake", "") + "catkin_package()\n")
+    for path, text in files.items():
+        place = folder / path.replace("__", "/").replace("_DOT_", ".")
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(text)
+    found = check(folder, Options(targets=(target,), select=(rule,), cache=folder / "cache", jobs=1)).findings
+    return {finding.severity for finding in found if finding.subject == subject}
+
+
+@pytest.mark.parametrize(("target", "expected"), [("noetic", {"error"}), ("melodic", set())])
+def test_a_python_test_that_calls_what_is_gone(target, expected, tmp_path):
+    text = "import time, unittest\nclass Timing(unittest.TestCase):\n    def test(self):\n        time.clock()\n"
+    told = severities(tmp_path, "removed-symbol", "time.clock", target, test__timing_DOT_py=text)
+    assert told - {"note"} == expected
+
+
+@pytest.mark.parametrize(("module", "expected"), [("FindEigen", {"error"}), ("FindSkid", {"warning"})])
+def test_a_find_module_of_the_package_in_another_case(module, expected, tmp_path):
+    told = severities(
+        tmp_path, "misspelt-cmake-name", "EIGEN", "hydro",
+        cmake="list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_SOURCE_DIR}/cmake)\nfind_package(EIGEN REQUIRED)\n",
+        **{f"cmake__{module}_DOT_cmake": "set(EIGEN_FOUND TRUE)\n"},
+    )  # fmt: skip
+    assert told == expected
