@@ -207,6 +207,10 @@ class Vocabulary:
             listed = self.by_last.get(last)
             self.by_last[last] = fulls if listed is None else tuple(dict.fromkeys((*listed, *fulls)))
 
+    def knows(self, package: str) -> bool:
+        """Whether a package's names are among these."""
+        return package in self._known
+
     def bases(self, full: str) -> tuple[str, ...]:
         """The bases of a class."""
         return self._known[self.classes[full]].bases.get(full, ()) if full in self.classes else ()

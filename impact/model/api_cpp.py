@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ..facts.cpp import standing
 from ..facts.usage import TEMPLATE_ARGUMENTS, arguments_at, declares_next
-from .api import CALLED, Found, Vocabulary
+from .api import CALLED, CLASSES, Found, Vocabulary
 from .expressions_cpp import (
     FAR,
     Region,
@@ -30,6 +30,7 @@ from .expressions_cpp import (
     without_templates,
 )
 
+_TYPES = CLASSES | {"alias", "enum"}
 _POINTERS = frozenset(["shared_ptr", "unique_ptr", "weak_ptr", "intrusive_ptr"])
 _MAKERS = frozenset(["make_shared", "make_unique", "allocate_shared"])
 _SEQUENCES = frozenset(["vector", "array", "deque", "list", "set", "initializer_list"])
@@ -241,8 +242,10 @@ class ApiUses:
         if _NOT_BEFORE.search(ahead) and not ahead.rstrip().endswith("typename"):
             return None
         if word in names:
-            # A macro, or a function of C; what else lies in no namespace may be anybody's.
+            # A macro, a function of C, or a type; what else lies in no namespace may be anybody's.
             known = names[word]
+            if known.what in _TYPES:
+                return self._use(word, at, True, ()) if self._is_bare_type(word, known.package, at) else None
             if known.what not in ("macro", "function", "enumerator") or "_" not in word or self._own_name(word):
                 return None
             return self._use(word, at, known.package in self.heads, ())
@@ -257,6 +260,19 @@ class ApiUses:
             if full in names and not self._own_name(word) and names[full].what not in ("method", "field"):
                 return self._use(full, at, False, ())
         return None
+
+    def _is_bare_type(self, word: str, package: str, at: int) -> bool:
+        """Whether a package's type that lies in no namespace is surely meant: outside of classes and functions, where
+        no base class has a name like it, and where nothing makes one known by another way."""
+        around = [region for region in self.told.regions if region.start <= at < region.end]
+        return (
+            package in self.heads
+            and not (word.islower() or word.isupper())
+            and all(region.kind == "namespace" for region in around)
+            and not any(self.vocabulary.knows(region.name.partition("::")[0]) for region in around)
+            and not any(text.opened or word in text.aliases or word in text.using for text in self._texts)
+            and not self._own_name(word)
+        )
 
     def _of_this(self, word: str, at: int) -> Found | None:
         """A member of the class around a place that one of its bases in another package has."""

@@ -398,7 +398,7 @@ def _renamed(gone: Sequence[_Placed], come: Sequence[_Placed]) -> list[Change]:
         by_scope[one.kind, _owner(one.name)].append(number)
         by_name[one.kind, _simple(one.name)].append(number)
     lost, found = {one.name for _, one in gone}, {one.name for _, one in come}
-    hints: list[tuple[float, int, int]] = []
+    hints: list[tuple[float, bool, int, int]] = []
     for first, (_, one) in enumerate(gone):
         simple = _simple(one.name)
         if one.kind in ("constructor", "destructor") or _owner(one.name) in lost:
@@ -409,17 +409,17 @@ def _renamed(gone: Sequence[_Placed], come: Sequence[_Placed]) -> list[Change]:
                 continue
             sure = _likeness(one, other, members_gone, members_come)
             if sure >= _SIMILAR:
-                hints.append((sure, first, second))
+                hints.append((-sure, gone[first][0] != come[second][0], first, second))
     changes: list[Change] = []
     used_old: set[int] = set()
     used_new: set[int] = set()
-    for sure, first, second in sorted(hints, key=lambda hint: (-hint[0], hint[1:])):
+    for less, _, first, second in sorted(hints):  # of what is equally alike, that in the same header
         if first in used_old or second in used_new:
             continue
         used_old.add(first)
         used_new.add(second)
         (path, one), (there, other) = gone[first], come[second]
-        changes.append(Change("renamed", one.name, one, other, path, there, (), False, round(sure, 2)))
+        changes.append(Change("renamed", one.name, one, other, path, there, (), False, round(-less, 2)))
     return changes
 
 

@@ -15,6 +15,7 @@ from rosimpact.impact.targets.surface_python import PythonSurface
 ARM = (
     """
 #define ARM_OLD(x) x
+using ArmResult = int;
 namespace arm {
 enum Mode { SLOW, OFF };
 class Old {};
@@ -78,6 +79,15 @@ def uses(text: str, changes: Changes, *headers: str) -> list[str]:
         ("void g() { arm::helper(1, h(2, 3)); }", ["arm::helper/2"]),
         ("other::Old * o; Old * p;", []),
         ("class Old {}; using namespace arm; Old * o;", []),
+        # a type in no namespace, where nothing else can be so called
+        ("namespace mine { ArmResult f() { return 0; } }", ["ArmResult"]),
+        ("ArmResult Robot::f() {}", ["ArmResult"]),
+        ("class Robot : Other { ArmResult f(); };", []),
+        ("void f() { ArmResult r; }", []),
+        ("using namespace other; ArmResult f();", []),
+        ("using other::ArmResult; ArmResult f();", []),
+        ("using ArmResult = int; ArmResult f();", []),
+        ("namespace arm { ArmResult f(); }", []),
         ("namespace arm { class Old; }", []),
         ("int x = ARM_OLD(1);", ["ARM_OLD/1"]),
         ("#define ARM_OLD(x) 2\nint x = ARM_OLD(1);", []),

@@ -109,6 +109,13 @@ def test_renames_are_hints(old, new, expected):
     assert all(0.6 <= change.sure <= 1 for change in changes if change.kind == "renamed")
 
 
+def test_of_two_that_are_alike_the_one_in_the_same_header_is_the_hint():
+    result = b"using Result = int;"
+    old, new = {"b.h": extract(result)}, {h: extract(b"namespace %c { %s }" % (h[0].encode(), result)) for h in ("a.h", "b.h")}
+    hints = [change.new.name for change in compare(old, new) if change.kind == "renamed" and change.new]
+    assert hints == ["b::Result"]
+
+
 @settings(deadline=None)
 @given(st.lists(st.sampled_from([text for pair in CASES for text in pair[:2]]), max_size=4))
 def test_nothing_changed_and_nothing_is_said(texts):
