@@ -145,7 +145,8 @@ IMPORTS = "from arm_msgs.msg import Arm\nfrom arm_msgs.srv import Start as Begin
         ("class N:\n  def s(self):\n    self.create_subscription(Arm, 'x', self.got, 1)\n"
          "  def got(self, m):\n    m.mode\n",
          ["Arm.message.mode"]),
-        ("class N:\n  def s(self):\n    self.create_subscription(Arm, topic, self.got, 1)\n  def got(self, m):\n    m.mode\n",
+        ("class N:\n  def s(self):\n    self.create_subscription(Arm, topic, self.got, 1)\n"
+         "  def got(self, m):\n    m.mode\n",
          ["Arm.message.mode"]),
         ("x = Arm.OLD\n", ["Arm.message.OLD"]),
         ("x = Begin.Request.FAST\n", ["Start.request.FAST"]),

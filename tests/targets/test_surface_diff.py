@@ -110,9 +110,9 @@ def test_renames_are_hints(old, new, expected):
 
 
 def test_of_two_that_are_alike_the_one_in_the_same_header_is_the_hint():
-    result = b"using Result = int;"
-    old, new = {"b.h": extract(result)}, {h: extract(b"namespace %c { %s }" % (h[0].encode(), result)) for h in ("a.h", "b.h")}
-    hints = [change.new.name for change in compare(old, new) if change.kind == "renamed" and change.new]
+    new = {f"{name}.h": extract(f"namespace {name} {{ using Result = int; }}".encode()) for name in "ab"}
+    changes = compare({"b.h": extract(b"using Result = int;")}, new)
+    hints = [change.new.name for change in changes if change.kind == "renamed" and change.new]
     assert hints == ["b::Result"]
 
 
