@@ -57,6 +57,7 @@ class Offers:
         self.target = target
         self._given = surfaces
         self._packages: dict[str, Offer | None] = {}
+        self._names: dict[str, frozenset[str]] = {}
 
     @cached_property
     def surfaces(self) -> Surfaces:
@@ -92,8 +93,13 @@ class Offers:
 
     def there(self, side: str, name: str, package: str) -> bool:
         """Whether the stored version that stands for the target's has a name at all."""
-        offer, history = self.package(package), self.surfaces.history(package)
-        return offer is not None and history is not None and offer.stored in history.names().get(name, ())
+        if package not in self._names:
+            offer, history = self.package(package), self.surfaces.history(package)
+            known = history.names() if offer is not None and history is not None else {}
+            self._names[package] = frozenset(
+                one for one, versions in known.items() if offer is not None and offer.stored in versions
+            )
+        return name in self._names[package]
 
 
 class Offer:

@@ -35,6 +35,17 @@ def judged(offers: Offers, package: str, name: str, how: str, arguments: int, gi
         return None
     if offered.here is None and offered.state in ("removed", "absent"):
         return _lacking(offers, offered, how)
+    found = _of_what_is_there(offers, offered, how, arguments, given)
+    if found is None or offers.there("c++", name, package):
+        return found
+    return _inherited(offers, offer, name, how, arguments, given)
+
+
+def _of_what_is_there(
+    offers: Offers, offered: Offered, how: str, arguments: int, given: tuple[str, ...]
+) -> Judged | None:
+    """The same of a name that the target's version has."""
+    package, name = offered.package, offered.name
     if offered.here is None or (how != "override" and _is_alias(offers, package, name)):
         return None
     if how == "override":
@@ -42,6 +53,19 @@ def judged(offers: Offers, package: str, name: str, how: str, arguments: int, gi
     if offered.state == "deprecated":
         return Judged("deprecated", offered, True, offered.sure)
     return _call(offered, arguments, given) if how == "call" and arguments >= 0 else None
+
+
+def _inherited(
+    offers: Offers, offer: Offer, name: str, how: str, arguments: int, given: tuple[str, ...]
+) -> Judged | None:
+    """The same of a member that the target's version has no longer, or not yet, in the class itself but in a base of
+    it: its form is that of the base's. None where the base cannot be told."""
+    class_, _, member = name.rpartition("::")
+    for base in offer.line.bases.get(class_, ()):
+        for package in dict.fromkeys((offer.package, base.partition("::")[0])):
+            if offers.there("c++", base, package):
+                return judged(offers, package, f"{base}::{member}", how, arguments, given)
+    return None
 
 
 def _between(offer: Offer, offered: Offered) -> bool:

@@ -7,6 +7,7 @@ from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.facts.surface_python import extract as module
 from rosimpact.impact.targets.build_surface_changes import Lines
 from rosimpact.impact.targets.offers import Offers
+from rosimpact.impact.targets.offers_cpp import judged
 from rosimpact.impact.targets.surface import State, Surface
 from rosimpact.impact.targets.surface_build import BuildSurface, Header, Program
 from rosimpact.impact.targets.surface_python import Module, PythonSurface
@@ -169,3 +170,30 @@ def test_generations_of_ros_have_lines_of_their_own(store):
     surfaces = store(surface("arm", "1.0.0", "void f();"), surface("arm", "2.0.0"), generations=(1,))
     assert Offers(target(ros=1, arm="2.0.0"), surfaces).package("arm").get("c++", "f").state == "removed"
     assert Offers(target(ros=2, arm="2.0.0"), surfaces).package("arm") is None
+
+
+def test_a_method_that_moved_to_a_base_is_judged_as_the_base_has_it(store):
+    inherited = "namespace arm { struct Part { virtual int tick() const; }; struct Arm : Part {}; }"
+    own = "namespace arm { struct Arm { int tick() const; }; }"
+    surfaces = store(*(surface("arm", f"{n}.0.0", code) for n, code in enumerate((inherited, own, inherited), 1)))
+
+    def override(version):
+        return judged(Offers(target(arm=version), surfaces), "arm", "arm::Arm::tick", "override", 0, ("const",))
+
+    assert override("2.0.0").kind == "override"
+    assert override("3.0.0") is None
+
+
+def test_a_call_of_what_a_base_has_is_judged_by_the_base(store):
+    own = "struct Part {{}}; struct Arm : Part {{ void move({}); }};"
+    base = "struct Part {{ void move({}); }}; struct Arm : Part {{}};"
+    codes = own.format("int"), own.format("int, int"), base.format("int, int"), base.format("int")
+    codes += (base.format("int, int, int"),)
+    surfaces = store(*(surface("arm", f"{n}.0.0", f"namespace arm {{ {code} }}") for n, code in enumerate(codes, 1)))
+
+    def call(version):
+        return judged(Offers(target(arm=version), surfaces), "arm", "arm::Arm::move", "call", 1, ())
+
+    assert (call("2.0.0").kind, call("2.0.0").offered.name) == ("arguments", "arm::Arm::move")
+    assert call("4.0.0") is None
+    assert (call("5.0.0").kind, call("5.0.0").offered.name) == ("arguments", "arm::Part::move")
