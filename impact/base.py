@@ -114,7 +114,7 @@ def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     second = code_kinds(tree) if opened.gathered.second is not None else None
     gathered = gather(tree, opened.store, jobs=jobs, second=second)
     workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.watched(opened.store), jobs)
-    views = [View(workspace, view.target, view.providers, view.config) for view in opened.views]
+    views = [View(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
     # What is installed is of no revision.
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())
 

@@ -284,7 +284,8 @@ def open_workspace(
         workspace = link(tree, gathered, store, None, memo.watched(store), options.jobs)
         gathered.problems += [*workspace.discovered.problems, *_left_out(workspace, gathered)]
         targets = choose_targets(options.targets, config, workspace, tree)
-        views = [View(workspace, chosen.target, default_providers(), config) for chosen in targets]
+        asked = frozenset(chosen.target.distro for chosen in targets)
+        views = [View(workspace, chosen.target, default_providers(), config, asked) for chosen in targets]
         installed, shelves = None, ()
         if options.install is not None:
             from . import installed as built

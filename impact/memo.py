@@ -73,7 +73,10 @@ def key(view: View, rules: Iterable[str]) -> bytes:
     config = view.config
     found.update(
         repr(
-            (code_stamp(), view.target.identity(), sorted(rules), config.private, config.underlays, config.repos)
+            (
+                *(code_stamp(), view.target.identity(), view.horizon, sorted(rules)),
+                *(config.private, config.underlays, config.repos),
+            )
         ).encode()
     )
     return found.digest()

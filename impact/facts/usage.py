@@ -90,6 +90,8 @@ _OPENED = re.compile(rb"\s*\(")
 _SCOPES = re.compile(rb"(?:[A-Za-z_]\w*::)+\Z")
 # A type at the end of a line that begins no comment.
 _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&)[ \t]+\Z")
+# The same before a variable, which may be a reference or a pointer.
+_TYPE_OF_VARIABLE = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|>)(?:\s*[&*]+\s*|[ \t]+)\Z")
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
@@ -173,6 +175,17 @@ def declares(data: bytes, function: str) -> bool:
             if found is not None and found.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
                 return True
         at = data.find(name, end)
+    return False
+
+
+def initialises(data: bytes, variable: str) -> bool:
+    """Whether a C++ file declares a variable of this name with a value: a type stands before it and `=` behind."""
+    name = re.escape(variable.encode())
+    for found in re.finditer(rb"\b" + name + rb"\s*=(?!=)", data):
+        begins = max(data.rfind(b"\n", 0, found.start()) + 1, found.start() - _FAR)
+        ahead = _TYPE_OF_VARIABLE.search(data[begins : found.start()])
+        if ahead is not None and ahead.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
+            return True
     return False
 
 

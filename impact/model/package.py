@@ -22,7 +22,7 @@ from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.python_objects import PythonUse
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, first_places, place_in, places_of_use, python_text
+from ..facts.usage import Pattern, first_places, initialises, place_in, places_of_use, python_text
 from ..targets.fields import Fields
 from .api import Changes, Vocabulary
 from .api_cpp import ApiUses
@@ -520,7 +520,8 @@ class _Join:
             if facts.words:
                 words = facts.words.split(" ")
                 for word in sorted(watched.words.intersection(words) - defined):
-                    names.append(self.bare(word, path, role, public, targets, conditions))
+                    if not initialises(self.read(path), word):  # else it is a variable of the file's own
+                        names.append(self.bare(word, path, role, public, targets, conditions))
                 for word in sorted(watched.headers_of.keys() & set(words)):
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in watched.headers_of[word]):

@@ -95,10 +95,19 @@ _LASTING = (frozenset, MappingProxyType)
 
 
 class View:
-    """One workspace on one target. providers answers for everything outside the workspace."""
+    """One workspace on one target. providers answers for everything outside the workspace. asked: the distros of all
+    targets of the same run, each of which has a view of its own."""
 
-    def __init__(self, workspace: Workspace, target: Target, providers, config: Config = _UNCONFIGURED):
+    def __init__(
+        self,
+        workspace: Workspace,
+        target: Target,
+        providers,
+        config: Config = _UNCONFIGURED,
+        asked: frozenset[str] = frozenset(),
+    ):
         self.workspace, self.target, self.providers, self.config = workspace, target, providers, config
+        self.asked = asked
         # Names of the packages that rules are to report on, all when None.
         self.part: frozenset[str] | None = None
         self._closures: dict[str, frozenset[str]] = {}
@@ -252,9 +261,16 @@ class View:
         return frozenset(found)
 
     @cached_property
-    def later_machine(self) -> Machine | None:
-        """Those of the newest long-term distro, None when this target is it or newer."""
+    def newest(self) -> Target | None:
+        """The newest long-term distro of this generation; None when this target is it or newer, or when it is asked for
+        itself, so that its own view tells of it."""
         newest = self.target.newest()
+        return None if newest is None or newest.distro in self.asked else newest
+
+    @cached_property
+    def later_machine(self) -> Machine | None:
+        """Those of the newest long-term distro, see newest."""
+        newest = self.newest
         return machine_of(newest.distro, newest.ros) if newest is not None else None
 
     @cached_property
@@ -622,7 +638,7 @@ class View:
     def later(self) -> dict[str, Change]:
         """Changes of platform libraries and Python that the newest distro of this generation has and the target has not
         yet: what breaks when this machine, or a colleague's, is updated. By old name."""
-        horizon = self.target.newest()
+        horizon = self.newest
         if horizon is None:
             return {}
         here = {(c.kind, c.package, c.old) for c in self.target.changes() if c.state == "removed"}
@@ -638,7 +654,7 @@ class View:
 
     @cached_property
     def _later_environment(self) -> Environment:
-        newest = self.target.newest() or self.target
+        newest = self.newest or self.target
 
         def version(name: str) -> str | None:
             return newest.version(name) or newest.library(name.lower())
@@ -650,8 +666,8 @@ class View:
 
     @property
     def horizon(self) -> str:
-        """Name of the newest distro of this generation."""
-        newest = self.target.newest()
+        """Name of the newest distro of this generation, see newest."""
+        newest = self.newest
         return newest.distro if newest is not None else ""
 
     @cached_property

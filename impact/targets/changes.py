@@ -33,6 +33,7 @@ class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ambiguous: bool = False
     unless: tuple[str, ...] = ()
     note: str = ""
+    ros: int = 0
 
 
 class Row(NamedTuple):
@@ -43,7 +44,8 @@ class Row(NamedTuple):
     removed_in, deprecated_in, new_since: a version, or the first ROS distro; `ros2` is all of ROS 2; empty: not known
     or not yet. new_in: where the distro's name does not tell, distro to the first version that has the new name (empty:
     never there). back_in: a version that has the old name again. ambiguous: the bare name is a common word. unless:
-    endings of include paths that bring the old name back.
+    endings of include paths that bring the old name back. ros: the generation of ROS whose versions are meant, for
+    packages that both have and number apart; 0: either.
     """
 
     kind: str
@@ -60,6 +62,7 @@ class Row(NamedTuple):
     unless: tuple[str, ...]
     source: str
     note: str
+    ros: int = 0
 
 
 class TransitiveInclude(NamedTuple):
@@ -112,7 +115,7 @@ def all_rows() -> tuple[Row, ...]:
     """Every known change. Raises SnapshotError when the data file cannot be read."""
     rows = [
         Row(g.kind, g.package, old, new, g.library, g.removed_in, g.back_in, g.deprecated_in, g.new_since, g.new_in,
-            g.ambiguous, g.unless, g.source, g.note)
+            g.ambiguous, g.unless, g.source, g.note, g.ros)
         for g in _file().changes
         for old, new in g.names.items()
     ]  # fmt: skip
@@ -159,6 +162,8 @@ def changes_in_force(target: Target, providers: Providers | None = None) -> tupl
     table = providers or default_providers()
     found = []
     for row in all_rows():
+        if row.ros and row.ros != target.ros:
+            continue
         version = version_of(row.package, row.library, target)
         if not version:
             if row.kind in ("package-removed", "package-renamed") and reached(row.removed_in, "", target):

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from .target import Target
 
 
+# Sides whose names many packages have alike (`launch/demo.launch`), so that another package's is no successor.
+_OF_EVERY_PACKAGE = frozenset(("launch file", "launch argument"))
+
+
 class Offered(NamedTuple):
     """A name that the target's version of a package does not offer as every version does.
 
@@ -159,7 +163,7 @@ class Offer:
         coming = future[0] if future and there else None
         instead = next((t.instead for t in told if t.instead), "")
         moved_to = ""
-        if state == "removed":
+        if state == "removed" and side not in _OF_EVERY_PACKAGE:
             moved_to = next((t.moved_to for t in told if t.moved_to), "") or self._elsewhere(side, name)
         return Offered(
             self.package,
@@ -203,7 +207,10 @@ def declarations(surfaces: Surfaces, package: str, side: str, name: str, version
     if side == "c++":
         return tuple(dict.fromkeys(declared(place.entity) for place in state.cpp.get(name, ())))
     entry = state.python(package).find(name)
-    return () if entry is None or entry is UNKNOWN else (f"{name}{shown(entry)}",)
+    if entry is None or entry is UNKNOWN or entry.bound is None:
+        return ()  # a module declares nothing by its name alone
+    text = shown(entry)
+    return (f"{name} = {text}" if text and not text.startswith("(") else f"{name}{text}",)
 
 
 @lru_cache(maxsize=8)

@@ -1,7 +1,7 @@
 """How uses look: calls, initialisations, members and types, told from the text of a file alone."""
 
 import pytest
-from rosimpact.impact.facts.usage import Pattern, declares, may_have, places_of_use
+from rosimpact.impact.facts.usage import Pattern, declares, initialises, may_have, places_of_use
 
 CALL = Pattern("Duration", before=r"rclcpp\s*::\s*", arguments="1", names=True)
 MEMBER = Pattern("codec", before=r"\bstreams\s*\[[^\]\n]*\]\s*->\s*", after=r"\s*->")
@@ -135,3 +135,23 @@ DECLARED = [
 @pytest.mark.parametrize(("code", "expected"), DECLARED)
 def test_a_function_that_a_file_declares(code, expected):
     assert declares(code.encode(), "turn") is expected
+
+
+INITIALISED = [
+    ("  const cv::Vec3f &turn = all[0];", True),
+    ("  auto* turn= all;", True),
+    ("std::vector<int> turn = {};", True),
+    ("  turn = 3;", False),
+    ("  table.turn = 3;", False),
+    ("  table->turn = 3;", False),
+    ("  return turn == 3;", False),
+    ("  int x = a & turn;", False),
+    ("  else turn = 3;", False),
+    ("  // int turn = 3;", False),
+    ("  int returned = 3;", False),
+]
+
+
+@pytest.mark.parametrize(("code", "expected"), INITIALISED)
+def test_a_variable_that_a_file_declares(code, expected):
+    assert initialises(code.encode(), "turn") is expected

@@ -167,6 +167,19 @@ SILENT = {
         ),
         ("run.cpp", "#if CV_VERSION_MAJOR < 4", "#if CV_VERSION_MAJOR < 5"),
     ),
+    "a variable that is called like a function of old": Silent(
+        "removed-symbol",
+        ("noetic",),
+        catkin(
+            "roscpp",
+            OPENCV,
+            "roscpp",
+            "libopencv-dev",
+            run_cpp="int x(const cv::Point* all) {\n  const cv::Point &cvPoint = all[0];\n  return cvPoint.x;\n}\n"
+            + READ % "2",
+        ),
+        ("run.cpp", "&cvPoint = all[0]", "&one = cvPoint(1, 2)"),
+    ),
     "a name in a comment and in a text": Silent(
         "removed-symbol",
         ("noetic",),

@@ -91,3 +91,12 @@ def test_gone_where_it_is_gone(kind, package, old, new, gone, there):
         removed = [c for c in found if c.state == "removed"]
         assert bool(removed) == (distro in gone.split()), distro
         assert all(c.new == new for c in removed)
+
+
+def test_numbers_of_ros2_are_not_those_of_ros1():
+    # ROS 2's sensor_msgs deprecated it in 0.9.0; ROS 1's, which is 1.13, never did.
+    def told(distro):
+        return {c.old for c in DistroTarget(distro).changes() if c.package == "sensor_msgs" and c.state == "deprecated"}
+
+    assert "sensor_msgs::convertPointCloudToPointCloud2" in told("humble")
+    assert "sensor_msgs::convertPointCloudToPointCloud2" not in told("noetic")

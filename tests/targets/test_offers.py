@@ -9,18 +9,19 @@ from rosimpact.impact.targets.build_surface_changes import Lines
 from rosimpact.impact.targets.offers import Offers
 from rosimpact.impact.targets.offers_cpp import judged
 from rosimpact.impact.targets.surface import State, Surface
-from rosimpact.impact.targets.surface_build import BuildSurface, Header, Program
+from rosimpact.impact.targets.surface_build import BuildSurface, Header, LaunchFile, Program
 from rosimpact.impact.targets.surface_python import Module, PythonSurface
 from rosimpact.impact.targets.surface_store import Packed, Stored, Surfaces, pack, write
 
 
-def surface(package, version, code="", python="", programs=(), path=""):
+def surface(package, version, code="", python="", programs=(), path="", launches=()):
     path = path or f"{package}/a.hpp"
     build = BuildSurface(
         package,
         version,
         headers=(Header(path, f"include/{path}", path),),
         programs=tuple(Program(name, f"lib/{package}", "binary") for name in programs),
+        launches=tuple(LaunchFile(path) for path in launches),
     )
     modules = (Module(package, f"{package}/__init__.py", True, module(python.encode())),) if python else ()
     return Surface(package, version, build, PythonSurface(package, modules), ((path, header(code.encode())),))
@@ -133,6 +134,23 @@ def test_what_another_package_has_now_is_moved(store):
     )
     found = Offers(target(arm="2.0.0", leg="2.0.0"), surfaces).package("arm").get("c++", "f")
     assert (found.state, found.moved_to) == ("moved", "leg")
+
+
+def test_a_launch_file_of_another_package_is_not_the_one_that_is_gone(store):
+    file = ("launch/demo.launch",)
+    surfaces = store(
+        (surface("arm", "1.0.0", launches=file), surface("leg", "1.0.0", launches=file)),
+        (surface("arm", "2.0.0"), surface("leg", "2.0.0", launches=file)),
+    )
+    found = Offers(target(arm="2.0.0", leg="2.0.0"), surfaces).package("arm").get("launch file", *file)
+    assert (found.state, found.moved_to) == ("removed", "")
+
+
+def test_declarations_of_python_modules_and_values(store):
+    surfaces = store(surface("arm", "1.0.0", python="SPEED = 2\n"))
+    package = Offers(target(arm="1.0.0"), surfaces).package("arm")
+    assert package.declarations("python", "arm", "1.0.0") == ()
+    assert package.declarations("python", "arm.SPEED", "1.0.0") == ("arm.SPEED = 2",)
 
 
 def test_what_another_repository_has_is_moved_where_the_target_has_that(store):

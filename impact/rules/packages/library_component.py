@@ -44,7 +44,7 @@ def library_component(view: View):
             names.update(found.optional_components)
             for name, at in found.components:
                 gone = gone_component(view.target, found.name, name)
-                newest = view.target.newest()
+                newest = view.newest
                 later = gone_component(newest, found.name, name) if newest is not None and not gone else None
                 if later:
                     yield Hit(

@@ -92,7 +92,7 @@ def _ros2(view: View, package, default: int | None):
         return
     have = standard_year(fixed[0])
     standards = {t.name: standard_year(t.standard) for t in package.build.targets if t.standard}
-    newest = view.target.newest()
+    newest = view.newest
     for include in package.digest.includes:
         if include.role != "build" or not include.targets or not view.certain(include.conditions):
             continue
