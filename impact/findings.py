@@ -59,7 +59,7 @@ def merge(
     order. rules: for the severity of hits that name none. line_text: the text of a line, empty when it cannot be read.
 
     Hits of the same rule, path, line, subject and severity are one finding; what two hits say about one target with
-    different words stays apart. The fix is kept when every target asked for yields the same, or where a target yields
+    different words stays apart, and so does what breaks on a target from what is still to come on another. The fix is kept when every target asked for yields the same, or where a target yields
     no such hit, when `holds(fix, target)` says that it is right there as well. Sorted by path, line, column, rule;
     fingerprinted.
     """
@@ -68,12 +68,13 @@ def merge(
     for rule_name, target, hit in hits:
         rule = rules.get(rule_name)
         severity = hit.severity or (rule.severity if rule else "warning")
-        key = (rule_name, severity, getattr(hit.at, "path", ""), getattr(hit.at, "line", 0), hit.subject)
+        ahead = hit.evidence is not None and hit.evidence.ahead
+        key = (rule_name, severity, getattr(hit.at, "path", ""), getattr(hit.at, "line", 0), hit.subject, ahead)
         names = (target,) if target else tuple(targets) or ("",)
         _place(groups.setdefault(key, []), names, hit)
     findings = [
         _finding(rule, severity, path, line, subject, by_target, order, holds)
-        for (rule, severity, path, line, subject), facts in groups.items()
+        for (rule, severity, path, line, subject, _), facts in groups.items()
         for by_target in facts
     ]
     return fingerprinted(in_order(findings), line_text)

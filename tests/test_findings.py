@@ -26,6 +26,7 @@ from rosimpact.impact.findings import (
 )
 from rosimpact.impact.model.build import At
 from rosimpact.impact.rules.rule import Edit, Finding, Hit, Rule
+from rosimpact.impact.targets.evidence import Evidence
 
 TARGETS = ("humble", "jazzy", "rolling")
 RULES = {
@@ -70,6 +71,10 @@ MERGED = [
      [("error", 1, ("jazzy",), "gone"), ("error", 2, ("rolling",), "gone")]),
     ([("jazzy", hit(severity="warning")), ("rolling", hit()), ("humble", hit(severity="warning"))],
      [("error", 1, ("rolling",), "gone"), ("warning", 1, ("humble", "jazzy"), "gone")]),
+    # what is still to come on one is not what broke on another
+    ([("humble", hit("there, and gone in tf2 0.41", evidence=Evidence("tf2", "removed", ahead=True))),
+      ("rolling", hit("gone in tf2 0.41", evidence=Evidence("tf2", "removed")))],
+     [("error", 1, ("rolling",), "gone in tf2 0.41"), ("error", 1, ("humble",), "there, and gone in tf2 0.41")]),
     # two things said of one target in one place stay two
     ([("jazzy", hit("one")), ("jazzy", hit("two"))],
      [("error", 1, ("jazzy",), "one"), ("error", 1, ("jazzy",), "two")]),

@@ -53,3 +53,21 @@ def test_an_allow_comment_silences_what_is_said_last(tmp_path):
     source.write_text(code.replace("cv_bridge.h>", "cv_bridge.h>  // rosimpact: allow(unguarded-split)", 1))
     found = check(tmp_path, Options(targets=("humble", "jazzy"), cache=tmp_path / "cache", jobs=1)).findings
     assert [finding.rule for finding in found] == ["removed-header"]
+
+
+def test_a_name_in_a_module_that_is_gone_is_not_called_deprecated(tmp_path):
+    for path in (CASES / "removed_python_name/before").rglob("*"):
+        if path.is_file():
+            copy = tmp_path / path.relative_to(CASES / "removed_python_name/before")
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(path.read_bytes())
+    # Deprecated since rclpy 4.0.0; rclpy 10.0.0 has no such module.
+    (tmp_path / "arm/arm/node.py").write_text(
+        "from rclpy.qos_event import PublisherEventCallbacks\nfrom rclpy.qos_event import UnsupportedEventTypeError\n"
+    )
+    found = check(tmp_path, Options(targets=("jazzy", "lyrical"), cache=tmp_path / "cache", jobs=1)).findings
+    assert [(f.rule, f.line, f.targets) for f in found if f.rule in ("deprecated-name", "removed-python-name")] == [
+        ("removed-python-name", 1, ("lyrical",)),
+        ("deprecated-name", 1, ("jazzy",)),
+        ("deprecated-name", 2, ("jazzy",)),
+    ]

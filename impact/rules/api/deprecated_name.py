@@ -63,6 +63,7 @@ def _reviewed(view: View) -> Iterator[Hit]:
     }
     for package in view:
         told = set()
+        gone = tuple(f"{lost.name}." for _, lost in uses_lost(view, package) if lost.state == "removed")
         for found, lost in uses_lost(view, package):
             if lost.state == "deprecated" and (found.at.path, lost.name) not in told:
                 told.add((found.at.path, lost.name))
@@ -75,6 +76,8 @@ def _reviewed(view: View) -> Iterator[Hit]:
             change = old.get(text)
             if change is None or not view.active(conditions) or not view.concerned(package, change, at.path):
                 continue
+            if f"{text}.".startswith(gone):
+                continue  # what it stands in has gone with it, and is told of
             yield Hit(
                 at,
                 text,
