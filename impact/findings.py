@@ -59,9 +59,9 @@ def merge(
     order. rules: for the severity of hits that name none. line_text: the text of a line, empty when it cannot be read.
 
     Hits of the same rule, path, line, subject and severity are one finding; what two hits say about one target with
-    different words stays apart, and so does what breaks on a target from what is still to come on another. The fix is kept when every target asked for yields the same, or where a target yields
-    no such hit, when `holds(fix, target)` says that it is right there as well. Sorted by path, line, column, rule;
-    fingerprinted.
+    different words stays apart, and so does what breaks on a target from what is still to come on another. The fix is
+    kept when every target asked for yields the same, or where a target yields no such hit, when `holds(fix, target)`
+    says that it is right there as well. Sorted by path, line, column, rule; fingerprinted.
     """
     order = {name: index for index, name in enumerate(targets)}
     groups: dict[tuple, list[dict[str, Hit]]] = {}
