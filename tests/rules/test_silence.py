@@ -167,6 +167,36 @@ SILENT = {
         ),
         ("run.cpp", "#if CV_VERSION_MAJOR < 4", "#if CV_VERSION_MAJOR < 5"),
     ),
+    "a name that another package's header may bring back": Silent(
+        "removed-symbol",
+        ("humble", "jazzy"),
+        ament(
+            NODE.format("${OpenCV_LIBS} grid_map_cv::grid_map_cv")
+            + "find_package(OpenCV REQUIRED)\nfind_package(grid_map_cv REQUIRED)\n"
+            + INSTALLED,
+            "rclcpp",
+            "libopencv-dev",
+            "grid_map_cv",
+            run_cpp="#include <grid_map_cv/GridMapCvConverter.hpp>\n#include <opencv2/imgproc.hpp>\n"
+            "int main() { return CV_RETR_LIST; }\n",
+        ),
+        ("run.cpp", "#include <grid_map_cv/GridMapCvConverter.hpp>\n", ""),
+    ),
+    "a header of C beside that of C++": Silent(
+        "removed-header",
+        ("jazzy",),
+        ament(
+            NODE.format("${std_msgs_TARGETS}")
+            + "find_package(std_msgs REQUIRED)\ntarget_include_directories(run PRIVATE include)\n"
+            + INSTALLED,
+            "rclcpp",
+            "std_msgs",
+            run_cpp='#include "sled/sled.hpp"\n' + MAIN,
+            include__sled__sled_hpp="#pragma once\n#include <rclcpp/rclcpp.hpp>\n#include <std_msgs/msg/string.h>\n"
+            "#include <std_msgs/msg/string.hpp>\n",
+        ),
+        ("include/sled/sled.hpp", "#include <std_msgs/msg/string.hpp>\n", ""),
+    ),
     "a variable that is called like a function of old": Silent(
         "removed-symbol",
         ("noetic",),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Callable, Collection, Iterable
 from typing import NamedTuple
 
@@ -49,8 +50,22 @@ def lacking(view: View, side: str, name: str, packages: Iterable[str]) -> Lackin
         if offered.state not in ("removed", "moved", "absent") or name in there(offer.build):
             return None
         open_ended = any(one == part for one, _ in offer.build.unknown)
-        found = found or Lacking(offered, *_told(offered, name), offered.sure and not open_ended)
+        alike = _alike(offer, side, name)
+        found = found or Lacking(offered, *_told(offered, name, alike), offered.sure and not open_ended)
     return found
+
+
+_ALIKE = 0.75
+"""How much of two names has to agree, as difflib measures it."""
+
+
+def _alike(offer: Offer, side: str, name: str) -> str:
+    """What the target's version has that is called most alike; empty where nothing is."""
+    if side not in ("executable", "launch file", "plugin", "target"):
+        return ""
+    _, there = _THERE[side]
+    close = difflib.get_close_matches(name, list(dict.fromkeys(there(offer.build))), 1, _ALIKE)
+    return close[0] if close else ""
 
 
 def _guessed(offer: Offer, offered: Offered) -> bool:
@@ -62,13 +77,14 @@ def _guessed(offer: Offer, offered: Offered) -> bool:
     return not offer.exact and any(event.place == offer.place + 1 for event in events)
 
 
-def _told(offered: Offered, name: str) -> tuple[str, str]:
+def _told(offered: Offered, name: str, alike: str) -> tuple[str, str]:
     where = f"{offered.package} {offered.version}"
+    has = f"it has `{alike}`" if alike else ""
     if offered.state == "absent":
-        return f"`{name}` is not yet in {where}", ""
+        return f"`{name}` is not yet in {where}", has
     if offered.state == "moved" and offered.moved_to:
         return f"`{name}` is gone in {where}", f"`{offered.moved_to}` has it now"
-    return f"`{name}` is gone in {where}", f"use `{offered.instead}`" if offered.instead else ""
+    return f"`{name}` is gone in {where}", f"use `{offered.instead}`" if offered.instead else has
 
 
 def of_another_distro(view: View, path: str, files: Collection[str]) -> bool:

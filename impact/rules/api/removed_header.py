@@ -158,7 +158,7 @@ def _in_c(view: View, path: str) -> Misnamed | None:
 def _of_cpp(view: View, package: Package, include: IncludeUse) -> str | None:
     """How bad it is that a file includes a header of C; None where the file may be about C."""
     beside = {i.path for i in package.digest.includes if i.at.path == include.at.path} - {include.path}
-    if not any(path.startswith("rclcpp") for path in beside):
+    if include.path + "pp" in beside or not any(path.startswith("rclcpp") for path in beside):
         return None
     own = any(path == include.at.path and inner for path, inner in package.digest.inner)
     if own or not is_header(include.at.path) or not view.certain(include.conditions):

@@ -152,6 +152,8 @@ def _reviewed(view: View) -> Iterator[Hit]:
                 )
                 coming.append((use, later, loud))
                 continue
+            if endings and not sure and included is not None:
+                guarded |= any(_brings_back(view, endings, p) for p in included.get(use.at.path, included[""]))
             verb = "changed" if change.kind == "api-changed" else "is gone"
             yield Hit(
                 use.at,
@@ -195,6 +197,15 @@ def _may_bring(view: View, change: Change, path: str) -> bool:
     providers = view.header(path)
     keys = {provider.name for provider in view.cmake(_CMAKE_NAME.get(change.package, change.package))}
     return not providers or any(p.kind == "ros" and not keys.isdisjoint(view.spread((p.name,))) for p in providers)
+
+
+def _brings_back(view: View, endings: tuple[str, ...], path: str) -> bool:
+    """True for headers of packages that depend on one with a header that brings the name back, where it is not known
+    what they include."""
+    if view.machine.knows(path):
+        return False
+    back = {ending.partition("/")[0] for ending in endings}
+    return any(p.kind == "ros" and not back.isdisjoint(view.installed_with(p.name)) for p in view.header(path))
 
 
 def _by_file(package) -> dict[str, set[str]]:
