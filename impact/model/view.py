@@ -18,7 +18,7 @@ from ..targets.changes import DISTROS
 from ..targets.distro import known_distros
 from ..targets.evidence import Evidence
 from ..targets.fields import History, before, default_fields, there
-from ..targets.includes import Machine, machine_of
+from ..targets.includes import Machine, machine, machine_of
 from ..targets.library import include_roots, standard_year
 from ..targets.offers import Offers
 from ..targets.offers_python import PythonOffers
@@ -239,8 +239,7 @@ class View:
     @cached_property
     def machine(self) -> Machine:
         """The headers that the target has, see targets/includes.py."""
-        target = self.target
-        return Machine(target.ros, lambda name, library: target.library(name) if library else target.version(name))
+        return machine(self.target)
 
     @cached_property
     def offers(self) -> Offers:

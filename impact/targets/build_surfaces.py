@@ -23,6 +23,7 @@ from .clones import Clone, Clones, Release, Version
 from .distro import DistroTarget, TargetError, known_distros
 from .snapshot import Snapshot, default
 from .surface import State, surfaces_of
+from .surface_includes import Including
 from .surface_store import History, Packed, Packer, Stored, write
 from .version import parts
 
@@ -178,13 +179,39 @@ def _jobs(found: Mapping[tuple[str, str], Version], generations: Mapping[tuple[s
     return sorted(jobs)
 
 
+class Packing:
+    """Packs the versions of packages as they come, oldest first."""
+
+    def __init__(self) -> None:
+        self._packers: dict[str, Packer] = {}
+        self._including: dict[str, Including] = {}
+        self._lines = Lines()
+
+    def add(
+        self, package: str, version: str, generations: Sequence[int], state: State, approximate: bool = False
+    ) -> None:
+        """The next version of a package, and the state that it belongs to. generations: of ROS that have it, 1, 2 or
+        both. approximate: a branch stands for it."""
+        surface = state.surfaces[package]
+        self._packers.setdefault(package, Packer()).add(Stored(version, approximate, surface))
+        self._including.setdefault(package, Including()).add(version, surface.headers, generations, approximate)
+        self._lines.add(package, version, generations, state, approximate)
+
+    def packed(self) -> dict[str, Packed]:
+        """The packages as they are stored."""
+        changes = self._lines.packed()
+        return {
+            package: Packed(packer.packed(), changes[package], self._including[package].packed())
+            for package, packer in self._packers.items()
+        }
+
+
 def run(job: Job) -> Result:
     """Does a job, in whatever process: reads each state once and packs the versions of each package."""
     clones = {state.clone: Clone(Path(state.place), state.clone) for state in job.states}
-    packers: dict[str, Packer] = {}
+    packing = Packing()
     failed: list[str] = []
     read: dict[str, State] = {}
-    lines = Lines()
     with Store() as store:
         for state, tree in zip(job.states, job.trees, strict=True):
             if tree not in read:
@@ -195,16 +222,11 @@ def run(job: Job) -> Result:
                     failed.append(f"{state.clone} {state.version}: {error}")
                     continue
             for package in state.packages:
-                surface = read[tree].surfaces.get(package)
-                if surface is not None:
-                    packers.setdefault(package, Packer()).add(Stored(state.version, state.approximate, surface))
-                    lines.add(package, state.version, state.generations, read[tree], state.approximate)
+                if package in read[tree].surfaces:
+                    packing.add(package, state.version, state.generations, read[tree], state.approximate)
                 elif not state.approximate:
                     failed.append(f"{package} {state.version}: not in {state.clone} at its tag")
-    changes = lines.packed()
-    return Result(
-        {package: Packed(packer.packed(), changes[package]) for package, packer in packers.items()}, tuple(failed)
-    )
+    return Result(packing.packed(), tuple(failed))
 
 
 def build(
@@ -230,7 +252,7 @@ def build(
         db.execute("CREATE TABLE IF NOT EXISTS done(key TEXT PRIMARY KEY, failed TEXT)")
         db.execute(
             "CREATE TABLE IF NOT EXISTS part"
-            "(key TEXT, package TEXT, data BLOB, changes BLOB, PRIMARY KEY(key, package))"
+            "(key TEXT, package TEXT, data BLOB, changes BLOB, includes BLOB, PRIMARY KEY(key, package))"
         )
         keys = {job.key(): job for job in todo}
         done = {key for (key,) in db.execute("SELECT key FROM done") if key in keys}
@@ -239,20 +261,23 @@ def build(
         with closing(_results(left, jobs, dask)) as ended:
             for number, (job, result) in enumerate(ended, len(done) + 1):
                 rows = ((job.key(), package, *packed) for package, packed in result.packages.items())
-                db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?, ?)", rows)
+                db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?, ?, ?)", rows)
                 db.execute("INSERT OR REPLACE INTO done VALUES(?, ?)", (job.key(), "\n".join(result.failed)))
                 db.commit()
                 if progress is not None:
                     progress(job.name, number, len(todo))
         written: dict[str, Packed] = {}
         for key in keys:
-            for package, *packed in db.execute("SELECT package, data, changes FROM part WHERE key = ?", (key,)):
+            for package, *packed in db.execute(
+                "SELECT package, data, changes, includes FROM part WHERE key = ?", (key,)
+            ):
                 written[package] = Packed(*packed)
             (why,) = db.execute("SELECT failed FROM done WHERE key = ?", (key,)).fetchone()
             failed += why.split("\n") if why else []
     about = write(output, written, distros, default().date)
     work.unlink()
-    approximate = sum(bool(History(package, packed.data).approximate) for package, packed in written.items())
+    histories = (History(package, packed.data, packed.includes) for package, packed in written.items())
+    approximate = sum(bool(history.approximate) for history in histories)
     return Built(about.packages, about.versions, missing, approximate, tuple(failed))
 
 

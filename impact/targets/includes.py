@@ -1,21 +1,31 @@
-"""Which headers each header of a library or ROS package brings along, by version: include graphs of release tags.
+"""Which headers each header of a library or ROS package brings along on a machine, over any number of steps.
 
-`data/includes.json.zst` is made by build/includes.py from the repositories' release tags. An include that a library
-writes under a condition counts as written, except for those of other operating systems.
+Headers of ROS packages are looked up in the stored surfaces; those of platform libraries, of generators, and of
+versions older than all that are stored, in `data/includes.json.zst`, which build/includes.py makes from the
+repositories' release tags. An include under a condition counts, unless the condition surely does not hold there.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from functools import cache
-from typing import NamedTuple
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
+from . import message_headers
 from .snapshot import DATA, SnapshotError
 from .standard import brought_by
-from .version import parts
+from .version import at_least, parts
+
+if TYPE_CHECKING:
+    from ..facts.condition import Condition
+    from ..facts.interface import Interface
+    from ..model.conditions import Environment
+    from .surface_includes import Included
+    from .surface_store import Surfaces
+    from .target import Target
 
 
 class Table(msgspec.Struct, frozen=True):
@@ -86,10 +96,6 @@ def default() -> Includes:
         raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
 
 
-_MESSAGE = {
-    1: re.compile(r"\w+/[A-Z]\w*\.h\Z"),
-    2: re.compile(r"\w+/(?:msg|srv|action)/(?:detail/)?[a-z0-9_]+\.hpp\Z"),
-}
 _GENERATOR = {1: ("gencpp", "<gencpp>"), 2: ("rosidl_generator_cpp", "<rosidl_generator_cpp>")}
 _CONFIG = re.compile(r"\w+/\w+Config\.h\Z")
 _RECONFIGURE = (
@@ -105,18 +111,37 @@ _RECONFIGURE = (
 
 
 class Brought(NamedTuple):
-    """What a header brings along, itself included, and of which headers among them nothing is known here."""
+    """What a header brings along, itself included, and of which headers among them nothing is known here: they are of
+    packages that no version is known of, are made while building, or are not there."""
 
     headers: frozenset[str]
     outside: frozenset[str]
 
 
-class Machine:
-    """The headers of one machine. ros: 1 or 2. version: owner and whether it is a platform library to its version."""
+class _Found(NamedTuple):
+    """A header of a package or library of some version, and what it includes."""
 
-    def __init__(self, ros: int, version: Callable[[str, bool], str | None], data: Includes | None = None):
-        self.ros, self._version, self._data = ros, version, data or default()
-        self._known: dict[str, tuple[str, ...] | None] = {}
+    owner: str
+    version: str
+    includes: tuple[str, ...]
+
+
+class Machine:
+    """The headers of one machine, each answer kept. ros: 1 or 2. version: owner and whether it is a platform library to
+    its version. surfaces: what its ROS packages offer, by default the shipped file."""
+
+    def __init__(
+        self,
+        ros: int,
+        version: Callable[[str, bool], str | None],
+        data: Includes | None = None,
+        surfaces: Surfaces | None = None,
+    ):
+        self.ros, self._version, self._data, self._given = ros, version, data or default(), surfaces
+        self._known: dict[str, _Found | None] = {}
+        self._stored: dict[str, tuple[Included, str, str] | None] = {}
+        self._interfaces: dict[str, dict[str, Interface]] = {}
+        self._holding: dict[tuple[Condition, ...], bool] = {}
         self._closures: dict[str, Brought] = {}
         self._outside: dict[frozenset[str], frozenset[str]] = {}
         self._alone: dict[str, int] = {}
@@ -131,40 +156,132 @@ class Machine:
             self._versions[owner] = self._version(owner, library) or (self._version(owner, False) if library else None)
         return self._versions[owner]
 
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """The stored surfaces."""
+        from .surface_store import shipped
+
+        return self._given or shipped()
+
     def includes(self, header: str) -> tuple[str, ...] | None:
-        """What one header includes here; None when that is not known."""
-        if header not in self._known:
-            self._known[header] = self._includes(header)
-        return self._known[header]
-
-    def _includes(self, header: str) -> tuple[str, ...] | None:
-        for owner in self._data.owners_of.get(header, ()):
-            version = self.version(owner)
-            found = self._data.included(owner, header, version) if version else None
-            if found is not None:
-                return found
-        if self.ros == 1 and _CONFIG.match(header):
-            return _RECONFIGURE
-        if _MESSAGE[self.ros].match(header):
-            owner, pattern = _GENERATOR[self.ros]
-            version = self.version(owner)
-            return self._data.included(owner, pattern, version) if version else None
-        return None
-
-    def knows(self, header: str) -> bool:
-        """True when some version of a header was read, be it here or not."""
-        return header in self._data.owners_of
+        """What one header includes here, as dependants would write it; None when that is not known."""
+        found = self._find(header)
+        return None if found is None else found.includes
 
     def owner(self, header: str) -> tuple[str, str] | None:
         """The package or library that has a header here, and its version."""
-        for owner in self._data.owners_of.get(header, ()):
+        found = self._find(header)
+        return None if found is None else (found.owner, found.version)
+
+    def knows(self, header: str) -> bool:
+        """True when some version of a header was read, be it here or not."""
+        if header in self._data.owners_of:
+            return True
+        every = map(self.surfaces.included, self.surfaces.holders(header))
+        return any(header in included.headers for included in every if included is not None)
+
+    def _find(self, header: str) -> _Found | None:
+        if header not in self._known:
+            libraries = self._data.table.libraries
+            owners = self._data.owners_of.get(header, ())
+            self._known[header] = (
+                self._in_table(header, (owner for owner in owners if owner in libraries))
+                or self._in_surfaces(header)
+                or self._in_table(header, (owner for owner in owners if not self._gone(owner, header)))
+                or self._made(header)
+            )
+        return self._known[header]
+
+    def _in_table(self, header: str, owners: Iterable[str]) -> _Found | None:
+        for owner in owners:
             version = self.version(owner)
-            if version and self._data.included(owner, header, version) is not None:
-                return owner, version
-        if self.includes(header) is not None:
-            owner = "dynamic_reconfigure" if self.ros == 1 and _CONFIG.match(header) else _GENERATOR[self.ros][0]
-            return owner, self.version(owner) or ""
+            found = self._data.included(owner, header, version) if version else None
+            if version and found is not None:
+                return _Found(owner, version, found)
         return None
+
+    def _in_surfaces(self, header: str) -> _Found | None:
+        for package in self.surfaces.holders(header):
+            stored = self._standing_for(package)
+            if stored is None:
+                continue
+            included, standing, version = stored
+            written = included.written(header, standing)
+            if written is not None:
+                active = (one for one in written if self._may_hold(one.conditions))
+                paths = dict.fromkeys(included.answer(one, header, standing) for one in active)
+                return _Found(package, version, tuple(paths))
+        return None
+
+    def _gone(self, package: str, header: str) -> bool:
+        """Whether the surface that stands for a package here lacks a header that others of its surfaces have."""
+        stored = self._standing_for(package)
+        return stored is not None and header in stored[0].headers
+
+    def _standing_for(self, package: str) -> tuple[Included, str, str] | None:
+        """What a package's headers include, the stored version that stands for the one here, and that one."""
+        if package not in self._stored:
+            version, included = self._version(package, False), self.surfaces.included(package)
+            standing = included.stands_for(version, self.ros) if version and included is not None else None
+            self._stored[package] = (included, standing, version) if included and standing and version else None
+        return self._stored[package]
+
+    def _may_hold(self, conditions: tuple[Condition, ...]) -> bool:
+        if not conditions:
+            return True
+        known = self._holding.get(conditions)
+        if known is None:
+            from ..model.conditions import all_hold
+
+            known = self._holding[conditions] = all_hold(conditions, self._environment) is not False
+        return known
+
+    @cached_property
+    def _environment(self) -> Environment:
+        from ..model.conditions import Environment
+
+        def version(name: str) -> str | None:
+            return self._version(name, False) or self._version(name.lower(), True)
+
+        return Environment(ros_version=str(self.ros), versions=version, headers=self._has)
+
+    def _has(self, header: str) -> bool | None:
+        """Whether a package has a header here, None when that is not known."""
+        there: bool | None = None
+        for package in self.surfaces.holders(header):
+            stored = self._standing_for(package)
+            if stored is None or header not in stored[0].headers:
+                continue
+            included, standing, version = stored
+            if included.written(header, standing) is not None:
+                return True
+            there = False if standing == version else there
+        return there
+
+    def _made(self, header: str) -> _Found | None:
+        """A header that is made while its package is built."""
+        if self.ros == 1 and _CONFIG.match(header):
+            owner = "dynamic_reconfigure"
+            return _Found(owner, self.version(owner) or "", _RECONFIGURE)
+        package = message_headers.package_of(header, self.ros)
+        if package is None:
+            return None
+        owner, pattern = _GENERATOR[self.ros]
+        version = self.version(owner)
+        always = self._data.included(owner, pattern, version) if version else None
+        if version is None or always is None:
+            return None
+        apart = at_least(version, "0.9.0")
+        others = message_headers.included_by(header, self.ros, self._interfaces_of(package), apart) or ()
+        return _Found(owner, version, tuple(dict.fromkeys((*always, *others))))
+
+    def _interfaces_of(self, package: str) -> dict[str, Interface]:
+        if package not in self._interfaces:
+            stored = self._standing_for(package)
+            history = self.surfaces.history(package) if stored is not None else None
+            found = history.interfaces(stored[1]) if stored is not None and history is not None else {}
+            self._interfaces[package] = found
+        return self._interfaces[package]
 
     def brought(self, header: str) -> Brought:
         """Everything that a header brings along here; of standard ones, by the machine's GCC."""
@@ -219,12 +336,28 @@ class Machine:
         return found
 
 
+def machine(target: Target) -> Machine:
+    """The headers that a target has."""
+    return Machine(target.ros, lambda name, library: target.library(name) if library else target.version(name))
+
+
 @cache
 def machine_of(distro: str, ros: int, data: Includes | None = None) -> Machine:
     """A distro as it was in the end."""
     known = data or default()
     versions = known.table.versions.get(distro, {})
-    return Machine(ros, lambda owner, library: versions.get(owner), known)
+
+    def version(owner: str, library: bool) -> str | None:
+        return versions.get(owner) or (None if library else _packages_of(distro).version(owner))
+
+    return Machine(ros, version, known)
+
+
+@cache
+def _packages_of(distro: str) -> Target:
+    from .distro import DistroTarget
+
+    return DistroTarget(distro)
 
 
 class _Offers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

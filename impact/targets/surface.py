@@ -19,6 +19,7 @@ from ..facts.interface import PRIMITIVES, Field, Interface, Section
 from ..facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, offered
 from . import surface_build, surface_diff, surface_python
 from .surface_build import BuildSurface
+from .surface_includes import compiled
 from .surface_python import UNKNOWN, Names, PythonSurface
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, 
             package.manifest.version,
             builds[name],
             surface_python.surface_of(package, facts),
-            tuple((include, surface) for include, surface in known if surface is not None),
+            tuple((include, compiled(surface)) for include, surface in known if surface is not None),
             tuple(sorted(dict(_interfaces(package)).items())),
             name in guessed,
             tuple(sorted(name for name, how in package.declared.items() if how & _WITH)),

@@ -13,7 +13,7 @@ import msgspec
 import zstandard
 
 from ..facts.surface_python import Parameter
-from .version import at_least
+from .version import newest_up_to
 
 
 class Overload(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -78,9 +78,8 @@ class Line(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def place(self, version: str) -> int | None:
         """The version that stands for one: itself, or the newest before it that was read at its tag; None for one older
         than all."""
-        read = (place for place, known in enumerate(self.versions) if known not in self.approximate)
-        found = [place for place in read if at_least(version, self.versions[place])]
-        return found[-1] if found else None
+        found = newest_up_to(version, (known for known in self.versions if known not in self.approximate))
+        return None if found is None else self.versions.index(found)
 
 
 def brief(message: str) -> str:

@@ -30,6 +30,7 @@ from .surface_build import (
     launch_arguments,
     launch_kind,
 )
+from .surface_includes import compiled
 from .surface_python import Module, PythonSurface
 from .unpacked_deb import DebError, members
 
@@ -170,7 +171,7 @@ def surface_of(package: str, parts: Sequence[Part]) -> Surface:
             listed.append(Header(include, path))
             continue
         listed.append(Header(include, path, path))
-        headers.append((include, surface_cpp.extract(data)))
+        headers.append((include, compiled(surface_cpp.extract(data))))
     cmake = _cmake(package, mine)
     modules, unknown = _python(package, mine)
     declared = [d.name for d in manifest.dependencies if d.kind in ("exec", "build_export")]

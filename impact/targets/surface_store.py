@@ -19,26 +19,30 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import zstandard
 
-from ..facts.cpp import Include
 from ..facts.interface import Interface
-from ..facts.surface import Entity, HeaderSurface
+from ..facts.surface import CLASSES, Entity, HeaderSurface, plain
 from ..facts.surface_python import Bound, ModuleSurface, Taken
+from . import surface_includes
 from .snapshot import DATA, SnapshotError
 from .surface_changes import Line, brief, unpack
-from .version import parts
+from .surface_includes import Included, spans_of, there
 
 if TYPE_CHECKING:
     from .surface import Surface
 
 _SCHEMA = """
-CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL) WITHOUT ROWID;
+CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL)
+  WITHOUT ROWID;
 CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE headers(data BLOB NOT NULL);
 CREATE TABLE about(packages INTEGER, versions INTEGER, distros TEXT, date TEXT);
 """
-"""about: one row, see About. package: what its versions offer, and what changed between them (see surface_changes.py).
-elsewhere: names that some version of a package lost, and the packages, space separated, that have or had one of that
-name."""
+"""about: one row, see About. package: what its versions offer, what changed between them (see surface_changes.py), and
+what their headers include (see surface_includes.py). elsewhere: names that some version of a package lost, and the
+packages, space separated, that have or had one of that name. headers: one row, packed: headers that do not lie in a
+folder that is called like their package, with the packages that have or had them."""
 _LEVEL = 19
+_TYPES = CLASSES | {"enum", "alias"}
 # (kind, scope, value as JSON-like data)
 _Row = tuple[str, str, Any]
 
@@ -56,10 +60,11 @@ class Stored(NamedTuple):
 
 
 class Packed(NamedTuple):
-    """A package as it is stored: what its versions offer, and what changed between them."""
+    """A package as it is stored: what its versions offer, what changed between them, what their headers include."""
 
     data: bytes
     changes: bytes
+    includes: bytes
 
 
 class About(NamedTuple):
@@ -75,8 +80,8 @@ class About(NamedTuple):
 class History:
     """All stored versions of one package, oldest first. approximate: those that a branch stood for."""
 
-    def __init__(self, package: str, data: bytes):
-        self.package = package
+    def __init__(self, package: str, data: bytes, includes: bytes):
+        self.package, self._includes = package, includes
         versions, approximate, self._rows = _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
         self.versions: tuple[str, ...] = tuple(versions)
         self.approximate = frozenset(approximate)
@@ -86,7 +91,24 @@ class History:
         if version not in self.versions:
             return None
         place = self.versions.index(version)
-        return _surface(self.package, version, ((k, s, v) for k, s, v, spans in self._rows if _there(spans, place)))
+        rows = ((k, s, v) for k, s, v, spans in self._rows if there(spans, place))
+        return _surface(self.package, version, rows, self.included)
+
+    @cached_property
+    def included(self) -> Included:
+        """What the headers of each version include."""
+        return surface_includes.unpack(self._includes)
+
+    def interfaces(self, version: str) -> dict[str, Interface]:
+        """The messages, services and actions of a version, by `msg/Name`."""
+        if version not in self.versions:
+            return {}
+        place = self.versions.index(version)
+        return {
+            name: msgspec.convert(value, Interface)
+            for kind, name, value, spans in self._rows
+            if kind == "interface" and there(spans, place)
+        }
 
     def names(self) -> dict[str, tuple[str, ...]]:
         """Headers, interfaces, C++ names, Python modules and names that any version had, with the versions that do."""
@@ -107,6 +129,19 @@ class History:
             found.setdefault(name, set()).update(_places(spans, len(self.versions)))
         return {name: tuple(self.versions[place] for place in sorted(places)) for name, places in found.items()}
 
+    def types(self) -> dict[str, tuple[str, ...]]:
+        """Classes, enums and aliases of namespaces that any version had, with the headers that define them."""
+        inline = {name for kind, _, value, _ in self._rows if kind == "header" for name in value[0]}
+        found: dict[str, dict[str, None]] = {}
+        classes: set[str] = set()
+        for kind, scope, value, _ in self._rows:
+            if kind == "entity" and value[0] in _TYPES:
+                name = plain(value[1], inline)
+                found.setdefault(name, {})[scope] = None
+                if value[0] in CLASSES:
+                    classes.add(name)
+        return {name: tuple(sorted(where)) for name, where in found.items() if name.rpartition("::")[0] not in classes}
+
     def stored(self) -> Iterator[Stored]:
         """Every version."""
         for version in self.versions:
@@ -116,10 +151,6 @@ class History:
 
 
 _decoder = msgspec.msgpack.Decoder(tuple[list[str], list[str], list[tuple[str, str, Any, list[int]]]])
-
-
-def _there(spans: Sequence[int], place: int) -> bool:
-    return not spans or any(spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2))
 
 
 def _places(spans: Sequence[int], count: int) -> Iterator[int]:
@@ -133,7 +164,8 @@ def _places(spans: Sequence[int], count: int) -> Iterator[int]:
 
 
 class Packer:
-    """Packs the versions of one package as they come, oldest first. What is equal is kept once."""
+    """Packs the versions of one package as they come, oldest first, without what their headers include. What is equal
+    is kept once."""
 
     def __init__(self) -> None:
         self._versions: list[str] = []
@@ -170,37 +202,13 @@ class Packer:
     def packed(self) -> bytes:
         """All versions as they are stored."""
         count = len(self._versions)
-        rows = [(*value, _spans(places, count)) for value, places in zip(self._values, self._places, strict=True)]
+        rows = [(*value, spans_of(places, count)) for value, places in zip(self._values, self._places, strict=True)]
         rows.sort(key=lambda row: (row[0], row[1]))  # stable: what is declared first comes first
-        plain = _encoder.encode((self._versions, self._approximate, rows))
-        return zstandard.ZstdCompressor(level=_LEVEL).compress(plain)
-
-
-def pack(versions: Iterable[Stored]) -> bytes:
-    """Versions of one package as they are stored. Of one version told twice, the first that has a tag counts."""
-    known: dict[str, Stored] = {}
-    for one in sorted(versions, key=lambda one: one.approximate):
-        known.setdefault(one.version, one)
-    packer = Packer()
-    for version in sorted(known, key=parts):
-        packer.add(known[version])
-    return packer.packed()
+        whole = _encoder.encode((self._versions, self._approximate, rows))
+        return zstandard.ZstdCompressor(level=_LEVEL).compress(whole)
 
 
 _encoder = msgspec.msgpack.Encoder()
-
-
-def _spans(places: Sequence[int], count: int) -> list[int]:
-    """First and last places of each run; nothing for all of them."""
-    if len(places) == count:
-        return []
-    runs: list[int] = []
-    for place in places:
-        if runs and runs[-1] == place - 1:
-            runs[-1] = place
-        else:
-            runs += [place, place]
-    return runs
 
 
 def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
@@ -221,26 +229,24 @@ def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
 
 
 def _rows(kind: str, name: str, value: Any) -> Iterator[_Row]:
-    plain = msgspec.to_builtins
+    bare = msgspec.to_builtins
     if kind == "header":
         yield "header", name, [value.inline, _brief(value.deprecated), value.instead, value.lost]
         for one in value.entities:
-            yield "entity", name, _short(plain(_without_text(one)), _ENTITY)
-        for include in value.includes:
-            yield "include", name, plain(msgspec.structs.replace(include, line=0, column=0))
+            yield "entity", name, _short(bare(_without_text(one)), _ENTITY)
     elif kind == "module":
         told = value.surface
         yield "module", name, [value.path, value.package, told.all, told.all_open, told.open, _brief(told.deprecated),
                                told.parsed]  # fmt: skip
         for bound in told.names:
             bound = msgspec.structs.replace(bound, line=0, deprecated=_brief(bound.deprecated))
-            yield "bound", name, _short(plain(bound), _BOUND)
+            yield "bound", name, _short(bare(bound), _BOUND)
         for taken in told.imports:
-            yield "taken", name, plain(msgspec.structs.replace(taken, line=0))
+            yield "taken", name, bare(msgspec.structs.replace(taken, line=0))
     elif kind == "interface":
-        yield kind, name, plain(_without_lines(value))
+        yield kind, name, bare(_without_lines(value))
     else:
-        yield kind, name, plain(value)
+        yield kind, name, bare(value)
 
 
 def _brief(message: str | None) -> str | None:
@@ -293,7 +299,7 @@ _ENTITY = msgspec.to_builtins(Entity("\0", "\0", -1))
 _BOUND = msgspec.to_builtins(Bound("\0", "\0", -1))
 
 
-def _surface(package: str, version: str, rows: Iterable[_Row]) -> Surface:
+def _surface(package: str, version: str, rows: Iterable[_Row], included: Included) -> Surface:
     # What only changed is asked far more often than a whole version is.
     from .surface import Surface
     from .surface_build import BuildSurface
@@ -359,7 +365,7 @@ def _surface(package: str, version: str, rows: Iterable[_Row]) -> Surface:
                 path,
                 HeaderSurface(
                     read("entity", path, Entity),
-                    read("include", path, Include),
+                    included.written(path, version) or (),
                     tuple(inline),
                     deprecated,
                     instead,
@@ -388,14 +394,32 @@ class Surfaces:
     @lru_cache(maxsize=64)  # noqa: B019  (one of them lives as long as the program)
     def history(self, package: str) -> History | None:
         """All versions of a package, None when it is not there."""
-        row = next(self._rows("SELECT data FROM package WHERE name = ?", package), None)
-        return History(package, row[0]) if row else None
+        row = next(self._rows("SELECT data, includes FROM package WHERE name = ?", package), None)
+        return History(package, *row) if row else None
 
     @lru_cache(maxsize=1024)  # noqa: B019
     def lines(self, package: str) -> dict[int, Line]:
         """What changed in a package from version to version, by ROS generation; empty when it is not there."""
         row = next(self._rows("SELECT changes FROM package WHERE name = ?", package), None)
         return unpack(row[0]) if row else {}
+
+    @lru_cache(maxsize=1024)  # noqa: B019
+    def included(self, package: str) -> Included | None:
+        """What the headers of each version of a package include, None when it is not there."""
+        row = next(self._rows("SELECT includes FROM package WHERE name = ?", package), None)
+        return surface_includes.unpack(row[0]) if row else None
+
+    def holders(self, header: str) -> tuple[str, ...]:
+        """The packages that may have, or have had, a header, by the path that dependants write."""
+        head, separator, _ = header.partition("/")
+        named = (head,) if separator and head in self.packages else ()
+        return (*named, *self._headers.get(header, ()))
+
+    @cached_property
+    def _headers(self) -> dict[str, tuple[str, ...]]:
+        """Headers that do not lie in a folder called like their package."""
+        (data,) = next(self._rows("SELECT data FROM headers"))
+        return msgspec.msgpack.decode(zstandard.ZstdDecompressor().decompress(data), type=dict[str, tuple[str, ...]])
 
     @cached_property
     def about(self) -> About:
@@ -434,7 +458,7 @@ def shipped() -> Surfaces:
 
 def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (), date: str = "") -> About:
     """Writes packed packages; a file that is there is replaced as a whole. distros, date: see About."""
-    versions = sum(len(History(name, packed.data).versions) for name, packed in packages.items())
+    versions = sum(len(History(name, packed.data, packed.includes).versions) for name, packed in packages.items())
     about = About(len(packages), versions, " ".join(distros), date)
     file.parent.mkdir(parents=True, exist_ok=True)
     fresh = file.with_name(f"{file.name}.new")
@@ -443,9 +467,10 @@ def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (
         db.execute("PRAGMA page_size=512")  # each packed value ends in a page that it fills in part
         db.executescript(_SCHEMA)
         db.executemany(
-            "INSERT INTO package VALUES(?, ?, ?)", ((name, *packed) for name, packed in sorted(packages.items()))
+            "INSERT INTO package VALUES(?, ?, ?, ?)", ((name, *packed) for name, packed in sorted(packages.items()))
         )
         db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_elsewhere(packages).items()))
+        db.execute("INSERT INTO headers VALUES(?)", (_headers(packages),))
         db.execute("INSERT INTO about VALUES(?, ?, ?, ?)", about)
         db.commit()
         db.execute("VACUUM")
@@ -463,7 +488,17 @@ def _elsewhere(packages: Mapping[str, Packed]) -> dict[str, str]:
                     lost.setdefault(name, set()).add(package)
     found: dict[str, set[str]] = {}
     for package, packed in packages.items():
-        for name in History(package, packed.data).names().keys() & lost.keys():
+        for name in History(package, packed.data, packed.includes).names().keys() & lost.keys():
             if lost[name] != {package}:
                 found.setdefault(name, set()).add(package)
     return {name: " ".join(sorted(those)) for name, those in found.items()}
+
+
+def _headers(packages: Mapping[str, Packed]) -> bytes:
+    """Headers that do not lie in a folder called like their package, with the packages that have or had them."""
+    found: dict[str, list[str]] = {}
+    for package, packed in sorted(packages.items()):
+        for header in surface_includes.unpack(packed.includes).headers:
+            if not header.startswith(f"{package}/"):
+                found.setdefault(header, []).append(package)
+    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(dict(sorted(found.items()))))

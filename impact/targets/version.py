@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from functools import lru_cache
 
 _NUMBER = re.compile(r"\d+")
@@ -27,3 +28,12 @@ def compare(a: str, b: str) -> int:
 def at_least(version: str, bound: str) -> bool:
     """True when version is bound or newer."""
     return compare(version, bound) >= 0
+
+
+def newest_up_to(bound: str, versions: Iterable[str]) -> str | None:
+    """The last of some versions, oldest first, that is not newer than the bound; None where all are."""
+    found = None
+    for version in versions:
+        if at_least(bound, version):
+            found = version
+    return found

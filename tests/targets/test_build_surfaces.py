@@ -120,7 +120,7 @@ def test_versions_of_one_package_in_two_clones_are_one_job(clones, tmp_path):
         ("ros2-gbp/any-release", newer),
     ]
     packed = run(job).packages["rclcpp"]
-    assert History("rclcpp", packed.data).versions == (older, newer)
+    assert History("rclcpp", packed.data, packed.includes).versions == (older, newer)
     assert list(unpack(packed.changes)[2].events["c++"]) == ["of_jazzy", "of_kilted"]
     assert missing == ()
 

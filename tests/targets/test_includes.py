@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import pytest
+from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.build.includes import Header as Read
-from rosimpact.impact.targets.build.includes import defined, direct, included, table_of
-from rosimpact.impact.targets.includes import Includes, Machine, default, machine_of, offered
+from rosimpact.impact.targets.build.includes import beside, defined, direct, included, table_of
+from rosimpact.impact.targets.build_surfaces import Packing
+from rosimpact.impact.targets.includes import Includes, Machine, Table, default, machine_of, offered
+from rosimpact.impact.targets.surface import State, Surface
+from rosimpact.impact.targets.surface_build import BuildSurface
+from rosimpact.impact.targets.surface_includes import compiled
+from rosimpact.impact.targets.surface_python import PythonSurface
+from rosimpact.impact.targets.surface_store import Surfaces, write
 
 
 @pytest.mark.parametrize(
@@ -46,10 +53,36 @@ def test_a_header_that_nothing_is_known_of_is_outside():
     assert brought.outside == {"winch/winch.hpp"} and machine_of("humble", 2).owner("winch/winch.hpp") is None
 
 
-def test_names_are_offered_by_headers_that_the_table_knows():
-    known = default()
-    assert "tf2_ros/buffer.h" in offered()["tf2_ros::Buffer"]
-    assert all(any(h in known.owners_of for h in headers) for headers in known.table.names.values())
+def test_names_are_offered_by_headers_that_are_known():
+    assert {"tf2_ros/buffer.h", "tf2_ros/buffer.hpp"} <= set(offered()["tf2_ros::Buffer"])
+    known = machine_of("humble", 2)
+    assert all(any(map(known.knows, headers)) for headers in default().table.names.values())
+
+
+def test_the_table_has_only_what_surfaces_do_not_tell(tmp_path):
+    table = Table(
+        ("string", "list", "vector"),
+        {"arm": {"arm/a.h": "0.5 0;1.0 1;2.0 2", "arm/made.h": "0.5 2;2.0 -", "arm/b.h": "1.5 0"},
+         "rope": {"rope/rope.h": "1.0 1"}},
+        frozenset(("rope",)),
+        frozenset(),
+        {"arm::A": ("arm/a.h",)},
+        {},
+        {"humble": {"arm": "2.0", "gcc": "11"}},
+    )  # fmt: skip
+    packing = Packing()
+    for version, code in (("1.0", "namespace arm { class A {}; }"), ("2.0", "")):
+        new = tuple((f"arm/{name}.h", compiled(header(code.encode()))) for name in "ab")
+        one = Surface("arm", version, BuildSurface("arm"), PythonSurface("arm"), new)
+        packing.add("arm", version, (2,), State({"arm": one}))
+    write(tmp_path / "x", packing.packed())
+    kept = beside(Surfaces(tmp_path / "x"), table)
+    assert kept.owners == {
+        "arm": {"arm/a.h": "0.5 0", "arm/made.h": "0.5 1;2.0 -"},
+        "rope": {"rope/rope.h": "1.0 2"},
+    }
+    assert kept.paths == ("string", "vector", "list")
+    assert kept.names == {"arm::A": ("arm/a.h", "arm/b.h")}
 
 
 def _includes(sparse=()):

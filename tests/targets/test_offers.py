@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import pytest
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.facts.surface_python import extract as module
-from rosimpact.impact.targets.build_surface_changes import Lines
+from rosimpact.impact.targets.build_surfaces import Packing
 from rosimpact.impact.targets.offers import Offers
 from rosimpact.impact.targets.offers_cpp import judged
 from rosimpact.impact.targets.surface import State, Surface
 from rosimpact.impact.targets.surface_build import BuildSurface, Header, LaunchFile, Program
 from rosimpact.impact.targets.surface_python import Module, PythonSurface
-from rosimpact.impact.targets.surface_store import Packed, Stored, Surfaces, pack, write
+from rosimpact.impact.targets.surface_store import Surfaces, write
 
 
 def surface(package, version, code="", python="", programs=(), path="", launches=()):
@@ -36,16 +36,13 @@ def store(tmp_path):
     """A function that stores surfaces, each of a state of its own unless several are given as one, in order."""
 
     def made(*states, generations=(2,), approximate=()):
-        lines, stored = Lines(), {}
+        packing = Packing()
         for state in states:
             together = State({one.package: one for one in (state if isinstance(state, tuple) else (state,))})
             for one in together.surfaces.values():
-                branch = one.version in approximate
-                lines.add(one.package, one.version, generations, together, branch)
-                stored.setdefault(one.package, []).append(Stored(one.version, branch, one))
-        changes = lines.packed()
+                packing.add(one.package, one.version, generations, together, one.version in approximate)
         file = tmp_path / "surfaces.sqlite"
-        write(file, {package: Packed(pack(each), changes[package]) for package, each in stored.items()})
+        write(file, packing.packed())
         return Surfaces(file)
 
     return made

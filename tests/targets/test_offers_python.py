@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import pytest
 from rosimpact.impact.facts.python_objects import Given, PythonUse
 from rosimpact.impact.facts.surface_python import extract
-from rosimpact.impact.targets.build_surface_changes import Lines
+from rosimpact.impact.targets.build_surfaces import Packing
 from rosimpact.impact.targets.offers import Offers
 from rosimpact.impact.targets.offers_python import PythonOffers, read_parameters, refused, unlike
 from rosimpact.impact.targets.surface import State, Surface
 from rosimpact.impact.targets.surface_build import BuildSurface
 from rosimpact.impact.targets.surface_python import Module, PythonSurface
-from rosimpact.impact.targets.surface_store import Packed, Stored, Surfaces, pack, write
+from rosimpact.impact.targets.surface_store import Surfaces, write
 
 
 @pytest.fixture
@@ -19,17 +19,15 @@ def offers(tmp_path):
     """A function that gives what a target offers whose `arm` has a version, of these modules in versions 1, 2, 3 ..."""
 
     def made(version, *versions, approximate=()):
-        lines, stored = Lines(), []
+        packing = Packing()
         for number, modules in enumerate(versions, 1):
             modules = {"arm": modules} if isinstance(modules, str) else modules
             python = PythonSurface(
                 "arm", tuple(Module(name, "", name == "arm", extract(text.encode())) for name, text in modules.items())
             )
             one = Surface("arm", f"{number}.0.0", BuildSurface("arm", f"{number}.0.0"), python)
-            branch = one.version in approximate
-            lines.add("arm", one.version, (2,), State({"arm": one}), branch)
-            stored.append(Stored(one.version, branch, one))
-        write(tmp_path / "surfaces.sqlite", {"arm": Packed(pack(stored), lines.packed()["arm"])})
+            packing.add("arm", one.version, (2,), State({"arm": one}), one.version in approximate)
+        write(tmp_path / "surfaces.sqlite", packing.packed())
         target = SimpleNamespace(ros=2, version={"arm": version}.get)
         return PythonOffers(Offers(target, Surfaces(tmp_path / "surfaces.sqlite")))
 

@@ -2,14 +2,14 @@
 
 import pytest
 from rosimpact.impact.facts.surface_cpp import extract as header
-from rosimpact.impact.targets.build_surface_changes import Lines
+from rosimpact.impact.targets.build_surfaces import Packing
 from rosimpact.impact.targets.clones import VersionError
 from rosimpact.impact.targets.distro import DistroTarget
 from rosimpact.impact.targets.stored_versions import StoredVersions
 from rosimpact.impact.targets.surface import State, Surface, compare
 from rosimpact.impact.targets.surface_build import BuildSurface
 from rosimpact.impact.targets.surface_python import PythonSurface
-from rosimpact.impact.targets.surface_store import Packed, Stored, Surfaces, pack, write
+from rosimpact.impact.targets.surface_store import Surfaces, write
 
 HUMBLE, JAZZY = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
 EARLY = DistroTarget("humble", "2024-03-01").version("rclcpp")
@@ -24,7 +24,7 @@ def surface(package, version, code):
 @pytest.fixture
 def versions(tmp_path):
     """rclcpp and rclcpp_action, which one repository releases, and of jazzy a branch."""
-    lines, stored = Lines(), {}
+    packing = Packing()
     codes = {
         EARLY: ("void f(); void early();", ""),
         HUMBLE: ("void f();", ""),
@@ -33,12 +33,10 @@ def versions(tmp_path):
     for version, (first, second) in codes.items():
         state = State({name: surface(name, version, code) for name, code in
                        (("rclcpp", first), ("rclcpp_action", second))})  # fmt: skip
-        for name, one in state.surfaces.items():
-            lines.add(name, version, (2,), state, version == JAZZY)
-            stored.setdefault(name, []).append(Stored(version, version == JAZZY, one))
-    packed = lines.packed()
+        for name in state.surfaces:
+            packing.add(name, version, (2,), state, version == JAZZY)
     file = tmp_path / "surfaces.sqlite"
-    write(file, {name: Packed(pack(each), packed[name]) for name, each in stored.items()})
+    write(file, packing.packed())
     return StoredVersions(Surfaces(file))
 
 

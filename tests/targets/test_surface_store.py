@@ -3,14 +3,16 @@
 import msgspec
 import pytest
 import zstandard
+from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.facts.surface_python import extract as module
-from rosimpact.impact.targets.build_surface_changes import Lines
+from rosimpact.impact.targets.build_surfaces import Packing
 from rosimpact.impact.targets.surface import State, Surface, compare
 from rosimpact.impact.targets.surface_build import BuildSurface, ExportedTarget, Header, LaunchFile, Program
+from rosimpact.impact.targets.surface_includes import compiled
 from rosimpact.impact.targets.surface_python import Module, PythonSurface
-from rosimpact.impact.targets.surface_store import History, Packed, Stored, StoredSurfacesError, Surfaces, pack, write
+from rosimpact.impact.targets.surface_store import History, StoredSurfacesError, Surfaces, write
 
 CODE = """#pragma once
 #include <vector>
@@ -40,11 +42,21 @@ def surface(version, code=CODE):
     modules = (Module("arm", "arm/__init__.py", True, module(PYTHON.encode())),)
     definitions = (("msg/M", interface(b"int8 a 1\nint8 B=2\n", "msg")),)
     python = PythonSurface("arm", modules, ("arm.msg",))
-    return Surface("arm", version, build, python, (("a.hpp", header(code.encode())),), definitions, False, ("rclcpp",))
+    return Surface(
+        "arm", version, build, python, (("a.hpp", compiled(header(code.encode()))),), definitions, False, ("rclcpp",)
+    )
+
+
+def packed(*surfaces, approximate=False):
+    packing = Packing()
+    for one in surfaces:
+        packing.add("arm", one.version, (2,), State({"arm": one}), approximate)
+    return packing.packed()["arm"]
 
 
 def stored(*surfaces):
-    return History("arm", pack([Stored(one.version, False, one) for one in surfaces]))
+    data, _, includes = packed(*surfaces)
+    return History("arm", data, includes)
 
 
 def test_what_comes_back_is_what_was_packed():
@@ -60,10 +72,11 @@ def test_what_comes_back_is_what_was_packed():
         for e in entities
     ]
     assert [e for _, h in back.headers for e in h.entities] == nameless
+    assert [h.includes for _, h in back.headers] == [(Include("vector", True, 0, 0),)]
 
 
 def test_each_version_has_what_it_had():
-    history = stored(surface("2.0.0", CODE.replace("f(int)", "g(int)")), surface("10.0.0"), surface("1.0.0"))
+    history = stored(surface("1.0.0"), surface("2.0.0", CODE.replace("f(int)", "g(int)")), surface("10.0.0"))
     assert history.versions == ("1.0.0", "2.0.0", "10.0.0")
     assert history.names()["arm::A::f"] == ("1.0.0", "10.0.0")
     every = ("a.hpp", "arm/msg/M", "arm::A", "ARM_MAX", "arm", "arm.f", "arm.C.x")
@@ -73,16 +86,9 @@ def test_each_version_has_what_it_had():
     assert history.surface("3.0.0") is None
 
 
-def test_a_tag_counts_more_than_a_branch():
-    one, other = surface("1.0.0"), surface("1.0.0", "void other();")
-    history = History("arm", pack([Stored("1.0.0", True, other), Stored("1.0.0", False, one)]))
-    assert "arm::A" in history.names() and not history.approximate
-
-
 def test_nothing_but_facts_is_stored():
     code = "// secret\n/// told\nvoid f(int count_of_things) { secret(); }"
-    data = pack([Stored("1.0.0", False, surface("1.0.0", code))])
-    plain = zstandard.ZstdDecompressor().decompress(data)
+    plain = b"".join(map(zstandard.ZstdDecompressor().decompress, packed(surface("1.0.0", code))))
     assert b"secret" not in plain and b"told" not in plain and b"count_of_things" not in plain
 
 
@@ -101,18 +107,21 @@ def test_statements_and_long_messages_are_not_stored():
 
 def test_a_file_of_packages(tmp_path):
     file = tmp_path / "surfaces.sqlite"
-    one = surface("1.0.0")
-    lines = Lines()
-    lines.add("arm", "1.0.0", (2,), State({"arm": one}))
-    arm = Packed(pack([Stored("1.0.0", True, one)]), lines.packed()["arm"])
+    arm = packed(surface("1.0.0"), approximate=True)
     about = write(file, {"arm": arm}, ("humble", "jazzy"), "2026-08-22")
     surfaces = Surfaces(file)
     assert surfaces.about == about == (1, 1, "humble jazzy", "2026-08-22")
     assert surfaces.packages == {"arm"}
     assert surfaces.history("arm").approximate == {"1.0.0"}
     assert {generation: line.versions for generation, line in surfaces.lines("arm").items()} == {2: ("1.0.0",)}
+    assert surfaces.included("arm").generations == (2,)
     assert surfaces.lines("leg") == {}
-    assert surfaces.history("leg") is None
+    assert surfaces.history("leg") is surfaces.included("leg") is None
+
+
+def test_which_package_may_have_a_header(tmp_path):
+    surfaces = write(tmp_path / "x", {"arm": packed(surface("1.0.0"))}) and Surfaces(tmp_path / "x")
+    assert [surfaces.holders(header) for header in ("a.hpp", "arm/any.hpp", "b.hpp")] == [("arm",), ("arm",), ()]
 
 
 def test_a_file_that_is_none(tmp_path):

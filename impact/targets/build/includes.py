@@ -1,9 +1,11 @@
 """Builds data/includes.json.zst: which headers each header of a library or ROS package includes, version by version.
 
     python -m rosimpact.impact.targets.build.includes FOLDER --installed boost=1.74=DIR ... --output DATA
+    python -m rosimpact.impact.targets.build.includes --shipped
 
 FOLDER holds git clones (`OWNER+NAME`, or a git directory below it); their release tags are read. DIR is an include
 folder of one version, for libraries whose repositories are too large to be read. Only names and versions are kept.
+What the shipped surfaces tell is left out; `--shipped` does only that, to the shipped table, when they are new.
 
 Headers of detail folders are not kept: what they include counts as included by who includes them.
 """
@@ -26,6 +28,8 @@ from ..build_history import _tree, git_directory
 from ..changes import DISTROS
 from ..distro import DistroTarget
 from ..snapshot import DATA
+from ..surface_includes import Included
+from ..surface_store import Surfaces, shipped
 from ..version import parts
 
 _HEADER = re.compile(r"(?:\.(?:h|hh|hpp|hxx|h\+\+|inl|ipp|tcc)(?:\.in|\.em|\.template)?|/[A-Z][A-Za-z]+)$")
@@ -328,11 +332,17 @@ def table_of(states: dict[str, dict[str, dict[str, tuple[str, ...]]]], libraries
 
 def _main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("clones", nargs="+", help="OWNER+NAME")
+    parser.add_argument("folder", type=Path, nargs="?")
+    parser.add_argument("clones", nargs="*", help="OWNER+NAME")
+    parser.add_argument("--shipped", action="store_true")
     parser.add_argument("--installed", action="append", default=[], metavar="LIBRARY=VERSION=DIR")
     parser.add_argument("--output", type=Path, default=DATA)
     asked = parser.parse_args()
+    if asked.shipped:
+        _write(beside(shipped(), includes.default().table), asked.output)
+        return
+    if asked.folder is None:
+        parser.error("a folder of clones is needed, or --shipped")
     states: dict[str, dict[str, dict[str, tuple[str, ...]]]] = defaultdict(dict)
     defining: dict[str, set[str]] = defaultdict(set)
     announcing: dict[str, set[str]] = defaultdict(set)
@@ -378,7 +388,64 @@ def _main() -> None:
     stopped = frozenset().union(*(_stopped(table, ros) for ros in (1, 2)))
     names = {n: p for n, p in table.names.items() if n in stopped}
     announced = {n: tuple(sorted(p)) for n, p in announcing.items() if n in names}
-    _write(msgspec.structs.replace(table, names=names, announced=announced), asked.output)
+    _write(beside(shipped(), msgspec.structs.replace(table, names=names, announced=announced)), asked.output)
+
+
+def beside(surfaces: Surfaces, table: includes.Table) -> includes.Table:
+    """The table without what stored surfaces tell: what their packages' headers include, from the first stored version
+    of each on. Names get the headers that define them there."""
+    numbers: dict[str, int] = {}
+    owners: dict[str, dict[str, str]] = {}
+    names = {name: dict.fromkeys(headers) for name, headers in table.names.items()}
+    for owner, headers in table.owners.items():
+        included = None if owner in table.libraries else surfaces.included(owner)
+        kept = headers if included is None else _before(included, headers)
+        if kept:
+            owners[owner] = {header: _numbered(states, table.paths, numbers) for header, states in kept.items()}
+    for package in sorted(surfaces.packages):
+        history = surfaces.history(package)
+        for name, where in (history.types() if history is not None else {}).items():
+            if name in names:
+                names[name].update(dict.fromkeys(where))
+    versions = {
+        distro: {owner: version for owner, version in known.items() if owner == "gcc" or owner in owners}
+        for distro, known in table.versions.items()
+    }
+    return msgspec.structs.replace(
+        table,
+        paths=tuple(numbers),
+        owners=owners,
+        names={name: tuple(headers) for name, headers in names.items()},
+        versions=versions,
+    )
+
+
+def _before(included: Included, headers: dict[str, str]) -> dict[str, str]:
+    """The states of headers that no stored version stands for: of those that surfaces never have, all."""
+    firsts = [
+        next((v for v, whose in zip(included.versions, included.generations, strict=True)
+              if whose & ros and v not in included.approximate), None)
+        for ros in (1, 2)
+    ]  # fmt: skip
+    known = [parts(first) for first in firsts if first is not None]
+    found = {}
+    for header, states in headers.items():
+        runs = states.split(";")
+        if header in included.headers and known:
+            runs = [run for run in runs if parts(run.partition(" ")[0]) < max(known)]
+        if runs:
+            found[header] = ";".join(runs)
+    return found
+
+
+def _numbered(states: str, paths: tuple[str, ...], numbers: dict[str, int]) -> str:
+    """States of a header with other numbers for its paths."""
+    runs = []
+    for run in states.split(";"):
+        version, *told = run.split(" ")
+        again = (n if n == "-" else str(numbers.setdefault(paths[int(n)], len(numbers))) for n in told)
+        runs.append(" ".join((version, *again)))
+    return ";".join(runs)
 
 
 def _versions(distro: str, table: includes.Table) -> dict[str, str]:

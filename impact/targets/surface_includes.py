@@ -1,0 +1,141 @@
+"""What the headers of each stored version of a package include, packed by itself, so that following includes through
+many packages reads little."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterable, Sequence
+
+import msgspec
+import zstandard
+
+from ..facts.cpp import Include
+from ..facts.surface import HeaderSurface
+from ..model.conditions import Environment, all_hold
+from .version import newest_up_to
+
+_NOTHING_KNOWN = Environment()
+
+
+def compiled(header: HeaderSurface) -> HeaderSurface:
+    """A header with those of its includes that some Linux compiles, so none under `#if 0` or `#ifdef _WIN32`; without
+    lines, and without conditions that hold on all."""
+    kept = []
+    for include in header.includes:
+        holds = all_hold(include.conditions, _NOTHING_KNOWN)
+        if holds is not False:
+            kept.append(Include(include.path, include.angled, 0, 0, () if holds else include.conditions))
+    return msgspec.structs.replace(header, includes=tuple(kept))
+
+
+class Row(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What a header includes in some versions. spans: first and last places of those, over and over; empty for all.
+    includes: places in Included.every."""
+
+    spans: tuple[int, ...]
+    includes: tuple[int, ...]
+
+
+class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """versions: oldest first. approximate: those that a branch stood for. generations: of ROS that have each, as 1, 2,
+    or 3 for both. headers: by the path that dependants write; those that are generated are not among them."""
+
+    versions: tuple[str, ...]
+    approximate: tuple[str, ...]
+    generations: tuple[int, ...]
+    every: tuple[Include, ...]
+    headers: dict[str, tuple[Row, ...]]
+
+    def stands_for(self, version: str, ros: int) -> str | None:
+        """The stored version of a ROS generation that stands for one: itself, or the newest before it that was read at
+        its tag; None for one older than all."""
+        read = (
+            known
+            for known, whose in zip(self.versions, self.generations, strict=True)
+            if whose & ros and known not in self.approximate
+        )
+        return newest_up_to(version, read)
+
+    def written(self, header: str, version: str) -> tuple[Include, ...] | None:
+        """What a header includes in a stored version, as written; None where the version has no such header."""
+        if version not in self.versions:
+            return None
+        place = self.versions.index(version)
+        for row in self.headers.get(header, ()):
+            if there(row.spans, place):
+                return tuple(self.every[number] for number in row.includes)
+        return None
+
+    def answer(self, include: Include, header: str, version: str) -> str:
+        """The path that dependants would write for what a header includes: that of a header of this package, where one
+        lies there, else as it is written."""
+        beside = posixpath.normpath(posixpath.join(posixpath.dirname(header), include.path))
+        order = (include.path, beside) if include.angled else (beside, include.path)
+        return next((path for path in order if self.written(path, version) is not None), include.path)
+
+
+def there(spans: Sequence[int], place: int) -> bool:
+    """Whether a place lies in some spans; none at all are all places."""
+    return not spans or any(spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2))
+
+
+def spans_of(places: Sequence[int], count: int) -> list[int]:
+    """First and last places of each run; nothing for all of them."""
+    if len(places) == count:
+        return []
+    runs: list[int] = []
+    for place in places:
+        if runs and runs[-1] == place - 1:
+            runs[-1] = place
+        else:
+            runs += [place, place]
+    return runs
+
+
+class Including:
+    """Packs what the headers of a package include, version by version, oldest first."""
+
+    def __init__(self) -> None:
+        self._versions: list[str] = []
+        self._approximate: list[str] = []
+        self._generations: list[int] = []
+        self._numbers: dict[Include, int] = {}
+        self._places: dict[str, dict[tuple[int, ...], list[int]]] = {}
+
+    def add(
+        self,
+        version: str,
+        headers: Iterable[tuple[str, HeaderSurface]],
+        generations: Iterable[int],
+        approximate: bool = False,
+    ) -> None:
+        """The next version. generations: of ROS that have it."""
+        place = len(self._versions)
+        self._versions.append(version)
+        self._generations.append(sum(set(generations)))
+        if approximate:
+            self._approximate.append(version)
+        for path, header in headers:
+            state = tuple(self._numbers.setdefault(include, len(self._numbers)) for include in header.includes)
+            self._places.setdefault(path, {}).setdefault(state, []).append(place)
+
+    def packed(self) -> bytes:
+        """All versions as they are stored."""
+        count = len(self._versions)
+        headers = {
+            path: tuple(Row(tuple(spans_of(places, count)), state) for state, places in states.items())
+            for path, states in sorted(self._places.items())
+        }
+        whole = Included(
+            tuple(self._versions), tuple(self._approximate), tuple(self._generations), tuple(self._numbers), headers
+        )
+        return zstandard.ZstdCompressor(level=19).compress(_encoder.encode(whole))
+
+
+def unpack(data: bytes) -> Included:
+    """What Including packed."""
+    return _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
+
+
+_encoder = msgspec.msgpack.Encoder()
+_decoder = msgspec.msgpack.Decoder(Included)
