@@ -58,15 +58,8 @@ def _of_ros2(header: str, interfaces: Mapping[str, Interface], detail: str) -> t
     found = _ROS2.match(header)
     if found is None:
         return None
-    start = f"{found['kind']}/"
-    definition = next(
-        (
-            one
-            for name, one in interfaces.items()
-            if name.startswith(start) and snake(name[len(start) :]) == found["stem"]
-        ),
-        None,
-    )
+    wanted = found["kind"], found["stem"]
+    definition = next((one for name, one in interfaces.items() if _as_in_headers(name) == wanted), None)
     if definition is None:
         return None
     own = f"{found['folder']}{detail}{found['stem']}"

@@ -164,12 +164,12 @@ GRIP = "arm_msgs/msg/detail/grip"
         (
             2,
             "arm_msgs/msg/grip.hpp",
-            {"arm_msgs/msg/detail/grip__struct.hpp", "hand_msgs/msg/detail/finger__traits.hpp"},
+            {f"{GRIP}__struct.hpp", "hand_msgs/msg/detail/finger__traits.hpp"},
         ),
         (
             2,
             "arm_msgs/srv/hold.hpp",
-            {"arm_msgs/msg/detail/grip__struct.hpp", "std_msgs/msg/detail/header__struct.hpp"},
+            {f"{GRIP}__struct.hpp", "std_msgs/msg/detail/header__struct.hpp"},
         ),
     ],
 )
