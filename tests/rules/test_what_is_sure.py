@@ -39,3 +39,13 @@ def test_a_find_module_of_the_package_in_another_case(module, expected, tmp_path
         **{f"cmake__{module}_DOT_cmake": "set(EIGEN_FOUND TRUE)\n"},
     )  # fmt: skip
     assert told == expected
+
+
+@pytest.mark.parametrize(("target", "expected"), [("kinetic", {"error"}), ("melodic", set())])
+def test_a_standard_that_an_old_qt_does_not_raise(target, expected, tmp_path):
+    told = severities(
+        tmp_path, "language-standard", "-std=c++11", target,
+        cmake="find_package(Qt5 REQUIRED COMPONENTS Widgets)\nadd_executable(sled sled.cpp)\n",
+        sled_DOT_cpp="#include <moveit/planning_scene/planning_scene.h>\n",
+    )  # fmt: skip
+    assert told == expected

@@ -27,6 +27,7 @@ Not reported
 from ...model.view import View
 from ...targets.library import NeededStandard, default_standard, needed_standard, standard_year
 from ...targets.standard import HEADER_SINCE
+from ...targets.version import at_least
 from ..rule import Hit, rule
 
 # Macros that come with the build tools, and set no standard.
@@ -56,8 +57,9 @@ def _ros1(view: View, package, default: int | None):
     if not fixed and _may_be_set(view, package):
         return
     told = set()
-    # Qt 5's targets ask for C++11 themselves.
-    sure = bool(fixed) or not any(f.name.startswith(("Qt5", "Qt6")) for f in package.build.found)
+    # Qt's targets ask for C++11 themselves, as Qt does since 5.7 (its release notes).
+    raised = at_least(view.target.library("qt") or "5.7", "5.7")
+    sure = bool(fixed) or not (raised and any(f.name.startswith(("Qt5", "Qt6")) for f in package.build.found))
     standards = {t.name: standard_year(t.standard) for t in package.build.targets if t.standard}
     for include in package.digest.includes:
         have = max([year, *(standards[t] for t in include.targets if t in standards)])
