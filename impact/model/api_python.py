@@ -37,6 +37,10 @@ class Changing:
                     elif not parts[-1].startswith("__"):
                         yield parts[-1]
 
+    def stored(self, module: str) -> bool:
+        """Whether versions of a package that a top-level module may come from are stored."""
+        return not self._surfaces.packages.isdisjoint(packages_of(module))
+
     def concerned(self, name: str) -> bool:
         """Whether a dotted name may be, or lie in, one that changes."""
         head, *parts = name.split(".")
@@ -56,14 +60,21 @@ def python_packages(files: Iterable[str]) -> set[str]:
 
 
 def uses_of(facts: PythonFile, own: frozenset[str], changing: Changing) -> Iterator[PythonUse]:
-    """Uses in one file of names that may have changed. own: top-level modules of the package itself. Besides what
-    PythonUse tells, how is `import` for a module that is imported and `name` for any other name."""
-    heads = {item.module.partition(".")[0] for item in facts.imports if not item.level} - own
-    if not any(changing.words(head) for head in heads):
-        return
+    """Uses in one file of names that may have changed, or never been. own: top-level modules of the package itself.
+    Besides what PythonUse tells, how is `import` for a module that is imported, `from` for a name that is imported from
+    one and has not changed, and `name` for any other name."""
+    told: set[str] = set()
     for item in facts.imports:
-        if not item.level and item.module.partition(".")[0] not in own and changing.concerned(item.module):
+        head = item.module.partition(".")[0]
+        if item.level or head in own or not changing.stored(head):
+            continue
+        if changing.concerned(item.module):
             yield PythonUse(item.module, "import", item.line, item.column, None, "", item.lazy, True, item.conditions)
+        for word in item.names:
+            name = f"{item.module}.{word}"
+            if word != "*" and name not in told and not changing.concerned(name):
+                told.add(name)
+                yield PythonUse(name, "from", item.line, item.column, None, "", item.lazy, True, item.conditions)
     for attribute in facts.attributes:
         if attribute.text.partition(".")[0] not in own and changing.concerned(attribute.text):
             yield PythonUse(

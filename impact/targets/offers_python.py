@@ -20,7 +20,7 @@ from .surface_python import UNKNOWN, Entry, Names, signature, wrapped
 class Lost(NamedTuple):
     """What is wrong with a use on a target.
 
-    state: `removed`, `absent` (only later versions have it), `refused` (it is there and does not take the call, while
+    state: `removed`, `absent` (only later versions have it), `unknown` (no version has it), `refused` (it is there and does not take the call, while
     an earlier version does), `early` (the same of a later version), `override` (the base class calls it otherwise than
     it did) or `deprecated`. name: what it is about, a part of the use's name. version: the target's. last, first: the
     last version that has, or takes, it and the first that has not; of what is not there yet first is the first that
@@ -71,6 +71,8 @@ class PythonOffers:
         return self._names[key]
 
     def _judged(self, offer: Offer, use: PythonUse) -> Lost | None:
+        if use.how == "from":
+            return self._imported(offer, use)
         lost = self._at(offer, use, offer.place)
         if lost is None or lost.state == "deprecated" or offer.exact:
             return lost
@@ -126,6 +128,19 @@ class PythonOffers:
                 return self._told("removed", offer, gone, last=versions[other], first=self._next(offer, other),
                                   instead=instead, old=_shown(gone, had), sure=not had.conditional)  # fmt: skip
         return None
+
+    def _imported(self, offer: Offer, use: PythonUse) -> Lost | None:
+        """A name that is imported from a module that is there, and that no version knows in any module."""
+        history = self._offers.surfaces.history(offer.package)
+        module, _, word = use.name.rpartition(".")
+        if history is None or word in history.python_words or offer.stored in offer.line.approximate:
+            return None
+        if not offer.exact and offer.place + 1 == len(offer.line.versions):
+            return None  # newer than all that were read, and may have got it
+        names = self.names(offer.package, offer.stored)
+        if names is None or module not in names.modules or names.find(use.name) is not None:
+            return None
+        return self._told("unknown", offer, use.name, sure=offer.exact)
 
     def _telling(self, offer: Offer, name: str, place: int) -> tuple[list[int], list[int]]:
         """Places of the versions before and after one in which a name may be otherwise, the nearest first: those on

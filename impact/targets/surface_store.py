@@ -142,6 +142,12 @@ class History:
                     classes.add(name)
         return {name: tuple(sorted(where)) for name, where in found.items() if name.rpartition("::")[0] not in classes}
 
+    @cached_property
+    def python_words(self) -> frozenset[str]:
+        """Every word that some version binds somewhere in its Python modules, and the last parts of their names."""
+        found = {value[0].rpartition(".")[2] for kind, _, value, _ in self._rows if kind in ("bound", "taken")}
+        return frozenset(found.union(*(scope.split(".") for kind, scope, *_ in self._rows if kind == "module")))
+
     def stored(self) -> Iterator[Stored]:
         """Every version."""
         for version in self.versions:

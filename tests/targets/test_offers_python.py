@@ -59,6 +59,23 @@ def test_what_never_changed_or_never_was_is_not_spoken_of(offers, name):
     assert offers("2.0.0", "always = 1\ndef f(): pass", "always = 1").lost(use(name), ["arm"]) is None
 
 
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("arm.spin", True),
+        ("arm.tool.spin", True),
+        ("arm.f", False),  # some version has had it somewhere
+        ("arm.tool", False),
+        ("arm.hand.spin", False),  # who knows where that module comes from
+        ("arm.open.spin", False),
+    ],
+)
+def test_an_import_of_what_no_version_has(offers, name, told):
+    modules = {"arm": "def f(): pass", "arm.tool": "", "arm.open": "from elsewhere import *"}
+    lost = offers("2.0.0", modules, {**modules, "arm": ""}).lost(use(name, "from"), ["arm"])
+    assert (lost is not None and lost.state == "unknown") == told
+
+
 def test_a_lost_module_is_told_for_what_lies_in_it(offers):
     known = offers("2.0.0", {"arm": "", "arm.old": "class C:\n  def m(self): pass"}, {"arm": ""})
     assert known.lost(use("arm.old.C.m", "member"), ["arm"]).name == "arm.old"

@@ -3,7 +3,8 @@
 What it does
     Reports imports and uses of names that the target's version of the providing package does not have, and an earlier
     or later version of it has: modules, what is imported from them, attributes, and members of objects whose class
-    shows. What each version has was read from its sources.
+    shows; and imports of names that no version of the package has anywhere. What each version has was read from its
+    sources.
 
 Why it breaks
     Python raises ImportError or AttributeError when the line is reached; where it is an import, when the program or
@@ -31,6 +32,12 @@ from ...targets.offers_python import Lost
 from ..rule import SEVERITIES, Hit, rule
 from .python_api import evidence_of, severity_of, uses_lost
 
+_STATES = {
+    "removed": "is gone in {}",
+    "absent": "is not yet in {}",
+    "unknown": "is not in {}, nor in any other version of it that was read",
+}
+
 
 @rule(severity="error")
 def removed_python_name(view: View):
@@ -38,13 +45,13 @@ def removed_python_name(view: View):
         # Of each name the worst place in a file: what follows a failed import is not reached.
         worst: dict[tuple[str, str], tuple[int, PythonApiUse, Lost]] = {}
         for found, lost in uses_lost(view, package):
-            if lost.state in ("removed", "absent"):
+            if lost.state in _STATES:
                 key, rank = (found.at.path, lost.name), SEVERITIES.index(severity_of(found, lost))
                 if key not in worst or rank > worst[key][0]:
                     worst[key] = rank, found, lost
         for rank, found, lost in worst.values():
-            where = f"{lost.package} {lost.version}"
-            message = f"`{lost.name}` is {'gone' if lost.state == 'removed' else 'not yet'} in {where}"
+            state = _STATES[lost.state].format(f"{lost.package} {lost.version}")
             cure = f"use `{lost.instead}`" if lost.instead else ""
-            yield Hit(found.at, lost.name, message, cure, package.name, severity=SEVERITIES[rank],
-                      evidence=evidence_of(lost))  # fmt: skip
+            evidence = None if lost.state == "unknown" else evidence_of(lost)
+            yield Hit(found.at, lost.name, f"`{lost.name}` {state}", cure, package.name, severity=SEVERITIES[rank],
+                      evidence=evidence)  # fmt: skip
