@@ -1,7 +1,8 @@
 """Known upstream changes: what a version of a ROS package or platform library removed, renamed or stopped bringing.
 
-The facts are in `data/changes*.json`, reviewed, each with its source. A change is judged on a target by versions; for
-headers of ROS packages whose source trees are in the provider table, by what the very release has.
+The facts are in `data/changes*.json`, reviewed, each with its source; those of changes_debian.json are read from
+packages (build/debian.py), and count where no other file treats the name. A change is judged on a target by versions;
+for headers of ROS packages whose source trees are in the provider table, by what the very release has.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     unless: tuple[str, ...] = ()
     note: str = ""
     ros: int = 0
+    last_in: str = ""
 
 
 class Row(NamedTuple):
@@ -45,7 +47,8 @@ class Row(NamedTuple):
     or not yet. new_in: where the distro's name does not tell, distro to the first version that has the new name (empty:
     never there). back_in: a version that has the old name again. ambiguous: the bare name is a common word. unless:
     endings of include paths that bring the old name back. ros: the generation of ROS whose versions are meant, for
-    packages that both have and number apart; 0: either.
+    packages that both have and number apart; 0: either. last_in: where two packaged versions were compared, the one
+    that has the old name; what versions between it and removed_in have is not known. Empty for reviewed rows.
     """
 
     kind: str
@@ -63,6 +66,7 @@ class Row(NamedTuple):
     source: str
     note: str
     ros: int = 0
+    last_in: str = ""
 
 
 class TransitiveInclude(NamedTuple):
@@ -99,8 +103,10 @@ def _file() -> _File:
     """All data/changes*.json together. A name that two files treat counts as in the more special one."""
     changes: list[_Group] = []
     transitive: list[_TransitiveGroup] = []
-    # The general table comes last: the others were compared with headers and tags.
-    for path in sorted(DATA.glob("changes*.json"), key=lambda path: (path.name == "changes.json", path.name)):
+    # What was read from packages comes last, since nobody reviewed it; before it the general table, since the others
+    # were compared with headers and tags.
+    last = ("changes.json", "changes_debian.json")
+    for path in sorted(DATA.glob("changes*.json"), key=lambda path: (path.name in last, path.name)):
         try:
             file = msgspec.json.decode(path.read_bytes(), type=_File)
         except (OSError, msgspec.MsgspecError) as error:
@@ -115,7 +121,7 @@ def all_rows() -> tuple[Row, ...]:
     """Every known change. Raises SnapshotError when the data file cannot be read."""
     rows = [
         Row(g.kind, g.package, old, new, g.library, g.removed_in, g.back_in, g.deprecated_in, g.new_since, g.new_in,
-            g.ambiguous, g.unless, g.source, g.note, g.ros)
+            g.ambiguous, g.unless, g.source, g.note, g.ros, g.last_in)
         for g in _file().changes
         for old, new in g.names.items()
     ]  # fmt: skip

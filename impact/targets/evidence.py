@@ -91,8 +91,8 @@ def _evidence_of(change: Change) -> Evidence:
         return Evidence(change.package, what, library=change.library, source=change.source)
     first = use.new_since if change.state == "absent" else use.removed_in
     return Evidence(use.package, what, use.label, side="python" if use.pattern.language == "python" else "c++",
-                    last=_before(first, use.library, use.source, use.package), first=first, library=use.library,
-                    source=use.source)  # fmt: skip
+                    last=use.last_in or _before(first, use.library, use.source, use.package), first=first,
+                    library=use.library, source=use.source)  # fmt: skip
 
 
 _WHAT = {"absent": "added", "deprecated": "deprecated"}
@@ -113,7 +113,8 @@ def _gone(row: Row) -> Evidence:
     # Where an old name came back, no one version tells who has it.
     first = "" if row.back_in else row.removed_in
     return Evidence(row.package, "changed" if row.kind == "api-changed" else "removed", row.old, row.new, side,
-                    last=_before(first, row.library, row.source, row.package), first=first, library=row.library,
+                    last=row.last_in or _before(first, row.library, row.source, row.package), first=first,
+                    library=row.library,
                     source=row.source, header="" if row.library or side != "header" else row.old)  # fmt: skip
 
 

@@ -37,6 +37,7 @@ class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     refused_from: int = 0
     needs: int = 0
     help: str = ""
+    last_in: str = ""
 
 
 class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -48,7 +49,7 @@ class Use(NamedTuple):
 
     kind: `call-changed`, for calls, overloads, types and members. label: as a user reads it, no other row has it. help:
     what to write instead. Bounds are as in changes.Row. refused_from, needs: the year of the C++ standard from which
-    on, or before which, the compiler does not take it; 0: whatever the standard.
+    on, or before which, the compiler does not take it; 0: whatever the standard. last_in: as in changes.Row.
     """
 
     kind: str
@@ -63,6 +64,7 @@ class Use(NamedTuple):
     source: str
     refused_from: int
     needs: int
+    last_in: str
 
 
 @cache
@@ -77,7 +79,8 @@ def all_uses() -> tuple[Use, ...]:
         for g in groups:
             for label, use in g.uses.items():
                 row = Use(g.kind, g.package, label, use, use.help or g.help, g.library,
-                          g.removed_in, g.back_in, g.new_since, g.source, g.refused_from, g.needs)  # fmt: skip
+                          g.removed_in, g.back_in, g.new_since, g.source, g.refused_from, g.needs,
+                          g.last_in)  # fmt: skip
                 if found.setdefault(label, row) is not row:
                     raise SnapshotError(f"{path}: two rows are called `{label}`; install rosimpact again")
     return tuple(found.values())

@@ -1,0 +1,166 @@
+"""What versions of platform libraries lost, by their Debian packages: small packages of a made-up history."""
+
+import io
+import json
+import lzma
+import tarfile
+
+import pytest
+from rosimpact.impact.targets.build import debian
+from rosimpact.impact.targets.changes import all_rows
+from rosimpact.impact.targets.evidence import evidence_of
+from rosimpact.impact.targets.snapshot import DATA
+from rosimpact.impact.targets.target import Change
+from rosimpact.impact.targets.uses import all_uses
+from rosimpact.impact.targets.version import at_least, parts
+
+OLD = """#pragma once
+#define YAML_OLD_MACRO_NAME 1
+namespace YAML
+{
+class Walker { public: enum Kind { StrictWalk, EasyWalk }; };
+class Runner {};
+class Taken {};
+struct Swimmer {};
+void explore(int depth);
+void lighten(int first, int second = 0);
+void tighten(int first, int second);
+typedef int Stepper_t;
+[[deprecated("use ascendTo instead")]] void climbUp(int height);
+namespace detail { void innards(); }
+bool operator==(const Walker &, const Walker &);
+}
+"""
+NEW = """#pragma once
+// Walker and climbUp are no more; a comment brings nothing back.
+#define Runner YAML::Racer
+namespace YAML
+{
+class Racer {};
+using Swimmer = Racer;
+void explore(long depth);
+void lighten(int first, int second);
+template <class... T> void tighten(T... all);
+void ascendTo(int height);
+}
+"""
+
+
+def put(folder, release, package, files):
+    """Writes a Debian package into the folder of a release."""
+    archive = io.BytesIO()
+    with tarfile.open(fileobj=archive, mode="w") as tar:
+        for path, text in files.items():
+            entry = tarfile.TarInfo(f"./usr/include/{path}")
+            entry.size = len(text.encode())
+            tar.addfile(entry, io.BytesIO(text.encode()))
+    data = b"!<arch>\n"
+    for part, content in (("debian-binary", b"2.0\n"), ("data.tar.xz", lzma.compress(archive.getvalue()))):
+        data += f"{part:<16}{0:<12}{0:<6}{0:<6}{'100644':<8}{len(content):<10}`\n".encode() + content
+        data += b"\n" * (len(content) % 2)
+    (folder / release).mkdir(parents=True, exist_ok=True)
+    (folder / release / f"{package}_amd64.deb").write_bytes(data)
+
+
+@pytest.fixture
+def archive(tmp_path, monkeypatch):
+    # What some ROS package has is not told of; reading all that is shipped would take its time.
+    monkeypatch.setattr(debian, "_of_ros_packages", lambda: frozenset({"YAML::Taken", "yaml-cpp/taken.h"}))
+    folder = tmp_path / "debian"
+    away = "namespace YAML { class Faraway {}; }"
+    first = {"yaml-cpp/all.h": OLD, "yaml-cpp/old.h": "namespace YAML { class Holder {}; class Keeper {}; }"}
+    first |= {f"yaml-cpp/{path}.h": "" for path in ("detail/inner", "impl", "taken")}
+    put(folder, "bullseye", "libyaml-cpp-dev_1.3.1+dfsg-1", first | {"yaml-cpp/away.h": away})
+    put(
+        folder,
+        "bookworm",
+        "libyaml-cpp-dev_2.0+really1.9.0-2+b1",
+        {"yaml-cpp/all.h": NEW, "yaml-cpp/new.h": "namespace YAML { class Holder {}; class Keeper {}; }\n"},
+    )
+    # It came back, so it is not told of.
+    put(
+        folder,
+        "trixie",
+        "libyaml-cpp-dev_2.1-1",
+        {"yaml-cpp/all.h": NEW, "yaml-cpp/new.h": "", "yaml-cpp/away.h": away},
+    )
+    return folder
+
+
+def built(folder, tmp_path):
+    """The tables that are made of a folder, by kind: names of each group."""
+    debian.main([str(folder), "--output", str(tmp_path), "--jobs", "1"])
+    changes = json.loads((tmp_path / "changes_debian.json").read_text())["changes"]
+    uses = json.loads((tmp_path / "uses_debian.json").read_text())["uses"]
+    return changes, uses
+
+
+def test_what_went_between_two_releases_is_told_with_both_versions(archive, tmp_path):
+    changes, uses = built(archive, tmp_path)
+    first = [group for group in changes if group["last_in"] == "1.3.1"]
+    assert {group["removed_in"] for group in first} == {"1.9.0"}
+    told = {name: new for group in first for name, new in group["names"].items()}
+    assert told == {
+        # Nothing of the whole class is told beside it; what moved as a whole has its new place.
+        "YAML::Walker": "",
+        "YAML::Stepper_t": "",
+        "YAML::climbUp": "YAML::ascendTo",
+        "yaml-cpp/old.h": "yaml-cpp/new.h",
+    }
+    assert "bullseye" in first[0]["source"] and "bookworm" in first[0]["source"]
+    # A macro, an alias, another overload, a pack: each still takes the old use.
+    assert [list(group["uses"]) for group in uses] == [["YAML::lighten with one argument"]]
+
+
+def test_a_name_that_only_a_later_version_lost_is_told_of_that_one(archive, tmp_path):
+    changes, _ = built(archive, tmp_path)
+    later = [group for group in changes if group["last_in"] != "1.3.1"]
+    assert [(group["last_in"], group["removed_in"], group["names"]) for group in later] == [
+        ("1.9.0", "2.1", {"YAML::Holder": "", "YAML::Keeper": ""})
+    ]
+
+
+def test_a_folder_without_packages_is_refused(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        debian.main([str(tmp_path)])
+    assert "apt-get download" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("version", "expected"),
+    [
+        ("7:5.1.9-0+deb12u1", "5.1.9"),
+        ("2.1.0+really2.0.1+dfsg-1", "2.0.1"),
+        ("4.5.1+dfsg-5", "4.5.1"),
+        ("1.7-1", "1.7"),
+    ],
+)
+def test_the_version_of_the_library_itself(version, expected):
+    assert debian.upstream(version) == expected
+
+
+# -- what is shipped ---------------------------------------------------------------------------------------------------
+
+
+def test_shipped_rows_name_the_interval_and_a_library_whose_version_platforms_tell():
+    platforms = (DATA / "platform_versions.yaml").read_text()
+    derived = [row for row in (*all_rows(), *all_uses()) if row.last_in]
+    assert len(derived) > 300
+    for row in derived:
+        assert row.library and parts(row.last_in) < parts(row.removed_in) and at_least(row.removed_in, row.last_in)
+        assert f"\n    {row.package}: {{version:" in platforms, row.package
+        assert row.last_in in row.source and row.removed_in in row.source
+
+
+def test_what_people_reviewed_comes_before_what_was_derived():
+    derived = {row.old for row in all_rows() if row.last_in}
+    reviewed = {row.old for row in all_rows() if not row.last_in and row.library}
+    assert not derived & reviewed
+
+
+def test_the_evidence_gives_the_interval():
+    row = next(row for row in all_rows() if row.last_in and row.kind == "api-removed")
+    evidence = evidence_of(
+        Change(row.kind, row.package, row.old, row.new, "removed", row.removed_in, "", row.source, True)
+    )
+    assert (evidence.last, evidence.first) == (row.last_in, row.removed_in)
