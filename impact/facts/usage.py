@@ -189,6 +189,12 @@ def initialises(data: bytes, variable: str) -> bool:
     return False
 
 
+def names_a_variable(data: bytes, type_: str) -> bool:
+    """Whether a line of a C++ file declares a variable or member of this type itself, not a pointer or reference."""
+    written = rb"^[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?" + re.escape(type_.encode()) + rb"\s+\w+\s*[;={]"
+    return re.search(written, data, re.MULTILINE) is not None
+
+
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     """Line, column, preprocessor conditions and template arguments of every use that looks like the pattern. Never
     raises."""

@@ -22,7 +22,7 @@ from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.python_objects import PythonUse
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, first_places, initialises, place_in, places_of_use, python_text
+from ..facts.usage import Pattern, first_places, initialises, names_a_variable, place_in, places_of_use, python_text
 from ..targets.fields import Fields
 from .api import Changes, Vocabulary
 from .api_cpp import ApiUses
@@ -93,12 +93,14 @@ class NameUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class NeededHeader(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A name whose header the file does not include, itself or through files of the package."""
+    """A name whose header the file does not include, itself or through files of the package. whole: a variable of the
+    type stands there, so that it has to be defined, not just announced."""
 
     name: str
     at: At
     role: str
     conditions: tuple[Condition, ...] = ()
+    whole: bool = False
 
 
 class InterfaceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -516,7 +518,8 @@ class _Join:
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in headers) and not self.declares(path, text):
                         around = conditions + self.macros.asked(name.conditions, targets)
-                        needed.append(NeededHeader(text, At(path, name.line, name.column), role, around))
+                        whole = names_a_variable(self.read(path), text)
+                        needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
             if facts.words:
                 words = facts.words.split(" ")
                 for word in sorted(watched.words.intersection(words) - defined):

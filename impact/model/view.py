@@ -33,6 +33,7 @@ from .workspace import Package, Workspace, snake
 
 # Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's
 # Depends).
+_FOUND = re.compile(r"(\w+)_FOUND")
 _INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
 # Kinds that are on the machine that builds the package from source.
 _BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test", "doc"})
@@ -200,6 +201,16 @@ class View:
         """True only when a statement under these conditions surely counts on the target."""
         conditions = tuple(conditions)
         return not conditions or self._hold(conditions) is True
+
+    def certain_with(self, package: Package, conditions: Iterable[Condition]) -> bool:
+        """The same for a statement of a package where what it declares is installed: CMake then finds that."""
+        return self.certain(c for c in conditions if not self._finds(package, c))
+
+    def _finds(self, package: Package, condition: Condition) -> bool:
+        asked = _FOUND.fullmatch(condition.text) if condition.language == "cmake" and not condition.negated else None
+        if asked is None or asked.group(1) not in self.declared(package):
+            return False
+        return asked.group(1) in self.workspace.packages or self.target.version(asked.group(1)) is not None
 
     def _hold(self, conditions: tuple[Condition, ...]) -> bool | None:
         if conditions not in self._held:

@@ -173,6 +173,11 @@ class Machine:
         found = self._find(header)
         return None if found is None else (found.owner, found.version)
 
+    def of_library(self, header: str) -> bool:
+        """True when a platform library, and no ROS package, has a header here."""
+        owner = self.owner(header)
+        return owner is not None and owner[0] in self._data.table.libraries
+
     def knows(self, header: str) -> bool:
         """True when some version of a header was read, be it here or not."""
         if header in self._data.owners_of:

@@ -14,7 +14,8 @@ CMAKE = "cmake_minimum_required(VERSION 3.0)\nproject(sled)\nfind_package(catkin
 
 
 def severities(folder: Path, rule: str, subject: str, target: str, **files: str) -> set[str]:
-    (folder / "package.xml").write_text(MANIFEST)
+    depend = "".join(f"<depend>{name}</depend></package>" for name in files.pop("depend", "").split())
+    (folder / "package.xml").write_text(MANIFEST.replace("</package>", depend or "</package>"))
     (folder / "CMakeLists.txt").write_text(CMAKE + files.pop("cmake", "") + "catkin_package()\n")
     for path, text in files.items():
         place = folder / path.replace("__", "/").replace("_DOT_", ".")
@@ -47,5 +48,22 @@ def test_a_standard_that_an_old_qt_does_not_raise(target, expected, tmp_path):
         tmp_path, "language-standard", "-std=c++11", target,
         cmake="find_package(Qt5 REQUIRED COMPONENTS Widgets)\nadd_executable(sled sled.cpp)\n",
         sled_DOT_cpp="#include <moveit/planning_scene/planning_scene.h>\n",
+    )  # fmt: skip
+    assert told == expected
+
+
+@pytest.mark.parametrize(
+    ("member", "depend", "expected"),
+    [
+        ("ros::CallbackQueue queue_;", "rviz", {"error"}),
+        ("ros::CallbackQueue * queue_;", "rviz", {"warning"}),  # which is announced
+        ("ros::CallbackQueue queue_;", "", {"warning"}),  # the file may not be compiled at all
+    ],
+)
+def test_a_header_that_rviz_stopped_to_include_beside_those_of_its_libraries(member, depend, expected, tmp_path):
+    told = severities(
+        tmp_path, "missing-include", "ros/callback_queue.h", "noetic", depend=depend,
+        cmake="find_package(rviz)\nif(rviz_FOUND)\n  add_library(sled sled.cpp)\nendif()\n",
+        sled_DOT_cpp=f"#include <rviz/message_filter_display.h>\nclass Panel {{\n  {member}\n}};\n",
     )  # fmt: skip
     assert told == expected

@@ -10,10 +10,11 @@ Why it breaks
     machine that has that version.
 
 Severity
-    error when a source compiles the file, all headers that reach it there are known, and none of them brings the name
-    on the target; warning when some are not known, and none of those depends on the package at issue, when nothing is
-    known to have brought the name before, and in installed headers that only tests compile; note for files that no
-    source compiles, and for what lies ahead, in the newest distro.
+    error when a source compiles the file, none of the headers that reach it there brings the name on the target, and
+    all of them are known, or for a ROS package's name none of the others depends on that; warning when something else
+    is not known, or is known to announce the type, when nothing is known to have brought the name before, and in
+    installed headers that only tests compile; note for files that no source compiles, and for what lies ahead, in the
+    newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
@@ -69,7 +70,7 @@ def missing_include(view: View):
                 and now
                 and lost.sure
                 and need.role == "build"
-                and view.certain(need.conditions)
+                and view.certain_with(package, need.conditions)
             )
             where = "" if now else f" of {view.horizon}"
             how = (
@@ -115,7 +116,8 @@ def _lost(
         return None
     wanted, best = frozenset(offering), None
     bits = machine.bits(wanted)
-    pointed = machine.bits(announced(need.name))  # to a type that is announced, pointers may be made
+    # To a type that is announced, pointers may be made.
+    pointed = 0 if need.whole else machine.bits(announced(need.name))
     for reach, own in reaches:
         if bits & machine.mask(reach) or not wanted.isdisjoint(own):
             continue
@@ -126,7 +128,9 @@ def _lost(
         found = dropped or _never(need.name, wanted, reach, machine)
         if found is None or (best is not None and (best.sure or outside)):
             continue
-        sure = dropped is not None and not outside and not pointed & machine.mask(reach)
+        # Of what reaches the file and is not known, nothing depends on a ROS package whose name it is.
+        known = not outside or not (need.name in DEFINED_IN or machine.of_library(offering[0]))
+        sure = dropped is not None and known and not pointed & machine.mask(reach)
         best = _Lost(offering[0], *found, sure, dropped is not None)
     return best
 
