@@ -20,12 +20,13 @@ from .surface_python import UNKNOWN, Entry, Names, signature, wrapped
 class Lost(NamedTuple):
     """What is wrong with a use on a target.
 
-    state: `removed`, `absent` (only later versions have it), `unknown` (no version has it), `refused` (it is there and does not take the call, while
-    an earlier version does), `early` (the same of a later version), `override` (the base class calls it otherwise than
-    it did) or `deprecated`. name: what it is about, a part of the use's name. version: the target's. last, first: the
-    last version that has, or takes, it and the first that has not; of what is not there yet first is the first that
-    has it. why: in a clause why a call is refused, or the message of a deprecation. old, new: declarations in the
-    other version and here. instead: what to use now, empty where not known. sure: nothing about it is guessed.
+    state: `removed`, `absent` (only later versions have it), `unknown` (no version has it), `refused` (it is there
+    and does not take the call, while an earlier version does), `early` (the same of a later version), `override`
+    (the base class calls it otherwise than it did) or `deprecated`. name: what it is about, a part of the use's
+    name. version: the target's. last, first: the last version that has, or takes, it and the first that has not; of
+    what is not there yet first is the first that has it. why: in a clause why a call is refused, or the message of
+    a deprecation. old, new: declarations in the other version and here. instead: what to use now, empty where not
+    known. sure: nothing about it is guessed.
     """
 
     state: str
