@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from rosimpact.impact import memo
 from rosimpact.impact.check import Options, check, open_workspace
+from rosimpact.impact.model import watch
 from rosimpact.impact.model.view import View
 from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import all_rules
@@ -204,6 +205,16 @@ def test_rules_run_only_when_a_digest_changed(ws, run, monkeypatch, edit, anew):
     monkeypatch.setattr(memo, "remember", lambda store, view, *rest: ran.append(view.target.name))
     run(ws, "kept")
     assert ran == (["jazzy", "humble"] if anew else [])
+
+
+def test_names_to_look_out_for_are_gathered_once(ws, run, monkeypatch):
+    first = run(ws, "kept")
+    monkeypatch.setattr(watch, "watched", _refuse)
+    assert run(ws, "kept") == first
+
+
+def _refuse():
+    raise AssertionError("what was gathered before is to be read")
 
 
 class _Unseen:

@@ -6,6 +6,8 @@ import hashlib
 import re
 from functools import cache
 
+import msgspec
+
 from ..facts.usage import Pattern
 from ..targets.behaviour import all_behaviour
 from ..targets.changes import all_rows, transitive_includes
@@ -46,10 +48,10 @@ def watched() -> Watched:
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     for row in all_uses():
         if row.pattern.language == "python":
-            modules.setdefault(row.package, []).append((row.label, row.pattern))
+            modules.setdefault(row.package, []).append((row.label, _bare(row.pattern)))
     for row in all_behaviour().values():
         for module in row.imports:
-            modules.setdefault(module, []).append((row.label, row.pattern))
+            modules.setdefault(module, []).append((row.label, _bare(row.pattern)))
     fields = default_fields()
     version = hashlib.sha1(
         repr(
@@ -68,3 +70,8 @@ def watched() -> Watched:
     return Watched(
         frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields, shipped()
     )
+
+
+def _bare(pattern: Pattern) -> Pattern:
+    """How a use looks, without what its table says besides, so that it can be remembered and read back."""
+    return msgspec.convert(pattern, Pattern, from_attributes=True)
