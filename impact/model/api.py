@@ -6,7 +6,7 @@ What the files themselves say is read in api_cpp.py.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -179,11 +179,16 @@ def _name(package: str, events: Iterable[Event], known: Name | None) -> Name:
 
 class Vocabulary:
     """What the files of a package (own) can name of some others: changing names, and all classes with their bases. ros:
-    the generation that it is built for, 0 for both."""
+    the generation that it is built for, 0 for both. home: packages whose names are known but not looked for."""
 
-    def __init__(self, packages: Iterable[str], own: str, changes: Changes, ros: int = 0):
+    def __init__(
+        self, packages: Iterable[str], own: str, changes: Changes, ros: int = 0, home: Collection[str] = frozenset()
+    ):
         self.names: dict[str, Name] = {}
         self.by_last: dict[str, tuple[str, ...]] = {}
+        self.wanted: dict[str, tuple[str, ...]] = {}
+        """Names that are looked for, by their last part."""
+        self.home = home
         self.classes: dict[str, str] = {}
         """Full name of every known class to its package."""
         self._known: dict[str, Known] = {}
@@ -203,9 +208,10 @@ class Vocabulary:
         self._known[package] = known
         self.classes = {**known.classes, **self.classes}
         self.names = {**known.names, **self.names}
-        for last, fulls in known.by_last.items():
-            listed = self.by_last.get(last)
-            self.by_last[last] = fulls if listed is None else tuple(dict.fromkeys((*listed, *fulls)))
+        for names in (self.by_last,) if package in self.home else (self.by_last, self.wanted):
+            for last, fulls in known.by_last.items():
+                listed = names.get(last)
+                names[last] = fulls if listed is None else tuple(dict.fromkeys((*listed, *fulls)))
 
     def knows(self, package: str) -> bool:
         """Whether a package's names are among these."""
@@ -255,12 +261,12 @@ class Vocabulary:
         return known
 
     def can_be_meant(self, word: str, near: Iterable[frozenset[str]]) -> bool:
-        """Whether a word can be the last part of a changing name in a file. near: the words of the file, and of each
+        """Whether a word can be the last part of a name that is looked for in a file. near: the words of the file, and of each
         that it includes: the class or namespace around the name, or a class that is derived from it, has to be there
         too."""
         around = self._around.get(word)
         if around is None:
-            owners = [name.rpartition("::")[0] for name in self.by_last[word]]
+            owners = [name.rpartition("::")[0] for name in self.wanted[word]]
             speakers = frozenset().union(*(self.speakers(owner) for owner in owners if owner))
             around = self._around[word] = "" in owners, speakers
         return around[0] or any(not words.isdisjoint(around[1]) for words in near)

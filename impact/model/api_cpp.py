@@ -168,13 +168,14 @@ class ApiUses:
         self._meanings_of: dict[tuple[str, int, int], Type | None] = {}
 
     def found(self, words: Iterable[str]) -> Iterator[Found]:
-        """Every use of a changing name whose last part is among the words."""
+        """Every use of a name that is looked for and whose last part is among the words."""
+        home = self.vocabulary.home
         for word in words:
             for at in standing(word, self.text):
                 for found in (self._at(word, at), self._construction(word, at)):
-                    if found is not None and self._differs(found):
+                    if found is not None and found.package not in home and self._differs(found):
                         yield found
-        yield from self._overrides(frozenset(words))
+        yield from (found for found in self._overrides(frozenset(words)) if found.package not in home)
 
     def _differs(self, found: Found) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Callable, Container, Iterable, Iterator
+from collections.abc import Callable, Collection, Container, Iterable, Iterator
 from functools import cache, cached_property
 from typing import Any
 
@@ -147,7 +147,8 @@ class PythonApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class CppApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A use of a C++ name of another package that only some stored versions of it have, or have in this form.
+    """A use of a C++ name of a package outside of the workspace that only some stored versions of it have, or have in
+    this form.
 
     package, name: as in the surfaces. how: `name`, `call` or `override`. arguments, given, templated, sure, through: as
     in api.Found. role and conditions as in NameUse."""
@@ -208,7 +209,7 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # Fields and constants of other packages' interfaces that only some versions have.
     members: tuple[MemberUse, ...] = ()
     python_api: tuple[PythonApiUse, ...] = ()
-    # C++ names of other packages that only some versions have, or have so.
+    # C++ names of packages outside of the workspace that only some versions have, or have so.
     cpp_api: tuple[CppApiUse, ...] = ()
 
 
@@ -297,19 +298,23 @@ def digest_of(
     facts: Callable[[str], object],
     read: Callable[[str], bytes],
     watched: Watched,
+    home: Collection[str] = frozenset(),
 ) -> Digest:
     """Joins the facts of the package's files. files: all its paths; kinds: extractor kind by path; facts: path to
-    FileFacts; read: path to bytes, used only to find the place of a watched bare word."""
+    FileFacts; read: path to bytes, used only to find the place of a watched bare word; home: packages of the same
+    workspace, which are not looked for in what changed elsewhere."""
     return _Join(
-        name, path, manifest_path, manifest, build, build_type, kinds, tuple(files), facts, read, watched
+        name, path, manifest_path, manifest, build, build_type, kinds, tuple(files), facts, read, watched, home
     ).digest()
 
 
 class _Join:
-    def __init__(self, name, path, manifest_path, manifest, build, build_type, kinds, files, facts, read, watched):
+    def __init__(
+        self, name, path, manifest_path, manifest, build, build_type, kinds, files, facts, read, watched, home
+    ):
         self.name, self.path, self.manifest_path, self.manifest = name, path, manifest_path, manifest
         self.build, self.build_type, self.kinds, self.files = build, build_type, kinds, files
-        self.facts, self.watched = facts, watched
+        self.facts, self.watched, self.home = facts, watched, home
         self.read = cache(read)  # a file is looked into for several reasons
         self.prefix = path + "/" if path else ""
         self.cpp: dict[str, CppFile] = {}
@@ -601,7 +606,8 @@ class _Join:
                                     conditions + around)  # fmt: skip
 
     def cpp_api(self, roles) -> Iterator[CppApiUse]:
-        """Uses of C++ names of other packages that are not the same in all versions, in files that are compiled."""
+        """Uses of C++ names of packages outside of the workspace that are not the same in all versions, in files that
+        are compiled."""
         if self.watched.changing_cpp is None:
             return
         spoken = {path: _spoken(facts) for path, facts in self.cpp.items() if path in roles}
@@ -609,8 +615,8 @@ class _Join:
         packages.update(dependency.name for dependency in self.manifest.dependencies)
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
         ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
-        vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp, ros)
-        changing = vocabulary.by_last.keys()
+        vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp, ros, self.home)
+        changing = vocabulary.wanted.keys()
         for path, (role, _, targets, conditions) in roles.items():
             words = changing & spoken.get(path, frozenset())
             if not words:

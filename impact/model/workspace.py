@@ -518,7 +518,7 @@ class _Linker:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
         digest = hashlib.sha1(
-            f"{_VERSIONS} {self.watched.version} {self.ros} {self._extras_key} {place.path}\n".encode(
+            f"{_VERSIONS} {self.watched.version} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n".encode(
                 "utf-8", "surrogateescape"
             )
         )
@@ -528,6 +528,13 @@ class _Linker:
             )
         )
         return digest.digest()
+
+    @cached_property
+    def home(self) -> frozenset[str]:
+        """Packages of the tree of which surfaces are stored: what was released of them does not count here."""
+        stored = self.watched.surfaces.packages if self.watched.surfaces is not None else frozenset()
+        places = self.discovered.packages
+        return frozenset(p.name for p in places if p.name in stored and _manifest(self.gathered, p.manifest_path))
 
     @cached_property
     def _extras_key(self) -> str:
@@ -584,6 +591,7 @@ class _Linker:
             gathered.facts,
             self.tree.read,
             self.watched,
+            self.home,
         )
         return digest, read
 

@@ -15,8 +15,8 @@ _REVIEWED = ("api-removed", "api-renamed", "api-changed")
 
 
 def uses_judged(view: View, package: Package) -> list[tuple[CppApiUse, Judged]]:
-    """What a package uses that is not on the target as the use needs it, in the order of the digest. What the workspace
-    provides itself, what the target does not compile, and what reviewed tables speak of is left out."""
+    """What a package uses that is not on the target as the use needs it, in the order of the digest. What the target
+    does not compile, and what reviewed tables speak of is left out."""
     key = "C++ uses", package.name
     if key not in view.worked_out:
         view.worked_out[key] = list(_judged(view, package)) if package.digest.cpp_api else []
@@ -29,7 +29,7 @@ def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
     calls = {function_of(change.old) for change in view.changes("call-changed")}
     near = view.closure(package)
     for use in package.digest.cpp_api:
-        if use.package in view.workspace.packages or use.package not in near or not view.active(use.conditions):
+        if use.package not in near or not view.active(use.conditions):
             continue
         head = use.name.partition("::")[0]
         if head != use.package and head in near:
