@@ -103,7 +103,6 @@ _HIDDEN = re.compile(
     """,
     re.VERBOSE,
 )
-_NOT_NEWLINE = re.compile(r"[^\n]+")
 _DIRECTIVE = re.compile(
     r"#[ \t]*(ifdef|ifndef|if|elifdef|elifndef|elif|else|endif|define)\b([^\n]*(?:(?<=\\)\n[^\n]*)*)"
 )
@@ -236,7 +235,7 @@ def scan(data: bytes) -> Scan:
     text = text_of(data)
     problems: list[Problem] = []
     # Where each line starts, for places.
-    starts = [0, *accumulate(len(line) + 1 for line in text.split("\n"))]
+    starts = [0, *accumulate([len(line) + 1 for line in text.split("\n")])]
 
     def place(offset: int) -> tuple[int, int]:
         line = bisect_right(starts, offset)
@@ -263,7 +262,7 @@ def scan(data: bytes) -> Scan:
         elif hidden[1] == "*" and match.lastgroup is None:
             problems.append(Problem(place(match.start())[0], "comment without an end"))
         if "\n" in hidden:
-            return _NOT_NEWLINE.sub(_spaces, hidden)
+            return "\n".join([" " * len(line) for line in hidden.split("\n")])
         return " " * len(hidden)
 
     visible = _HIDDEN.sub(blank, text)
@@ -403,10 +402,6 @@ def extract(data: bytes) -> CppFile:
 
 def _by_line(item: Problem | Reference) -> int:
     return item.line
-
-
-def _spaces(match: re.Match[str]) -> str:
-    return " " * (match.end() - match.start())
 
 
 def includes_of(scanned: Scan) -> tuple[Include, ...]:

@@ -294,7 +294,8 @@ def _in_class(text: str, at: int) -> bool:
 
 def declares_next(ahead: str) -> bool:
     """Whether a name behind this text is declared, not called: a type stands before it."""
-    match = _BEFORE_CALL.search(ahead)
+    # Neither a type nor scopes have any of these in them: what stands before them need not be looked at.
+    match = _BEFORE_CALL.search(ahead, max(map(ahead.rfind, ";{}(),=")) + 1)
     return bool(match) and match.group(1) not in _NOT_A_TYPE
 
 

@@ -75,6 +75,14 @@ class Text:
         self.text = text
 
     @cached_property
+    def _at_using(self) -> tuple[int, ...]:
+        return tuple(standing("using", self.text))
+
+    @cached_property
+    def _at_namespace(self) -> tuple[int, ...]:
+        return tuple(standing("namespace", self.text))
+
+    @cached_property
     def regions(self) -> tuple[Region, ...]:
         """Its namespaces, classes and functions."""
         return regions(self.text)
@@ -92,20 +100,19 @@ class Text:
     def aliases(self) -> dict[str, str]:
         """Names that it gives to types."""
         found = {}
-        for word in ("using", "typedef"):
-            for at in standing(word, self.text):
-                match = _ALIAS.match(self.text, at)
-                if match is not None and match.group(1):
-                    found[match.group(1)] = match.group(2)
-                elif match is not None:
-                    found[match.group(4)] = match.group(3)
+        for at in (*self._at_using, *standing("typedef", self.text)):
+            match = _ALIAS.match(self.text, at)
+            if match is not None and match.group(1):
+                found[match.group(1)] = match.group(2)
+            elif match is not None:
+                found[match.group(4)] = match.group(3)
         return found
 
     @cached_property
     def using(self) -> dict[str, str]:
         """Names that `using a::b` makes known, in full."""
         found = {}
-        for at in standing("using", self.text):
+        for at in self._at_using:
             match = _USING.match(self.text, at)
             if match is not None:
                 full = "".join(match.group(1).split())
@@ -115,20 +122,20 @@ class Text:
     @cached_property
     def opened(self) -> tuple[str, ...]:
         """Namespaces that `using namespace` opens."""
-        matches = (_USING_NAMESPACE.match(self.text, at) for at in standing("using", self.text))
+        matches = (_USING_NAMESPACE.match(self.text, at) for at in self._at_using)
         return tuple(dict.fromkeys("".join(match.group(1).split()) for match in matches if match is not None))
 
     @cached_property
     def spaces(self) -> dict[str, str]:
         """Other names of namespaces."""
-        matches = (_NAMESPACE_ALIAS.match(self.text, at) for at in standing("namespace", self.text))
+        matches = (_NAMESPACE_ALIAS.match(self.text, at) for at in self._at_namespace)
         return {match.group(1): "".join(match.group(2).split()) for match in matches if match is not None}
 
     @cached_property
     def own_spaces(self) -> tuple[str, ...]:
         """Namespaces that it may add to."""
         found: list[str] = []
-        for at in standing("namespace", self.text):
+        for at in self._at_namespace:
             match = _NAMESPACE.match(self.text, at)
             if match is not None:
                 name = "".join(match.group(1).split())
@@ -555,7 +562,7 @@ class ApiUses:
             ]
         # Where the same declarations come before, in the same block, a name means the same.
         braces = blocks(self.text)
-        key = name, sum(at < used for at, _ in known), braces.around[bisect_left(braces.marks, used)]
+        key = name, sum(at < used for at, _ in known), braces.around(bisect_left(braces.marks, used))
         if key not in self._meanings_of:
             self._meanings_of[key] = self._find(name, plain, known, used, depth)
         return self._meanings_of[key]

@@ -43,7 +43,9 @@ NO_TYPES = frozenset(
     ]
 )
 """Words before a name that do not declare it."""
-_WORD_BACK = re.compile(r"([A-Za-z_]\w*)\s*\Z")
+_LONGEST = 80
+"""So many characters before a place a word is looked for."""
+_FIRST = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_")
 _SCOPES_BACK = re.compile(r"((?:[A-Za-z_]\w*\s*::\s*)+)\Z")
 _TYPE_BACK = re.compile(
     r"(?P<type>[A-Za-z_][\w:]*(?:\s*<[^;(){}]*>)?(?:\s*::\s*\w+)*)(?:\s+const)?(?:\s*(?P<mark>[&*]+)\s*(?:const\s+)?|\s+)\Z"
@@ -78,35 +80,40 @@ def _declarations_of(name: str, text: str) -> Iterator[tuple[int, str, str]]:
 
 class Blocks:
     """The braces of a text. marks: where they stand; closes: for each, where its block ends (of a closing one, the
-    place itself); around: for each stretch before a brace, and behind the last, where the block around it ends."""
+    place itself)."""
 
     def __init__(self, text: str):
         self.marks: list[int] = []
         self.closes: list[int] = []
-        self.around: list[int] = []
-        opened: list[int] = []
-        inside: list[list[int]] = [[]]  # the stretches right in each open block
+        self._end = len(text)
+        self._around: list[int] = []  # for each stretch before a brace, and behind the last: which brace opened it
+        self._stray: list[int] = []  # closing braces that close nothing
+        opened = [-1]
         for number, match in enumerate(_BRACES.finditer(text)):
             at = match.start()
             self.marks.append(at)
-            self.around.append(len(text))
-            inside[-1].append(number)
+            self._around.append(opened[-1])
             if match.group() == "{":
-                self.closes.append(len(text))
+                self.closes.append(self._end)
                 opened.append(number)
-                inside.append([])
             else:
                 self.closes.append(at)
-                if opened:
+                if len(opened) > 1:
                     self.closes[opened.pop()] = at
-                    for stretch in inside.pop():
-                        self.around[stretch] = at
                 else:
-                    # It closes what nothing opened: what stands before it is no longer in scope.
-                    for stretch in inside[-1]:
-                        self.around[stretch] = at
-                    inside[-1] = []
-        self.around.append(len(text))
+                    self._stray.append(at)
+        self._around.append(opened[-1])
+
+    def around(self, stretch: int) -> int:
+        """Where the block ends that is around the stretch before a brace, or behind the last one. What nothing opened
+        ends where a brace closes it."""
+        opened = self._around[stretch]
+        if opened >= 0:
+            return self.closes[opened]
+        if not self._stray or stretch == len(self.marks):
+            return self._end
+        following = bisect_left(self._stray, self.marks[stretch])
+        return self._stray[following] if following < len(self._stray) else self._end
 
 
 @lru_cache(maxsize=256)
@@ -124,7 +131,7 @@ def in_scope(text: str, declared: int, used: int) -> bool:
     between = text[declared : known.marks[following]]
     if between.count(")") > between.count("("):  # a parameter of the function whose body opens here
         return text[known.marks[following]] == "{" and known.closes[following] >= used
-    return known.around[following] >= used
+    return known.around(following) >= used
 
 
 class Step(NamedTuple):
@@ -155,7 +162,7 @@ def chain_before(text: str, end: int) -> list[Step] | None:
             at = opening(text, at)
             if at < 0:
                 return None
-            word = _WORD_BACK.search(text, max(0, at - 80), at)
+            word = _word_before(text, at)
             if word is None:
                 content = re.fullmatch(r"\(\s*\*?\s*([A-Za-z_]\w*)\s*\)", text[at:inner])
                 if content is None:
@@ -164,10 +171,11 @@ def chain_before(text: str, end: int) -> list[Step] | None:
                 break
             called = "()"
         else:
-            word = _WORD_BACK.search(text, max(0, at - 80), at)
+            word = _word_before(text, at)
             if word is None:
                 return None
-        name, at = word.group(1) + called, word.start()
+        at = word[0]
+        name = text[at : word[1]] + called
         while at and text[at - 1] in " \t\n":
             at -= 1
         if text[at - 1 : at] == ".":
@@ -189,6 +197,19 @@ def chain_before(text: str, end: int) -> list[Step] | None:
     if steps[0].name == "this":
         steps = steps[1:]
     return steps or None
+
+
+def _word_before(text: str, end: int) -> tuple[int, int] | None:
+    """Where the word begins and ends that stands before an offset, with no more than white space in between."""
+    far = max(0, end - _LONGEST)
+    while end > far and text[end - 1].isspace():
+        end -= 1
+    begins = end
+    while begins > far and (text[begins - 1].isalnum() or text[begins - 1] == "_"):
+        begins -= 1
+    while begins < end and text[begins] not in _FIRST:
+        begins += 1
+    return (begins, end) if begins < end else None
 
 
 def scopes_before(text: str, end: int) -> int:
@@ -293,7 +314,7 @@ def _head(text: str) -> tuple[str, str, tuple[str, ...]]:
     if "#" in text:
         text = _DIRECTIVE.sub("", text)
     text = text.rstrip()
-    space = _NAMESPACE.search(text)
+    space = _NAMESPACE.search(text) if "namespace" in text or "extern" in text else None
     if space:
         return "namespace", "".join((space.group(1) or "").split()), ()
     if "class" in text or "struct" in text or "union" in text:
@@ -306,7 +327,8 @@ def _head(text: str) -> tuple[str, str, tuple[str, ...]]:
     paren = text.find("(")
     if paren < 0 or text.endswith("="):
         return "other", "", ()
-    scopes = _QUALIFIED_FUNCTION.search(text[max(0, paren - FAR) : paren])
+    ahead = text[max(0, paren - FAR) : paren]
+    scopes = _QUALIFIED_FUNCTION.search(ahead) if "::" in ahead else None
     return "function", "".join(_TEMPLATE.sub("", scopes.group(1)).split()).removesuffix("::") if scopes else "", ()
 
 
