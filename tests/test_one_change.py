@@ -187,6 +187,16 @@ def test_edits_one_after_the_other_and_back(ws, run):
         assert run(ws, "kept") == first
 
 
+def test_a_package_of_the_workspace_is_not_the_released_one(ws, run):
+    source = ws / "arm/src/arm.cpp"
+    source.write_text(source.read_text().replace("hand();", "rclcpp::copy_all_parameter_values(a, b), hand();"))
+    (told,) = [finding for finding in run(ws, "kept")[0] if finding.rule == "removed-symbol"]
+    assert "rclcpp::copy_all_parameter_values" in told.message and told.targets == ("humble",)
+    (ws / "rclcpp").mkdir()
+    (ws / "rclcpp/package.xml").write_text(MANIFEST.format(name="rclcpp", depends=""))
+    assert not [finding for finding in run(ws, "kept")[0] if finding.rule == "removed-symbol"]
+
+
 JUDGED = [
     ("nothing", lambda ws: None, False),
     ("a comment in a header", replaced("hand/include/hand/hand.hpp", "int hand();", "int hand();  // grips"), False),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -38,18 +39,37 @@ class Found(NamedTuple):
     through: tuple[str, ...]
 
 
-class Name(NamedTuple):
-    """A changing name. what: as in surface_changes.Told. there: some version has it not, or warns of it. forms: the
-    overloads of each form that it had. virtual: a method that some version lets others override. typed: parameters
-    whose types show in a call are of other types in some version. defaults: a default is another in some version."""
+class Name:
+    """A changing name, by all that happened to it; most of it is worked out where it is asked for. what: as in
+    surface_changes.Told. there: some version has it not, or warns of it."""
 
-    package: str
-    what: str
-    there: bool
-    forms: tuple[tuple[Overload, ...], ...]
-    virtual: bool
-    typed: bool
-    defaults: bool
+    def __init__(self, package: str, events: tuple[Event, ...]):
+        self.package, self.events = package, events
+        self.what = events[0].told[0].what
+        self.there = any(t.kind in _COMES_OR_GOES and "overload" not in t.aspects for e in events for t in e.told)
+
+    @cached_property
+    def forms(self) -> tuple[tuple[Overload, ...], ...]:
+        """The overloads of each form that it had."""
+        forms = (form for event in self.events for form in (event.had, event.has) if form is not None)
+        return tuple(dict.fromkeys(form.overloads for form in forms))
+
+    @cached_property
+    def virtual(self) -> bool:
+        """Whether it is a method that some version lets others override."""
+        return self.what == "method" and any("virtual" in one.traits for form in self.forms for one in form)
+
+    @cached_property
+    def typed(self) -> bool:
+        """Whether parameters whose types show in a call are of other types in some version."""
+        types = [{one.types for one in form} for form in self.forms]
+        differing = {type_ for one in types for other in types for those in one ^ other for type_ in those}
+        return any(_SHOWING.search(type_) for type_ in differing)
+
+    @cached_property
+    def defaults(self) -> bool:
+        """Whether a default is another in some version."""
+        return any(told.kind == "default" for event in self.events for told in event.told)
 
     @property
     def matters(self) -> bool:
@@ -121,9 +141,9 @@ def _known(package: str, lines: Iterable[Line]) -> Known:
             outer, _, last = full.rpartition("::")
             if not last.isidentifier() or "<" in full or not _INTERNAL.isdisjoint(full.split("::")):
                 continue
-            name = _name(package, events, names.get(full))
+            before = names.get(full)  # what another generation told of it
+            name = names[full] = Name(package, events if before is None else (*events, *before.events))
             what = name.what
-            names[full] = name
             if what in _MEMBERS:
                 classes[outer] = None
             elif what in CLASSES:
@@ -155,28 +175,6 @@ _COMES_OR_GOES = frozenset(("removed", "added", "moved", "deprecated", "access",
 _SHOWING = re.compile(r"rmw_qos_profile_t|QoS|\bNode\b|Node\*|string|\bchar\*|double|float|bool")
 
 
-def _name(package: str, events: Iterable[Event], known: Name | None) -> Name:
-    """A name by all that happened to it. known: what another generation told of it."""
-    forms = {form.overloads: None for event in events for form in (event.had, event.has) if form is not None}
-    forms.update(dict.fromkeys(known.forms if known is not None else ()))
-    told = [told for event in events for told in event.told]
-    what = told[0].what
-    types = [{one.types for one in form} for form in forms]
-    differing = {type_ for one in types for other in types for those in one ^ other for type_ in those}
-    name = Name(
-        package,
-        what,
-        any(t.kind in _COMES_OR_GOES and "overload" not in t.aspects for t in told),
-        tuple(forms),
-        what == "method" and any("virtual" in overload.traits for form in forms for overload in form),
-        any(_SHOWING.search(type_) for type_ in differing),
-        any(t.kind == "default" for t in told),
-    )
-    if known is None:
-        return name
-    return name._replace(there=name.there or known.there, defaults=name.defaults or known.defaults)
-
-
 class Vocabulary:
     """What the files of a package (own) can name of some others: changing names, and all classes with their bases. ros:
     the generation that it is built for, 0 for both. home: packages whose names are known but not looked for."""
@@ -184,14 +182,12 @@ class Vocabulary:
     def __init__(
         self, packages: Iterable[str], own: str, changes: Changes, ros: int = 0, home: Collection[str] = frozenset()
     ):
-        self.names: dict[str, Name] = {}
-        self.by_last: dict[str, tuple[str, ...]] = {}
-        self.wanted: dict[str, tuple[str, ...]] = {}
-        """Names that are looked for, by their last part."""
         self.home = home
+        self.names: dict[str, Name] = {}
         self.classes: dict[str, str] = {}
         """Full name of every known class to its package."""
         self._known: dict[str, Known] = {}
+        self._by_last: dict[str, tuple[str, ...]] = {}
         self._members: dict[tuple[str, str], tuple[str, tuple[str, ...]] | None] = {}
         self._speakers: dict[str, frozenset[str]] = {}
         self._constructors: dict[str, tuple[str, ...]] = {}
@@ -201,17 +197,22 @@ class Vocabulary:
         for package in waiting:  # classes of other packages come along with what is derived from them
             known = changes.known(package, ros) if package not in self._known and package != own else None
             if known is not None:
-                self._add(package, known)
+                self._known[package] = known
                 waiting.extend(known.heads)
+        for known in reversed(self._known.values()):  # the first counts
+            self.classes.update(known.classes)
+            self.names.update(known.names)
+        wanted = (known.by_last for package, known in self._known.items() if package not in home)
+        self.words = frozenset().union(*wanted)
+        """Last parts of the names that are looked for."""
 
-    def _add(self, package: str, known: Known) -> None:
-        self._known[package] = known
-        self.classes = {**known.classes, **self.classes}
-        self.names = {**known.names, **self.names}
-        for names in (self.by_last,) if package in self.home else (self.by_last, self.wanted):
-            for last, fulls in known.by_last.items():
-                listed = names.get(last)
-                names[last] = fulls if listed is None else tuple(dict.fromkeys((*listed, *fulls)))
+    def by_last(self, word: str) -> tuple[str, ...]:
+        """Changing names that end so and of which a use can matter."""
+        known = self._by_last.get(word)
+        if known is None:
+            names = (name for one in self._known.values() for name in one.by_last.get(word, ()))
+            known = self._by_last[word] = tuple(dict.fromkeys(names))
+        return known
 
     def knows(self, package: str) -> bool:
         """Whether a package's names are among these."""
@@ -248,7 +249,7 @@ class Vocabulary:
         known = self._constructors.get(word)
         if known is None:
             ending = f"::{word}::{word}"
-            known = tuple(name for name in self.by_last[word] if f"::{name}".endswith(ending))
+            known = tuple(name for name in self.by_last(word) if f"::{name}".endswith(ending))
             self._constructors[word] = known
         return known
 
@@ -256,17 +257,18 @@ class Vocabulary:
         """Whether a member of a class is so called."""
         known = self._of_classes.get(word)
         if known is None:
-            known = any(name.rpartition("::")[0] in self.classes for name in self.by_last[word])
+            known = any(name.rpartition("::")[0] in self.classes for name in self.by_last(word))
             self._of_classes[word] = known
         return known
 
     def can_be_meant(self, word: str, near: Iterable[frozenset[str]]) -> bool:
-        """Whether a word can be the last part of a name that is looked for in a file. near: the words of the file, and of each
+        """Whether a word can be the last part of a name that is looked for. near: the words of the file, and of each
         that it includes: the class or namespace around the name, or a class that is derived from it, has to be there
         too."""
         around = self._around.get(word)
         if around is None:
-            owners = [name.rpartition("::")[0] for name in self.wanted[word]]
+            wanted = [name for name in self.by_last(word) if self.names[name].package not in self.home]
+            owners = [name.rpartition("::")[0] for name in wanted]
             speakers = frozenset().union(*(self.speakers(owner) for owner in owners if owner))
             around = self._around[word] = "" in owners, speakers
         return around[0] or any(not words.isdisjoint(around[1]) for words in near)

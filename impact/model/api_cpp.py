@@ -635,7 +635,7 @@ class ApiUses:
     def _overrides(self, words: frozenset[str]) -> Iterator[Found]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
-        virtual = {word for word in words if any(names[name].virtual for name in self.vocabulary.by_last[word])}
+        virtual = {word for word in words if any(names[name].virtual for name in self.vocabulary.by_last(word))}
         if not virtual or not self.told.defined:
             return
         for region in self.told.regions:

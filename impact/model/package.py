@@ -616,9 +616,8 @@ class _Join:
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
         ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp, ros, self.home)
-        changing = vocabulary.wanted.keys()
         for path, (role, _, targets, conditions) in roles.items():
-            words = changing & spoken.get(path, frozenset())
+            words = vocabulary.words & spoken.get(path, frozenset())
             if not words:
                 continue
             reached = sorted(to for to in self.reached_files(path) if to in spoken)

@@ -517,11 +517,8 @@ class _Linker:
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
-        digest = hashlib.sha1(
-            f"{_VERSIONS} {self.watched.version} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n".encode(
-                "utf-8", "surrogateescape"
-            )
-        )
+        about = f"{_VERSIONS} {self.watched.version} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n"
+        digest = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
         digest.update(
             "\n".join([f"{path} {ids.get(path, '')}" for path in self.paths_of[place.path]]).encode(
                 "utf-8", "surrogateescape"

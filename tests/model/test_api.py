@@ -56,7 +56,7 @@ def changes() -> Changes:
 
 def uses(text: str, changes: Changes, *headers: str) -> list[str]:
     vocabulary = Vocabulary(["arm", "leg"], "mine", changes)
-    words = [word for word in sorted(vocabulary.by_last) if word in text]
+    words = [word for word in sorted(vocabulary.words) if word in text]
     found = ApiUses(text, headers, vocabulary, {"arm", "leg"}).found(words)
     told = []
     for use in sorted(found, key=lambda use: use.offset):
@@ -151,7 +151,14 @@ def test_a_name_is_looked_for_where_its_class_can_be_meant(changes):
 
 
 def test_a_package_does_not_look_for_its_own_names(changes):
-    assert "Old" not in Vocabulary(["arm"], "arm", changes).by_last
+    assert "Old" not in Vocabulary(["arm"], "arm", changes).words
+
+
+def test_names_of_the_workspace_are_known_but_not_looked_for(changes):
+    vocabulary = Vocabulary(["arm", "leg"], "mine", changes, home={"leg"})
+    text = "void g(leg::Leg & l) { l.old(); l.went(1); }"
+    assert [use.name for use in ApiUses(text, (), vocabulary).found(["old", "went"])] == ["arm::Base::went"]
+    assert "old" not in vocabulary.words and "went" in vocabulary.words
 
 
 def test_classes_namespaces_and_functions_are_told_apart():
