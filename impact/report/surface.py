@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from ..facts.surface import FUNCTIONS
-from ..targets.surface import Change, Surface, declared
+from ..facts.surface import FUNCTIONS, declared
+from ..targets.surface import Change, Surface
 from ..targets.surface_python import Names, signature
 from .columns import Piece, laid_out
 from .text import Style, painted

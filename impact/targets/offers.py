@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..facts.surface import declared
 from .surface_changes import Event, Form, Line, Told
 
 if TYPE_CHECKING:
-    from .surface import State
     from .surface_build import BuildSurface
+    from .surface_python import Names
     from .surface_store import Surfaces
     from .target import Target
 
@@ -61,7 +62,6 @@ class Offers:
         self.target = target
         self._given = surfaces
         self._packages: dict[str, Offer | None] = {}
-        self._names: dict[str, frozenset[str]] = {}
 
     @cached_property
     def surfaces(self) -> Surfaces:
@@ -97,13 +97,8 @@ class Offers:
 
     def there(self, side: str, name: str, package: str) -> bool:
         """Whether the stored version that stands for the target's has a name at all."""
-        if package not in self._names:
-            offer, history = self.package(package), self.surfaces.history(package)
-            known = history.names() if offer is not None and history is not None else {}
-            self._names[package] = frozenset(
-                one for one, versions in known.items() if offer is not None and offer.stored in versions
-            )
-        return name in self._names[package]
+        offer, history = self.package(package), self.surfaces.history(package)
+        return offer is not None and history is not None and history.has(name, offer.stored)
 
 
 class Offer:
@@ -126,12 +121,12 @@ class Offer:
 
     @cached_property
     def build(self) -> BuildSurface:
-        """What the stored version gives to CMake and at run time. Reads the whole version."""
+        """What the stored version gives to CMake and at run time."""
         from .surface_build import BuildSurface
 
         history = self._offers.surfaces.history(self.package)
-        surface = history.surface(self.stored) if history is not None else None
-        return surface.build if surface is not None else BuildSurface(self.package)
+        build = history.build(self.stored) if history is not None else None
+        return build or BuildSurface(self.package)
 
     def every(self, side: str) -> Iterator[Offered]:
         """All such names."""
@@ -191,22 +186,22 @@ class Offer:
         return next((p for p in others if p != self.package and self._offers.there(side, name, p)), "")
 
     def declarations(self, side: str, name: str, version: str) -> tuple[str, ...]:
-        """How a stored version declares a name of C++ or Python, a line for each overload. Reads the whole version."""
+        """How a stored version declares a name of C++ or Python, a line for each overload."""
         return declarations(self._offers.surfaces, self.package, side, name, version)
 
 
 def declarations(surfaces: Surfaces, package: str, side: str, name: str, version: str) -> tuple[str, ...]:
     """How a stored version of a package declares a name of C++ or Python, a line for each overload; empty for anything
-    else. Reads the whole version."""
-    from .surface import declared
-    from .surface_python import UNKNOWN, shown
-
-    state = _state(surfaces, package, version) if side in ("c++", "python") else None
-    if state is None:
+    else."""
+    history = surfaces.history(package) if side in ("c++", "python") else None
+    if history is None:
         return ()
     if side == "c++":
-        return tuple(dict.fromkeys(declared(place.entity) for place in state.cpp.get(name, ())))
-    entry = state.python(package).find(name)
+        return tuple(dict.fromkeys(declared(entity) for entity in history.entities(name, version)))
+    from .surface_python import UNKNOWN, shown
+
+    names = _names(surfaces, package, version)
+    entry = names.find(name) if names is not None else None
     if entry is None or entry is UNKNOWN or entry.bound is None:
         return ()  # a module declares nothing by its name alone
     text = shown(entry)
@@ -214,12 +209,12 @@ def declarations(surfaces: Surfaces, package: str, side: str, name: str, version
 
 
 @lru_cache(maxsize=8)
-def _state(surfaces: Surfaces, package: str, version: str) -> State | None:
-    from .surface import State
+def _names(surfaces: Surfaces, package: str, version: str) -> Names | None:
+    from .surface_python import Names
 
     history = surfaces.history(package)
-    surface = history.surface(version) if history is not None else None
-    return State({package: surface}) if surface is not None else None
+    python = history.python(version) if history is not None else None
+    return Names(python) if python is not None else None
 
 
 def there_at(side: str, events: tuple[Event, ...], place: int) -> bool:

@@ -67,8 +67,8 @@ class PythonOffers:
         key = package, version
         if key not in self._names:
             history = self._offers.surfaces.history(package)
-            surface = history.surface(version) if history is not None else None
-            self._names[key] = Names(surface.python) if surface is not None and surface.python.modules else None
+            python = history.python(version) if history is not None else None
+            self._names[key] = Names(python) if python is not None and python.modules else None
         return self._names[key]
 
     def _judged(self, offer: Offer, use: PythonUse) -> Lost | None:

@@ -16,7 +16,7 @@ import msgspec
 
 from ..facts import kinds
 from ..facts.interface import PRIMITIVES, Field, Interface, Section
-from ..facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, offered
+from ..facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
 from . import surface_build, surface_diff, surface_python
 from .surface_build import BuildSurface
 from .surface_includes import compiled
@@ -545,41 +545,6 @@ def _gone(
             if not strange <= had:
                 return msgspec.structs.replace(told, sure=min(told.sure, OPEN))
     return told
-
-
-def declared(one: Entity) -> str:
-    """An entity as it could be written, in one line."""
-    parts = []
-    if one.template is not None:
-        parameters = (f"{p.type or 'typename'}{'...' if p.pack else ''} {p.name}".strip() for p in one.template)
-        parts.append(f"template<{', '.join(parameters)}>")
-    parts += [trait for trait in ("explicit", "virtual", "static", "constexpr") if trait in one.traits]
-    if one.kind in CLASSES or one.kind == "enum":
-        scoped = "enum class" if "scoped" in one.traits else one.kind
-        bases = ", ".join(f"{base.access} {base.type}".strip() for base in one.bases)
-        under = f" : {one.type}" if one.type else ""
-        parts += [
-            scoped,
-            one.name
-            + (f"<{one.arguments}>" if one.arguments and not one.name.endswith(">") else "")
-            + (f" : {bases}" if bases else under),
-        ]
-    elif one.kind == "macro":
-        arguments = "" if one.parameters is None else f"({', '.join(p.name or p.type for p in one.parameters)})"
-        parts += [f"#define {one.name}{arguments}", one.value]
-    elif one.kind == "alias":
-        parts += [f"using {one.name} =", one.type]
-    elif one.kind in FUNCTIONS:
-        arguments = ", ".join(
-            f"{p.type}{'...' if p.pack else ''} {p.name}".strip() + (f" = {p.default}" if p.default is not None else "")
-            for p in one.parameters or ()
-        )
-        parts += [one.type, f"{one.name}({arguments})"]
-        parts += [t for t in ("const", "&", "&&", "noexcept", "override", "final") if t in one.traits]
-        parts += [f"= {end}" for trait, end in (("pure", "0"), ("deleted", "delete")) if trait in one.traits]
-    else:
-        parts += ["" if one.kind == "enumerator" else one.type, one.name, f"= {one.value}" if one.value else ""]
-    return " ".join(part for part in parts if part)
 
 
 # Python

@@ -10,9 +10,10 @@ from __future__ import annotations
 import hashlib
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from functools import cache, cached_property, lru_cache
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,7 +21,7 @@ import msgspec
 import zstandard
 
 from ..facts.interface import Interface
-from ..facts.surface import CLASSES, Entity, HeaderSurface, plain
+from ..facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
 from ..facts.surface_python import Bound, ModuleSurface, Taken
 from . import surface_includes
 from .snapshot import DATA, SnapshotError
@@ -29,6 +30,8 @@ from .surface_includes import Included, spans_of, there
 
 if TYPE_CHECKING:
     from .surface import Surface
+    from .surface_build import BuildSurface
+    from .surface_python import PythonSurface
 
 _SCHEMA = """
 CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL)
@@ -82,17 +85,82 @@ class History:
 
     def __init__(self, package: str, data: bytes, includes: bytes):
         self.package, self._includes = package, includes
-        versions, approximate, self._rows = _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
+        versions, approximate, rows = _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
         self.versions: tuple[str, ...] = tuple(versions)
         self.approximate = frozenset(approximate)
+        # Values are read where they are asked for.
+        self._rows: dict[str, list[tuple[str, msgspec.Raw, list[int]]]] = {}
+        for kind, scope, value, spans in rows:
+            self._rows.setdefault(kind, []).append((scope, value, spans))
 
     def surface(self, version: str) -> Surface | None:
         """What a version offers; None for one that is not stored."""
+        build, python = self.build(version), self.python(version)
+        if build is None or python is None:
+            return None
+        # What only changed is asked far more often than a whole version is.
+        from .surface import Surface
+
+        guessed, runs_with = next((value for _, value in self._values("surface", version)), (False, ()))
+        return Surface(
+            self.package,
+            version,
+            build,
+            python,
+            tuple(sorted(self._headers(version), key=_name)),
+            tuple(sorted(self._values("interface", version, Interface), key=_name)),
+            guessed,
+            tuple(runs_with),
+        )
+
+    def build(self, version: str) -> BuildSurface | None:
+        """What a version gives to CMake and at run time; None for one that is not stored."""
         if version not in self.versions:
             return None
-        place = self.versions.index(version)
-        rows = ((k, s, v) for k, s, v, spans in self._rows if there(spans, place))
-        return _surface(self.package, version, rows, self.included)
+        from .surface_build import BuildSurface
+
+        build: dict[str, list[Any]] = {}
+        for scope, value in self._values("build", version):
+            build.setdefault(scope, []).append(value)
+        known = {field.name: field.type for field in msgspec.structs.fields(BuildSurface)}
+        empty = BuildSurface("")
+        given = {
+            name: msgspec.convert(values, known[name]) if isinstance(getattr(empty, name), tuple) else values[-1]
+            for name, values in build.items()
+        }
+        return BuildSurface(self.package, version, **given)
+
+    def python(self, version: str) -> PythonSurface | None:
+        """The Python of a version; None for one that is not stored."""
+        if version not in self.versions:
+            return None
+        from .surface_python import Module, PythonSurface
+
+        bound, taken = self._inside("bound", version, Bound), self._inside("taken", version, Taken)
+        told = self._inside("python", version, str)
+        modules = (
+            Module(
+                name,
+                path,
+                is_package,
+                ModuleSurface(
+                    tuple(bound.get(name, ())),
+                    tuple(taken.get(name, ())),
+                    None if all_ is None else tuple(all_),
+                    all_open,
+                    tuple((scope, why) for scope, why in open_),
+                    deprecated,
+                    parsed,
+                ),
+            )
+            for name, (path, is_package, all_, all_open, open_, deprecated, parsed) in self._values("module", version)
+        )
+        return PythonSurface(
+            self.package,
+            tuple(sorted(modules, key=lambda module: module.name)),
+            tuple(told.get("unknown", ())),
+            tuple(told.get("unresolved", ())),
+        )
 
     @cached_property
     def included(self) -> Included:
@@ -101,52 +169,88 @@ class History:
 
     def interfaces(self, version: str) -> dict[str, Interface]:
         """The messages, services and actions of a version, by `msg/Name`."""
+        return dict(self._values("interface", version, Interface))
+
+    def entities(self, name: str, version: str) -> Iterator[Entity]:
+        """What a version declares by a name of C++, as users write it; nothing for a version that is not stored."""
+        inline = (space for _, (spaces, *_) in self._values("header", version) for space in spaces)
+        last = name.rpartition("::")[2].encode()
+        near = (one for _, one in self._values("entity", version, Entity, last))
+        found = offered([HeaderSurface(tuple(near), inline=tuple(inline))])
+        return (entity for entity in found if entity.name == name)
+
+    def _headers(self, version: str) -> Iterator[tuple[str, HeaderSurface]]:
+        entities = self._inside("entity", version, Entity)
+        for path, (inline, deprecated, instead, lost) in self._values("header", version):
+            yield (
+                path,
+                HeaderSurface(
+                    tuple(entities.get(path, ())),
+                    self.included.written(path, version) or (),
+                    tuple(inline),
+                    deprecated,
+                    instead,
+                    lost,
+                ),
+            )
+
+    def _inside(self, kind: str, version: str, type_: Any) -> dict[str, list[Any]]:
+        """The values of a kind by their scope."""
+        found: dict[str, list[Any]] = {}
+        for scope, value in self._values(kind, version, type_):
+            found.setdefault(scope, []).append(value)
+        return found
+
+    def _values(self, kind: str, version: str, type_: Any = Any, word: bytes = b"") -> Iterator[tuple[str, Any]]:
+        """Scope and value of each row of a kind that a version has, and in which a word stands."""
+        place = self.versions.index(version) if version in self.versions else -1
+        decode = msgspec.msgpack.Decoder(type_).decode
+        for scope, value, spans in self._rows.get(kind, ()):
+            if place >= 0 and (not word or word in bytes(value)) and there(spans, place):
+                yield scope, decode(value)
+
+    @cached_property
+    def _named(self) -> dict[str, list[list[int]]]:
+        """The spans of everything that has a name of its own."""
+        found: dict[str, list[list[int]]] = {}
+        for kind, named in _NAMED.items():
+            for scope, value, spans in self._rows.get(kind, ()):
+                found.setdefault(named(self.package, scope, value), []).append(spans)
+        return found
+
+    def has(self, name: str, version: str) -> bool:
+        """Whether a version has a header, interface, C++ name, Python module or name."""
         if version not in self.versions:
-            return {}
+            return False
         place = self.versions.index(version)
-        return {
-            name: msgspec.convert(value, Interface)
-            for kind, name, value, spans in self._rows
-            if kind == "interface" and there(spans, place)
-        }
+        return any(there(spans, place) for spans in self._named.get(name, ()))
 
     def names(self) -> dict[str, tuple[str, ...]]:
         """Headers, interfaces, C++ names, Python modules and names that any version had, with the versions that do."""
-        found: dict[str, set[int]] = {}
-        for kind, scope, value, spans in self._rows:
-            if kind == "header":
-                name = scope
-            elif kind == "entity":
-                name = value[1]
-            elif kind == "bound":
-                name = f"{scope}.{value[0]}"
-            elif kind == "module":
-                name = scope
-            elif kind == "interface":
-                name = f"{self.package}/{scope}"
-            else:
-                continue
-            found.setdefault(name, set()).update(_places(spans, len(self.versions)))
+        count = len(self.versions)
+        found = {name: {place for one in spans for place in _places(one, count)} for name, spans in self._named.items()}
         return {name: tuple(self.versions[place] for place in sorted(places)) for name, places in found.items()}
 
     def types(self) -> dict[str, tuple[str, ...]]:
         """Classes, enums and aliases of namespaces that any version had, with the headers that define them."""
-        inline = {name for kind, _, value, _ in self._rows if kind == "header" for name in value[0]}
+        inline = {name for _, value, _ in self._rows.get("header", ()) for name in _decoded(value)[0]}
         found: dict[str, dict[str, None]] = {}
         classes: set[str] = set()
-        for kind, scope, value, _ in self._rows:
-            if kind == "entity" and value[0] in _TYPES:
-                name = plain(value[1], inline)
+        for scope, value, _ in self._rows.get("entity", ()):
+            what, full, *_ = _decoded(value)
+            if what in _TYPES:
+                name = plain(full, inline)
                 found.setdefault(name, {})[scope] = None
-                if value[0] in CLASSES:
+                if what in CLASSES:
                     classes.add(name)
         return {name: tuple(sorted(where)) for name, where in found.items() if name.rpartition("::")[0] not in classes}
 
     @cached_property
     def python_words(self) -> frozenset[str]:
         """Every word that some version binds somewhere in its Python modules, and the last parts of their names."""
-        found = {value[0].rpartition(".")[2] for kind, _, value, _ in self._rows if kind in ("bound", "taken")}
-        return frozenset(found.union(*(scope.split(".") for kind, scope, *_ in self._rows if kind == "module")))
+        values = (value for kind in ("bound", "taken") for _, value, _ in self._rows.get(kind, ()))
+        found = {_decoded(value)[0].rpartition(".")[2] for value in values}
+        return frozenset(found.union(*(scope.split(".") for scope, *_ in self._rows.get("module", ()))))
 
     def stored(self) -> Iterator[Stored]:
         """Every version."""
@@ -156,7 +260,17 @@ class History:
             yield Stored(version, version in self.approximate, surface)
 
 
-_decoder = msgspec.msgpack.Decoder(tuple[list[str], list[str], list[tuple[str, str, Any, list[int]]]])
+_decoder = msgspec.msgpack.Decoder(tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]]])
+_decoded = msgspec.msgpack.Decoder().decode
+_name = itemgetter(0)
+# How what a row of a kind is about is called.
+_NAMED: dict[str, Callable[[str, str, msgspec.Raw], str]] = {
+    "header": lambda package, path, value: path,
+    "entity": lambda package, path, value: _decoded(value)[1],
+    "bound": lambda package, module, value: f"{module}.{_decoded(value)[0]}",
+    "module": lambda package, module, value: module,
+    "interface": lambda package, name, value: f"{package}/{name}",
+}
 
 
 def _places(spans: Sequence[int], count: int) -> Iterator[int]:
@@ -303,87 +417,6 @@ def _short(values: list[Any], defaults: list[Any]) -> list[Any]:
 
 _ENTITY = msgspec.to_builtins(Entity("\0", "\0", -1))
 _BOUND = msgspec.to_builtins(Bound("\0", "\0", -1))
-
-
-def _surface(package: str, version: str, rows: Iterable[_Row], included: Included) -> Surface:
-    # What only changed is asked far more often than a whole version is.
-    from .surface import Surface
-    from .surface_build import BuildSurface
-    from .surface_python import Module, PythonSurface
-
-    headers: dict[str, list[Any]] = {}
-    modules: dict[str, list[Any]] = {}
-    inside: dict[tuple[str, str], list[Any]] = {}
-    interfaces: list[tuple[str, Interface]] = []
-    build: dict[str, Any] = {}
-    guessed, runs_with = False, ()
-    for kind, scope, value in rows:
-        if kind == "header":
-            headers[scope] = value
-        elif kind == "module":
-            modules[scope] = value
-        elif kind == "interface":
-            interfaces.append((scope, msgspec.convert(value, Interface)))
-        elif kind == "build":
-            build.setdefault(scope, []).append(value)
-        elif kind == "surface":
-            guessed, runs_with = value[0], tuple(value[1])
-        else:
-            inside.setdefault((kind, scope), []).append(value)
-    known = {field.name: field.type for field in msgspec.structs.fields(BuildSurface)}
-    empty = BuildSurface("")
-    given = {
-        name: msgspec.convert(values, known[name]) if isinstance(getattr(empty, name), tuple) else values[-1]
-        for name, values in build.items()
-    }
-
-    def read(kind: str, scope: str, type_: Any) -> Any:
-        return msgspec.convert(inside.get((kind, scope), []), tuple[type_, ...])
-
-    return Surface(
-        package,
-        version,
-        BuildSurface(package, version, **given),
-        PythonSurface(
-            package,
-            tuple(
-                Module(
-                    name,
-                    path,
-                    is_package,
-                    ModuleSurface(
-                        read("bound", name, Bound),
-                        read("taken", name, Taken),
-                        None if all_ is None else tuple(all_),
-                        all_open,
-                        tuple((scope, why) for scope, why in open_),
-                        deprecated,
-                        parsed,
-                    ),
-                )
-                for name, (path, is_package, all_, all_open, open_, deprecated, parsed) in sorted(modules.items())
-            ),
-            read("python", "unknown", str),
-            read("python", "unresolved", str),
-        ),
-        tuple(
-            (
-                path,
-                HeaderSurface(
-                    read("entity", path, Entity),
-                    included.written(path, version) or (),
-                    tuple(inline),
-                    deprecated,
-                    instead,
-                    lost,
-                ),
-            )
-            for path, (inline, deprecated, instead, lost) in sorted(headers.items())
-        ),
-        tuple(sorted(interfaces, key=lambda item: item[0])),
-        guessed,
-        runs_with,
-    )
 
 
 # -- the file ----------------------------------------------------------------------------------------------------------
