@@ -19,7 +19,10 @@ def lines(finding: Finding) -> list[tuple[str, str]]:
     if evidence is None:
         return []
     since = "new" if evidence.change == "added" else "now"
-    found = [*_declarations("was", evidence.old), *_declarations(since, evidence.new)]
+    # Overloads that stayed tell nothing, unless they are all that is left.
+    old = tuple(one for one in evidence.old if one not in evidence.new)
+    new = tuple(one for one in evidence.new if one not in evidence.old) or evidence.new
+    found = [*_declarations("was", old), *_declarations(since, new)]
     when = _when(evidence)
     return [*found, ("when", when)] if when else found
 

@@ -24,11 +24,16 @@ def render(report: Report) -> str:
 
         tail.insert(0, f"\nMessage flow: {escaped(summary(report.impact))}")
     room = _LINES - len(head) - len("\n".join(tail).split("\n"))
-    rows = [_row(report, finding) for finding in told]
-    if len(rows) > room:
-        rest = count_by_severity(told[room - 1 :])
+    alike: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
+    for finding in told:
+        alike.setdefault((finding.rule, finding.severity, finding.message, finding.targets), []).append(finding)
+    groups = list(alike.values())
+    left = groups[room - 1 :] if len(groups) > room else []
+    rows = [_row(report, group) for group in groups[: len(groups) - len(left)]]
+    if left:
+        rest = count_by_severity([finding for group in left for finding in group])
         more = ", ".join(counted(number, severity) for severity, number in rest.items() if number)
-        rows = [*rows[: room - 1], f"- and {more} more"]
+        rows.append(f"- and {more} more")
     return "\n".join([*head, *rows, *tail] if rows else [head[0], *tail]) + "\n"
 
 
@@ -56,12 +61,15 @@ def verdict(report: Report) -> str:
     return "; ".join(parts) or "found no target to check"
 
 
-def _row(report: Report, finding: Finding) -> str:
+def _row(report: Report, alike: list[Finding]) -> str:
+    """One line for findings that say the same, with the first place of them."""
+    finding = alike[0]
     place = one_line(finding.path) + (f":{finding.line}" if finding.line else "")
+    others = f" and {counted(len(alike) - 1, 'more place')}:" if len(alike) > 1 else ""
     told = set(re.split(r"[\s,;()]+", finding.message)).issuperset(finding.targets)
     everywhere = len(finding.targets) == len(report.targets)
     names = "" if told or everywhere else f" ({escaped(', '.join(finding.targets))})"
-    text = f"- {_SYMBOL[finding.severity]} {code(place)} {escaped(_short(finding.message))}{names}"
+    text = f"- {_SYMBOL[finding.severity]} {code(place)}{others} {escaped(_short(finding.message))}{names}"
     return text + (f"; {escaped(_short(finding.help))}" if finding.help else "")
 
 

@@ -127,16 +127,22 @@ def _packages(report: Report, findings: list[Finding], style: Style) -> list[str
         if folders.get(name, "") not in ("", ".", name):
             title += painted(style, "dim", f" {style.symbols[4]} {one_line(folders[name])}")
         lines += ["", title]
+        # What is said too often is listed where it first was: errors stay before warnings.
         more: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
+        parts: list[Finding | list[Finding]] = []
         for finding in sorted(group, key=lambda finding: rank.get(finding.severity, 3)):
             key = (finding.rule, finding.message)
             if shown[key] < style.excerpts:
                 shown[key] += 1
-                lines += ["", *finding_lines(report, finding, style)]
-            else:
-                more.setdefault((*key, finding.severity, finding.targets), []).append(finding)
-        for group in more.values():
-            lines += ["", *_repeated(report, group, style)]
+                parts.append(finding)
+                continue
+            alike = more.setdefault((*key, finding.severity, finding.targets), [])
+            if not alike:
+                parts.append(alike)
+            alike.append(finding)
+        for part in parts:
+            several = isinstance(part, list)
+            lines += ["", *(_repeated(report, part, style) if several else finding_lines(report, part, style))]
     return lines
 
 

@@ -100,7 +100,8 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @cache
 def _file() -> _File:
-    """All data/changes*.json together. A name that two files treat counts as in the more special one."""
+    """All data/changes*.json together. A name that two files treat counts as in the more special one; what that does
+    not say of it is taken from the other."""
     changes: list[_Group] = []
     transitive: list[_TransitiveGroup] = []
     # What was read from packages comes last, since nobody reviewed it; before it the general table, since the others
@@ -128,9 +129,10 @@ def all_rows() -> tuple[Row, ...]:
     known: dict[tuple[str, str, str], Row] = {}
     for row in rows:
         first = known.setdefault((row.kind, row.package, row.old), row)
-        if first is not row and row.unless:
+        if first is not row:
             both = tuple(dict.fromkeys(first.unless + row.unless))
-            known[row.kind, row.package, row.old] = first._replace(unless=both)
+            since = first.new_since or (row.new_since if row.new == first.new else "")
+            known[row.kind, row.package, row.old] = first._replace(unless=both, new_since=since)
     return tuple(known.values())
 
 

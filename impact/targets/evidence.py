@@ -313,16 +313,18 @@ def _since(evidence: Evidence, target: Target, holds: bool, providers: Providers
         return ""  # such a bound is only known to hold from a release on
     # Before its announced release a distro is being made.
     begin = released if target.distro != "rolling" else ""
-    since, unknown = "", False
+    since, unknown, met = "", False, False
     for day, version in target.arrivals(evidence.package):
         there = _holds(evidence, version, target, providers) if version is not None else None
+        # Rolling has no day on which it began: what its first version had, nobody there has seen otherwise.
+        always, met = there and not met and target.distro == "rolling", met or version is not None
         if there is None:
             unknown = version is not None
         elif not there:
             since, unknown = "", False
         elif not since:
             # Which of the versions before brought it, is not known; before the release nobody cares.
-            since = max(day, begin) if not unknown or day <= begin else "?"
+            since = max(day, begin) if not always and (not unknown or day <= begin) else "?"
     return since.rstrip("?")
 
 

@@ -49,6 +49,11 @@ ON = PAIR.targets
         ({"change": "removed", "old": (), "new": (), "last": "", "first": "", "targets": ()}, []),
         ({"old": ("void f()", "void f(int)", "void f(char)"), "new": (), "targets": ()},
          ["was: void f()", "was: void f(int) (and 1 more)", "when: changed between rclcpp 27.0.0 and 28.0.0"]),
+        # Overloads that stayed are not shown, unless nothing else is there now.
+        ({"old": ("void f()", "void f(int)"), "new": ("void f()", "void f(char)"), "targets": ()},
+         ["was: void f(int)", "now: void f(char)", "when: changed between rclcpp 27.0.0 and 28.0.0"]),
+        ({"old": ("void f()", "void f(int)"), "new": ("void f()",), "targets": ()},
+         ["was: void f(int)", "now: void f()", "when: changed between rclcpp 27.0.0 and 28.0.0"]),
     ],
 )  # fmt: skip
 def test_lines(changes, expected):

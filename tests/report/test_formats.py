@@ -243,6 +243,14 @@ def test_markdown_has_ten_lines_at_most(report):
     assert len(markdown.render(report).splitlines()) <= 10
 
 
+def test_markdown_says_a_thing_once(quiet):
+    gone = [Finding("r", "error", "ui", f"{n}.cpp", 1, 0, "x", ("jazzy",), "`x` is gone", "use `z`") for n in range(9)]
+    others = [Finding("r", "error", "ui", "a.cpp", n, 0, f"y{n}", ("jazzy",), f"`y{n}` is gone") for n in range(8)]
+    rows = markdown.render(quiet._replace(findings=(*gone, *others))).splitlines()[2:-2]
+    assert rows[0] == "- ❌ `0.cpp:1` and 8 more places: `x` is gone (jazzy); use `z`"
+    assert rows[-1] == "- and 4 errors more"
+
+
 def test_markdown_counts_what_it_leaves_out(large):
     assert markdown.render(large).splitlines()[7] == "- and 3,745 errors more"
 

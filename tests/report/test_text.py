@@ -112,6 +112,14 @@ def test_an_equal_message_is_excerpted_three_times_then_listed(quiet):
     assert lines[-1].startswith("9 errors · ")
 
 
+def test_what_is_listed_stands_before_what_is_milder(quiet):
+    errors = [Finding("r", "error", "ui", f"{n}.cpp", 1, 0, "x", ("jazzy",), "`x` is gone") for n in range(5)]
+    warning = Finding("s", "warning", "ui", "0.cpp", 1, 0, "y", ("jazzy",), "`y` may go")
+    lines = text.render(quiet._replace(findings=(warning, *errors))).splitlines()
+    assert [line for line in lines if line.startswith(("error", "warning"))] == [
+        *["error[r] jazzy: `x` is gone"] * 4, "warning[s] jazzy: `y` may go"]  # fmt: skip
+
+
 def test_nothing_of_the_workspace_reaches_the_terminal_raw(hostile):
     output = text.render(hostile)
     assert not set(output) & set("\x1b\x07\u202e\u2028\r\udcff")

@@ -138,3 +138,9 @@ def test_transitive_includes_are_complete():
     by_name = {row.name: row for row in transitive_includes()}
     assert by_name["uint32_t"].headers[0] == "cstdint"
     assert by_name["uint32_t"].since == "13"
+
+
+def test_what_one_table_does_not_say_of_a_name_is_taken_from_the_other():
+    # ceres/manifold.h came with 2.1 and local_parameterization.h went with 2.2; the special table tells the latter.
+    (row,) = [row for row in all_rows() if (row.kind, row.old) == ("header-removed", "ceres/local_parameterization.h")]
+    assert (row.removed_in, row.new_since) == ("2.2", "2.1")

@@ -43,6 +43,14 @@ def test_a_day_before_the_change_says_when_it_comes():
     assert coming == since > "2024-08-01"
 
 
+def test_rolling_has_no_day_for_what_it_never_had_otherwise():
+    # gone since rclcpp 0.8.0 of Eloquent, before rolling was; and since rclcpp 20.0.0
+    rolling = DistroTarget("rolling")
+    for first, known in (("0.8.0", False), ("20.0.0", True)):
+        _, on = seen(Evidence("rclcpp", "removed", "x", first=first), rolling, spoken_of=["rolling"])
+        assert [(holds, bool(since)) for _, holds, since in on] == [(True, known)]
+
+
 def test_what_the_versions_contradict_is_not_shown():
     humble = DistroTarget("humble")
     rumour = Evidence("rclcpp", "removed", "rclcpp::nothing", first="99.0.0", source="hearsay")
