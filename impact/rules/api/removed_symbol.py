@@ -131,7 +131,7 @@ def _reviewed(view: View) -> Iterator[Hit]:
             if endings:
                 if included is None:
                     included = _by_file(package)
-                if any(path.endswith(endings) for path in included.get(use.at.path, included[""])):
+                if any(_brings_back(view, change, endings, path) for path in included.get(use.at.path, included[""])):
                     continue
             guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
             built = view.built(use.role) if use.language == "cpp" else use.role in ("build", "run", "test")
@@ -152,8 +152,6 @@ def _reviewed(view: View) -> Iterator[Hit]:
                 )
                 coming.append((use, later, loud))
                 continue
-            if endings and not sure and included is not None:
-                guarded |= any(_brings_back(view, endings, p) for p in included.get(use.at.path, included[""]))
             verb = "changed" if change.kind == "api-changed" else "is gone"
             yield Hit(
                 use.at,
@@ -199,13 +197,13 @@ def _may_bring(view: View, change: Change, path: str) -> bool:
     return not providers or any(p.kind == "ros" and not keys.isdisjoint(view.spread((p.name,))) for p in providers)
 
 
-def _brings_back(view: View, endings: tuple[str, ...], path: str) -> bool:
-    """True for headers of packages that depend on one with a header that brings the name back, where it is not known
-    what they include."""
-    if view.machine.knows(path):
-        return False
-    back = {ending.partition("/")[0] for ending in endings}
-    return any(p.kind == "ros" and not back.isdisjoint(view.installed_with(p.name)) for p in view.header(path))
+def _brings_back(view: View, change: Change, endings: tuple[str, ...], path: str) -> bool:
+    """True for headers that bring the name back, and for those of other packages that include one of the library's that
+    does, at whatever distance."""
+    roots = include_roots(change.package)
+    if path.endswith(endings) or not roots or path.startswith(roots):
+        return path.endswith(endings)
+    return any(h.startswith(roots) and h.endswith(endings) for h in view.machine.brought(path).headers)
 
 
 def _by_file(package) -> dict[str, set[str]]:
