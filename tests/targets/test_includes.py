@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.build.includes import Header as Read
-from rosimpact.impact.targets.build.includes import beside, defined, direct, included, table_of
+from rosimpact.impact.targets.build.includes import beside, defined, direct, included, onto, table_of
 from rosimpact.impact.targets.build_surfaces import Packing
 from rosimpact.impact.targets.includes import Includes, Machine, Table, default, machine_of, offered
 from rosimpact.impact.targets.surface import State, Surface
@@ -28,6 +28,8 @@ from rosimpact.impact.targets.surface_store import Surfaces, write
         ("humble", "sensor_msgs/msg/image.hpp", "string", True),
         ("jazzy", "string", "cstdint", False),
         ("humble", "memory", "bits/shared_ptr", True),
+        ("humble", "libavutil/imgutils.h", "libavutil/mem.h", True),
+        ("jazzy", "libavutil/imgutils.h", "libavutil/mem.h", False),
     ],
 )
 def test_what_a_header_brings_along(distro, header, brought, expected):
@@ -42,6 +44,8 @@ def test_what_a_header_brings_along(distro, header, brought, expected):
         ("melodic", "rviz/message_filter_display.h", "ros/callback_queue.h", True),
         ("noetic", "rviz/message_filter_display.h", "ros/callback_queue.h", False),
         ("noetic", "winch/WinchConfig.h", "dynamic_reconfigure/config_tools.h", True),
+        ("hydro", "libavcodec/avcodec.h", "libavutil/mem.h", True),
+        ("indigo", "libavcodec/avcodec.h", "libavutil/mem.h", False),
     ],
 )
 def test_what_a_header_of_ros_1_brings_along(distro, header, brought, expected):
@@ -109,6 +113,18 @@ def _includes(sparse=()):
 )
 def test_versions_between_those_read(version, sparse, expected):
     assert _includes(sparse).included("winch", "winch/all.h", version) == expected
+
+
+def test_versions_are_added_to_a_table_that_keeps_what_it_tells():
+    known = table_of({"pcl": {"1.0": {"a.h": ("b.h",), "c.h": ()}, "1.2": {"a.h": ()}}}, {"pcl"}, set())
+    known = Table(known.paths, known.owners, known.libraries, known.sparse, names={"pcl::A": ("a.h",)})
+    more = {"pcl": {"1.1": {"a.h": ("d.h",), "c.h": ()}}, "boost": {"1.74": {"e.h": ("a.h",)}}}
+    both = Includes(onto(known, more, {"boost"}, {"boost"}))
+    assert both.states("pcl", "a.h") == (((1, 0), ("b.h",)), ((1, 1), ("d.h",)), ((1, 2), ()))
+    assert both.states("pcl", "c.h") == (((1, 0), ()), ((1, 2), None))
+    assert both.states("boost", "e.h") == (((1, 74), ("a.h",)),)
+    assert both.table.libraries == {"pcl", "boost"} and both.table.sparse == {"boost"}
+    assert both.table.names == known.names and both.table.versions["humble"]["boost"] == "1.74.0"
 
 
 def test_a_header_may_be_gone_in_a_version():

@@ -4,8 +4,9 @@
     python -m rosimpact.impact.targets.build.includes --shipped
 
 FOLDER holds git clones (`OWNER+NAME`, or a git directory below it); their release tags are read. DIR is an include
-folder of one version, for libraries whose repositories are too large to be read. Only names and versions are kept.
-What the shipped surfaces tell is left out; `--shipped` does only that, to the shipped table, when they are new.
+folder of one version, for libraries whose repositories are too large to be read; a Debian package unpacked has one.
+With `--onto`, what the table that is there tells stays, and only what is named is read. Only names and versions are
+kept. What the shipped surfaces tell is left out; `--shipped` does only that, to the shipped table, when they are new.
 
 Headers of detail folders are not kept: what they include counts as included by who includes them.
 """
@@ -49,8 +50,14 @@ _LIBRARIES = {
     "orocos+orocos_kinematics_dynamics": "orocos-kdl",
     "google+googletest": "gtest",
     "OctoMap+octomap": "octomap",
+    "libav+libav": "libav",
 }
 """Clones of platform libraries, by their names in platform_versions.yaml; all others hold ROS packages."""
+# Headers of libav and FFmpeg that programs include, or that those include.
+_AV = re.compile(
+    r"lib(?:avutil/\w+|avcodec/(?:avcodec|codec\w*|packet|defs|bsf|version\w*|old_codec_ids)"
+    r"|avformat/(?:avformat|avio|version\w*)|avdevice/(?:avdevice|version\w*)|swscale/(?:swscale|version\w*))\.h"
+)
 # Interfaces of rclcpp's nodes, for which its build makes headers from templates.
 _INTERFACES = tuple(
     f"node_{name}"
@@ -185,6 +192,8 @@ class Clone:
             found, rest, head = "x", path.removeprefix("src/"), ""
         if self.library == "orocos-kdl" and path.startswith("orocos_kdl/src/"):
             found, rest, head = "x", "kdl/" + path.removeprefix("orocos_kdl/src/"), ""
+        if self.library == "libav" and _AV.fullmatch(path):
+            found, rest, head = "x", path, ""
         if package.startswith("rosidl_generator_cpp") or package == "gencpp":
             return
         if path.startswith("resource/") and path.endswith((".h.em", ".hpp.em", ".hpp.in")):
@@ -335,6 +344,7 @@ def _main() -> None:
     parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("clones", nargs="*", help="OWNER+NAME")
     parser.add_argument("--shipped", action="store_true")
+    parser.add_argument("--onto", action="store_true", help="add to the shipped table")
     parser.add_argument("--installed", action="append", default=[], metavar="LIBRARY=VERSION=DIR")
     parser.add_argument("--output", type=Path, default=DATA)
     asked = parser.parse_args()
@@ -354,12 +364,15 @@ def _main() -> None:
             for name in header.announced:
                 announcing[name].add(path)
 
-    for owner, version, state in (*read_clones(asked.folder, asked.clones), *read_generators(asked.folder)):
+    generators = () if asked.onto else read_generators(asked.folder)
+    for owner, version, state in (*read_clones(asked.folder, asked.clones), *generators):
         if version not in states[owner] and state:
             states[owner][version] = direct(state, lambda h: not _INNER.search(h))
             note(state)
     libraries, sparse = set(_LIBRARIES.values()) & set(states), set()
     used = {p for versions in states.values() for v in versions.values() for found in v.values() for p in found}
+    if asked.onto:
+        used.update(includes.default().table.paths)
     for item in asked.installed:
         library, version, where = item.split("=")
         libraries.add(library)
@@ -368,8 +381,9 @@ def _main() -> None:
         states[library][version] = direct(
             state,
             lambda h: (
-                h.count("/") == 1
+                (h.count("/") == 1 and not h.startswith("lib"))
                 or h in used
+                or _AV.fullmatch(h) is not None
                 or bool(
                     re.match(
                         r"boost/(thread|filesystem|smart_ptr|date_time|function|bind|algorithm/string)/\w+\.hpp|opencv2/(\w+)/\2\.hpp",
@@ -379,6 +393,9 @@ def _main() -> None:
             ),
         )
         note({p: h for p, h in state.items() if not p.startswith("boost/")})
+    if asked.onto:
+        _write(onto(includes.default().table, states, libraries, sparse), asked.output)
+        return
     table = table_of({o: v for o, v in states.items() if any(v.values())}, libraries, sparse)
     table = msgspec.structs.replace(
         table,
@@ -446,6 +463,33 @@ def _numbered(states: str, paths: tuple[str, ...], numbers: dict[str, int]) -> s
         again = (n if n == "-" else str(numbers.setdefault(paths[int(n)], len(numbers))) for n in told)
         runs.append(" ".join((version, *again)))
     return ";".join(runs)
+
+
+_States = dict[str, dict[str, dict[str, tuple[str, ...]]]]
+"""Owner to version to header to what it includes."""
+
+
+def onto(known: includes.Table, states: _States, libraries: Iterable[str], sparse: Iterable[str]) -> includes.Table:
+    """A table with more versions and owners. Which types stopped coming along stays as it was."""
+    merged: _States = {}
+    for owner, headers in known.owners.items():
+        versions = merged[owner] = {v: {} for text in headers.values() for v, _ in _runs(text)}
+        for header, text in headers.items():
+            runs = _runs(text)
+            for version, found in versions.items():
+                now = [places for first, places in runs if parts(first) <= parts(version)]
+                if now and now[-1] != "-":
+                    found[header] = tuple(known.paths[int(place)] for place in now[-1].split())
+    for owner, versions in states.items():
+        merged.setdefault(owner, {}).update(versions)
+    table = table_of(merged, known.libraries.union(libraries), known.sparse.union(sparse))
+    versions = {d: {**_versions(d, table), **known.versions.get(d, {})} for d in DISTROS}
+    return msgspec.structs.replace(table, names=known.names, announced=known.announced, versions=versions)
+
+
+def _runs(text: str) -> list[tuple[str, str]]:
+    """The states of a header, oldest first: first version, and the places of what it includes."""
+    return [(version, places) for version, _, places in (run.partition(" ") for run in text.split(";"))]
 
 
 def _versions(distro: str, table: includes.Table) -> dict[str, str]:
