@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from .target import Target
@@ -286,6 +287,34 @@ _VARIABLES = {
 def variables(package: str) -> frozenset[str] | None:
     """Variables that find_package(package) sets, None where they are not known."""
     return _VARIABLES.get(package)
+
+
+# Folders in which Debian and Ubuntu put the headers of one version of a library beside those of others: the library and
+# its version. Source: lists of files of Debian's packages libopencv-core-dev, libpcl-dev and libompl-dev.
+# `opencv2/` is how all versions from 2 on are included.
+_FOLDER = re.compile(r"(?:opencv(?P<opencv>[3-9])|pcl-(?P<pcl>\d+\.\d+)|ompl-(?P<ompl>\d+\.\d+))/")
+
+
+class Folder(NamedTuple):
+    """The folder of one version of a library in an include path. there: whether a target has that version. path: as
+    the library's own headers and its documentation write it."""
+
+    library: str
+    version: str
+    there: bool
+    path: str
+
+
+def versioned_folder(target: Target, path: str) -> Folder | None:
+    """The folder of a version in an include path; None where there is none, or the library's version is not known."""
+    found = _FOLDER.match(path)
+    if found is None or found.lastgroup is None:
+        return None
+    version = target.library(found.lastgroup)
+    if not version:
+        return None
+    meant = parts(found[found.lastgroup])
+    return Folder(found.lastgroup, version, parts(version)[: len(meant)] == meant, path[found.end() :])
 
 
 # First part of the include paths of a platform library, by its name in platform_versions.yaml.

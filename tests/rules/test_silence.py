@@ -117,6 +117,17 @@ SILENT = {
         ),
         ("run.cpp", "#if RCLCPP_VERSION_GTE(28, 0, 0)", "#if 0"),
     ),
+    "the path by which all versions of OpenCV are included": Silent(
+        "removed-header",
+        ("humble", "jazzy"),
+        ament(
+            NODE.format("${OpenCV_LIBS}") + "find_package(OpenCV REQUIRED)\n" + INSTALLED,
+            "rclcpp",
+            "libopencv-dev",
+            run_cpp="#include <opencv2/core.hpp>\n" + MAIN,
+        ),
+        ("run.cpp", "<opencv2", "<opencv4/opencv2"),
+    ),
     "a header in code that is switched off": Silent(
         "removed-header",
         ("jazzy",),

@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.targets.distro import DistroTarget
-from rosimpact.impact.targets.library import compiled_component, gone_component
+from rosimpact.impact.targets.library import compiled_component, gone_component, versioned_folder
 from rosimpact.impact.targets.providers import default_providers
 
 
@@ -48,3 +48,21 @@ def test_a_component_that_is_gone(distro, component, gone):
     known = default_providers()
     if target.platform in known.cmake_platforms("boost_regex"):  # Boost brings configurations since 1.70
         assert (target.platform not in known.cmake_platforms(f"boost_{component}")) is gone
+
+
+@pytest.mark.parametrize(
+    ("distro", "path", "expected"),
+    [
+        ("humble", "opencv4/opencv2/core.hpp", ("opencv", True, "opencv2/core.hpp")),
+        ("melodic", "opencv4/opencv2/core.hpp", ("opencv", False, "opencv2/core.hpp")),
+        ("humble", "pcl-1.10/pcl/point_types.h", ("pcl", False, "pcl/point_types.h")),
+        ("noetic", "pcl-1.10/pcl/point_types.h", ("pcl", True, "pcl/point_types.h")),
+        # All versions from 2 on are included so; these folders have no version of their own.
+        ("humble", "opencv2/core.hpp", None),
+        ("humble", "eigen3/Eigen/Core", None),
+        ("humble", "pcl/point_types.h", None),
+    ],
+)
+def test_the_folder_of_a_version_in_a_path(distro, path, expected):
+    folder = versioned_folder(DistroTarget(distro), path)
+    assert (folder and (folder.library, folder.there, folder.path)) == expected

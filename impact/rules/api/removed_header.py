@@ -4,8 +4,9 @@ What it does
     Reports `#include` lines whose header the target's version of the providing package does not install: removed,
     renamed, or only added in a later version; headers of platform libraries that the newest distro no longer has;
     generated headers whose interface the version lacks, or another package of the workspace has; spellings of
-    generated headers that belong to the other ROS generation, or to C where rclcpp is used; and headers of
-    generate_parameter_library by a path that its version does not make, or does not install.
+    generated headers that belong to the other ROS generation, or to C where rclcpp is used; headers of
+    generate_parameter_library by a path that its version does not make, or does not install; and paths that name the
+    folder which a platform has for one version of a library (`opencv4/opencv2/core.hpp`).
 
 Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
@@ -13,9 +14,9 @@ Why it breaks
 Severity
     error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for the first
     include of each header that only the newest distro lacks, for interfaces that go when a dated target's distro is
-    updated, for headers of C where nothing else brings the C++ types, and for installed headers that include what is
-    not installed; note for examples, for installed headers that the package does not compile itself, and under
-    conditions that are not known.
+    updated, for headers of C where nothing else brings the C++ types, for installed headers that include what is not
+    installed, and for the folder of a version that is there, since another machine may have it elsewhere; note for
+    examples, for installed headers that the package does not compile itself, and under conditions that are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -35,6 +36,7 @@ from ...model.package import IncludeUse, is_header
 from ...model.view import Misnamed, View
 from ...model.workspace import Package
 from ...targets.evidence import evidence_of
+from ...targets.library import Folder, versioned_folder
 from ...targets.target import Change
 from ...targets.version import at_least
 from ..rule import Hit, rule
@@ -74,6 +76,10 @@ def removed_header(view: View):
                     if view.built(include.role)
                     else "warning"
                 )
+            folder = versioned_folder(view.target, path)
+            if folder is not None:
+                yield _in_folder(package, include, folder, severity)
+                continue
             change = gone.get(path)
             if change is not None and not view.nested_header(change.package, path):
                 where = f"{change.package} {change.version}".strip()
@@ -142,6 +148,19 @@ def removed_header(view: View):
                     evidence=wrong.evidence,
                 )
         yield from _what_is_coming(view, package, coming)
+
+
+def _in_folder(package: Package, include: IncludeUse, folder: Folder, severity: str) -> Hit:
+    """What is wrong with the folder of one version of a library in a path."""
+    where = include.path.partition("/")[0]
+    text = (
+        f"`{where}/` is where this platform puts {folder.library} {folder.version}, and others need not"
+        if folder.there
+        else f"`{include.path}` is not there with {folder.library} {folder.version}"
+    )
+    if folder.there and severity == "error":
+        severity = "warning"
+    return Hit(include.at, include.path, text, f"include `{folder.path}`", package.name, severity=severity)
 
 
 _C_HEADER = re.compile(r"(?P<stem>(?P<package>\w+)/(?:msg|srv|action)/[a-z0-9_]+)\.h\Z")
