@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))
 """Kinds of names that are called."""
 CLASSES = frozenset(("class", "struct", "union"))
+ASSIGNING = {f"operator{sign}=": f"{sign}=" for sign in "+-*/"}
+"""Operators by name that are looked for where they stand behind an object, to the sign that they are written with."""
 
 
 class Found(NamedTuple):
@@ -139,7 +141,7 @@ def _known(package: str, lines: Iterable[Line]) -> Known:
     for line in lines:
         for full, events in line.events.get("c++", {}).items():
             outer, _, last = full.rpartition("::")
-            if not last.isidentifier() or "<" in full or not _INTERNAL.isdisjoint(full.split("::")):
+            if not (last.isidentifier() or last in ASSIGNING) or "<" in full or not _INTERNAL.isdisjoint(full.split("::")):
                 continue
             before = names.get(full)  # what another generation told of it
             name = names[full] = Name(package, events if before is None else (*events, *before.events))

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ..facts.cpp import standing
 from ..facts.usage import TEMPLATE_ARGUMENTS, arguments_at, declares_next
-from .api import CALLED, CLASSES, Found, Vocabulary
+from .api import ASSIGNING, CALLED, CLASSES, Found, Vocabulary
 from .expressions_cpp import (
     FAR,
     Region,
@@ -30,6 +30,7 @@ from .expressions_cpp import (
     without_templates,
 )
 
+_ASSIGNMENTS = {name: re.compile(re.escape(sign)) for name, sign in ASSIGNING.items()}
 _TYPES = CLASSES | {"alias", "enum"}
 _POINTERS = frozenset(["shared_ptr", "unique_ptr", "weak_ptr", "intrusive_ptr"])
 _MAKERS = frozenset(["make_shared", "make_unique", "allocate_shared"])
@@ -178,8 +179,12 @@ class ApiUses:
         """Every use of a name that is looked for and whose last part is among the words."""
         home = self.vocabulary.home
         for word in words:
-            for at in standing(word, self.text):
-                for found in (self._at(word, at), self._construction(word, at)):
+            if word in ASSIGNING:
+                places = ((self._assigned(word, match.start()),) for match in _ASSIGNMENTS[word].finditer(self.text))
+            else:
+                places = ((self._at(word, at), self._construction(word, at)) for at in standing(word, self.text))
+            for place in places:
+                for found in place:
                     if found is not None and found.package not in home and self._differs(found):
                         yield found
         yield from (found for found in self._overrides(frozenset(words)) if found.package not in home)
@@ -212,6 +217,15 @@ class ApiUses:
         if type_ is None or type_.several or type_.pointer != (by == "->"):
             return None
         return self._member(type_, word, at)
+
+    def _assigned(self, word: str, at: int) -> Found | None:
+        """`object += ...`"""
+        steps = chain_before(self.text, at)
+        type_ = self._chain(steps, at) if steps is not None else None
+        if type_ is None or type_.own or type_.several or type_.pointer:
+            return None
+        member = self.vocabulary.member(type_.name, word)
+        return None if member is None else self._use(member[0], at, True, member[1])
 
     def _member(self, type_: Type, word: str, at: int) -> Found | None:
         if type_.own:

@@ -24,7 +24,7 @@ from ..facts.python_objects import PythonUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, first_places, initialises, names_a_variable, place_in, places_of_use, python_text
 from ..targets.fields import Fields
-from .api import Changes, Vocabulary
+from .api import ASSIGNING, Changes, Vocabulary
 from .api_cpp import ApiUses
 from .api_python import Changing, python_packages, uses_of
 from .build import At, Build
@@ -617,7 +617,7 @@ class _Join:
         ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp, ros, self.home)
         for path, (role, _, targets, conditions) in roles.items():
-            words = vocabulary.words & spoken.get(path, frozenset())
+            words = vocabulary.words & (spoken[path] | ASSIGNING.keys()) if path in spoken else None
             if not words:
                 continue
             reached = sorted(to for to in self.reached_files(path) if to in spoken)

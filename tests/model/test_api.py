@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.facts.surface_cpp import extract as header
-from rosimpact.impact.model.api import Changes, Vocabulary
+from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.api_cpp import ApiUses, parameter_type, shown_as
 from rosimpact.impact.model.expressions_cpp import regions
 from rosimpact.impact.targets.build_surface_changes import Lines
@@ -27,7 +27,7 @@ void helper(int a, int b);
     """
 namespace arm {
 enum Mode { SLOW };
-class Base { public: virtual void tick(double dt); void stays(); };
+class Base { public: virtual void tick(double dt); void stays(); Base & operator+=(int by); };
 class Arm : public Base { public: explicit Arm(int a, int b); void f(int a, int b); };
 template<class T> class Grip { public: };
 }""",
@@ -56,7 +56,7 @@ def changes() -> Changes:
 
 def uses(text: str, changes: Changes, *headers: str) -> list[str]:
     vocabulary = Vocabulary(["arm", "leg"], "mine", changes)
-    words = [word for word in sorted(vocabulary.words) if word in text]
+    words = [word for word in sorted(vocabulary.words) if word in text or word in ASSIGNING]
     found = ApiUses(text, headers, vocabulary, {"arm", "leg"}).found(words)
     told = []
     for use in sorted(found, key=lambda use: use.offset):
@@ -79,6 +79,11 @@ def uses(text: str, changes: Changes, *headers: str) -> list[str]:
         ("void g() { arm::helper(1, h(2, 3)); }", ["arm::helper/2"]),
         ("other::Old * o; Old * p;", []),
         ("class Old {}; using namespace arm; Old * o;", []),
+        # operators behind an object
+        ("void g() { arm::Base b; b += 1; }", ["arm::Base::operator+="]),
+        ("class C { arm::Arm a_; void g() { a_ += h(2); this->a_ += 1; } };", ["arm::Base::operator+="] * 2),
+        ("void g(arm::Base * b, int c) { b += 1; c += 1; d += 1; }", []),
+        ("void g() { arm::Base b; b -= 1; b + 1; }", []),
         # a type in no namespace, where nothing else can be so called
         ("namespace mine { ArmResult f() { return 0; } }", ["ArmResult"]),
         ("ArmResult Robot::f() {}", ["ArmResult"]),
