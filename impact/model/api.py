@@ -141,7 +141,9 @@ def _known(package: str, lines: Iterable[Line]) -> Known:
     for line in lines:
         for full, events in line.events.get("c++", {}).items():
             outer, _, last = full.rpartition("::")
-            if not (last.isidentifier() or last in ASSIGNING) or "<" in full or not _INTERNAL.isdisjoint(full.split("::")):
+            if not last.isidentifier() and last not in ASSIGNING:
+                continue
+            if "<" in full or not _INTERNAL.isdisjoint(full.split("::")):
                 continue
             before = names.get(full)  # what another generation told of it
             name = names[full] = Name(package, events if before is None else (*events, *before.events))
