@@ -260,6 +260,34 @@ def standard_year(number: int) -> int:
     return 1998 if number in (98, 3) else 2000 + number % 100
 
 
+class _Exact(NamedTuple):
+    name: str
+    library: str
+    since: str
+    source: str
+
+
+# Packages whose `x-config.cmake`, which answers to X in any case, became `xConfig.cmake`, which does to `x` alone.
+_EXACT = (
+    _Exact(
+        "assimp",
+        "assimp",
+        "5.1.0",
+        "assimp's CMakeLists.txt at v5.0.1 and v5.1.0; files of Debian's libassimp-dev 5.0.1 and 5.2.5",
+    ),
+)
+
+
+def not_answering(target: Target, package: str) -> str:
+    """The target's version of a library whose CMake package does not answer to this spelling of its name; empty where
+    it does, or nothing is known."""
+    for row in _EXACT:
+        if package.lower() == row.name and package != row.name:
+            version = target.library(row.library) or ""
+            return version if version and at_least(version, row.since) else ""
+    return ""
+
+
 def _set_by(stem: str, *endings: str) -> frozenset[str]:
     return frozenset(f"{stem}_{ending}" for ending in (*endings, "FOUND", "VERSION"))
 

@@ -128,6 +128,20 @@ SILENT = {
         ),
         ("run.cpp", "<opencv2", "<opencv4/opencv2"),
     ),
+    "another spelling of a package that pkg-config may stand for": Silent(
+        "misspelt-cmake-name",
+        ("humble",),
+        ament(
+            "find_package(rclcpp REQUIRED)\nfind_package(ASSIMP QUIET)\nif(NOT ASSIMP_FOUND)\n"
+            "  find_package(PkgConfig REQUIRED)\n  pkg_check_modules(ASSIMP REQUIRED assimp)\nendif()\n"
+            "add_executable(run run.cpp)\nament_target_dependencies(run rclcpp)\n"
+            "target_link_libraries(run ${ASSIMP_LIBRARIES})\n" + INSTALLED,
+            "rclcpp",
+            "assimp-dev",
+            run_cpp=RCLCPP + MAIN,
+        ),
+        ("CMakeLists.txt", "dependencies(run rclcpp)", "dependencies(run rclcpp ASSIMP)"),
+    ),
     "a header in code that is switched off": Silent(
         "removed-header",
         ("jazzy",),

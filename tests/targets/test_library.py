@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.targets.distro import DistroTarget
-from rosimpact.impact.targets.library import compiled_component, gone_component, versioned_folder
+from rosimpact.impact.targets.library import compiled_component, gone_component, not_answering, versioned_folder
 from rosimpact.impact.targets.providers import default_providers
 
 
@@ -66,3 +66,17 @@ def test_a_component_that_is_gone(distro, component, gone):
 def test_the_folder_of_a_version_in_a_path(distro, path, expected):
     folder = versioned_folder(DistroTarget(distro), path)
     assert (folder and (folder.library, folder.there, folder.path)) == expected
+
+
+@pytest.mark.parametrize(
+    ("distro", "name", "version"),
+    [
+        ("foxy", "ASSIMP", ""),
+        ("humble", "ASSIMP", "5.2.2"),
+        ("humble", "Assimp", "5.2.2"),
+        ("humble", "assimp", ""),
+        ("humble", "BOOST", ""),
+    ],
+)
+def test_a_spelling_to_which_a_version_does_not_answer(distro, name, version):
+    assert not_answering(DistroTarget(distro), name) == version

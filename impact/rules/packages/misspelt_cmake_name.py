@@ -3,8 +3,9 @@
 What it does
     Reports names in find_package, catkin COMPONENTS, ament_export_dependencies, ament_target_dependencies and
     catkin_package that nobody provides and that are two known names run together, or one edit or a different case away
-    from a name the package declares or finds; names in find_package that are known in another case alone; and variables
-    such as `Eigen3_INCLUDE_DIR` that no find module sets, one edit or case away from one that is.
+    from a name the package declares or finds; names in find_package that are known in another case alone, in general or
+    with the target's version of a library; and variables such as `Eigen3_INCLUDE_DIR` that no find module sets, one
+    edit or case away from one that is.
 
 Why it breaks
     CMake takes an unknown variable as empty and says nothing; an unknown package stops this build or a dependant's.
@@ -25,7 +26,7 @@ Not reported
 
 from ...model.spelling import Names
 from ...model.view import View
-from ...targets.library import variables
+from ...targets.library import not_answering, variables
 from ..cure import Replace
 from ..rule import Hit, rule
 
@@ -78,6 +79,7 @@ def misspelt_cmake_name(view: View):
                     fix=(Replace(at.path, at.line, at.column, name, meant),),
                 )
         yield from _wrong_case(view, package)
+        yield from _case_that_matters_now(view, package)
         yield from _variables(view, package, found)
 
 
@@ -104,6 +106,26 @@ def _wrong_case(view: View, package):
             package.name,
             severity="error" if sure else "warning",
             fix=(Replace(f.at.path, f.at.line, f.at.column, f.name, meant[0]),),
+        )
+
+
+def _case_that_matters_now(view: View, package):
+    """find_package names to which the target's version of a library answers no longer, where the build needs them."""
+    linked = {link.item for target in package.build.targets for link in target.links if link.how == "ament"}
+    for f in package.build.found:
+        if f.how != "find_package" or f.via or not (f.required or f.name in linked) or not view.active(f.conditions):
+            continue
+        version = not_answering(view.target, f.name)
+        if not version or f"Find{f.name}.cmake" in view.workspace.cmake_files:
+            continue
+        meant = f.name.lower()
+        yield Hit(
+            f.at,
+            f.name,
+            f"`{f.name}` is not found: {meant} {version} has `{meant}Config.cmake`, which minds the case",
+            f"write `{meant}`",
+            package.name,
+            severity="error" if f.required and view.certain(f.conditions) else "warning",
         )
 
 
