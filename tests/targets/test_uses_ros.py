@@ -20,6 +20,13 @@ ROWS = {row.label: row for row in uses.all_uses() if row.label in OURS}
 
 # label: code that looks so, and code that does not. A label without an example is code itself.
 EXAMPLES = {
+    **{
+        f"{macro} with boost::none, without boost/optional/optional_io.hpp": (
+            f"#include <boost/optional.hpp>\n{macro}(filter.value(), boost::none);",
+            f"#include <boost/optional/optional_io.hpp>\n{macro}(filter.value(), boost::none); f(boost::none);",
+        )
+        for macro in ("EXPECT_EQ", "EXPECT_NE", "ASSERT_EQ", "ASSERT_NE")
+    },
     "add_on_set_parameters_callback()": (
         "node->add_on_set_parameters_callback(a, b);",
         "node->other(a); int add_on_set_parameters_callback = 0;",
