@@ -20,16 +20,16 @@ from .cpp import KEYWORDS, CppFile, Use, scan, standing
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How one use looks. All expressions are regular expressions over text whose literals are blank inside.
 
-    word: an identifier that stands in the use, or a qualified name (`std::optional`) by itself. language: `cpp` or
-    `python`. before: matches right up to the word. template: matches all of the arguments in `<>` (empty: there must be
-    none; unset: either). arguments: makes it a call or an initialisation, with `2`, `1-3` or `2+` arguments. where:
-    argument number, from 1 (from the end: -1), or `any`, to what must be found in it: an expression, or `<float>`,
-    `<text>` for an expression that shows itself to be a floating point number or a string (a literal, or a variable
-    that the file declares so), `<string>` for an object of class string, `<shared>` for a shared pointer to what the
-    file has just made. names: a variable may stand between the type that `word` is and its arguments. after: matches
-    right behind the use. inside: `class` for what stands right in the body of a class. file: must be found in the file.
-    unless: must not be found in it; what begins with `#include` is looked for among the includes, which are blank
-    elsewhere.
+    word: an identifier that stands in the use, or a qualified name (`std::optional`) by itself. language: `cpp`,
+    `python`, or `yaml` for files of parameters, whose comments alone are blank. before: matches right up to the
+    word. template: matches all of the arguments in `<>` (empty: there must be none; unset: either). arguments:
+    makes it a call or an initialisation, with `2`, `1-3` or `2+` arguments. where: argument number, from 1 (from
+    the end: -1), or `any`, to what must be found in it: an expression, or `<float>`, `<text>` for an expression
+    that shows itself to be a floating point number or a string (a literal, or a variable that the file declares
+    so), `<string>` for an object of class string, `<shared>` for a shared pointer to what the file has just made.
+    names: a variable may stand between the type that `word` is and its arguments. after: matches right behind the
+    use. inside: `class` for what stands right in the body of a class. file: must be found in the file. unless: must
+    not be found in it; what begins with `#include` is looked for among the includes, which are blank elsewhere.
     """
 
     word: str
@@ -198,8 +198,8 @@ def names_a_variable(data: bytes, type_: str) -> bool:
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     """Line, column, preprocessor conditions and template arguments of every use that looks like the pattern. Never
     raises."""
-    scanned = None if pattern.language == "python" else scan(data)
-    text = python_text(data) if scanned is None else scanned.visible
+    scanned = scan(data) if pattern.language == "cpp" else None
+    text = scanned.visible if scanned is not None else _TEXTS[pattern.language](data)
     whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
     if (pattern.file and not _compiled(pattern.file).search(whole)) or (
         pattern.unless and _compiled(pattern.unless).search(whole)
@@ -422,3 +422,15 @@ def python_text(data: bytes) -> str:
         return '"' + _INSIDE.sub(" ", hidden[1:-1]) + ('"' if hidden[-1] != "\n" else "\n")
 
     return _PYTHON_HIDDEN.sub(blank, text)
+
+
+_YAML_COMMENT = re.compile(r"(?m)(?:^|(?<=[ \t]))#.*$")
+
+
+def yaml_text(data: bytes) -> str:
+    """The text of a YAML file with comments blanked, offsets kept."""
+    text = data.decode("utf-8-sig", "replace").replace("\r\n", "\n").replace("\r", "\n")
+    return _YAML_COMMENT.sub(lambda match: " " * len(match.group()), text)
+
+
+_TEXTS = {"python": python_text, "yaml": yaml_text}

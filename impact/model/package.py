@@ -247,7 +247,7 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
     of the standard library the headers that offer them. modules: labels and patterns of uses in Python, by the
     package that is imported. fields: the table of interfaces. surfaces: what versions of packages offer, as
-    surface_store.Surfaces."""
+    surface_store.Surfaces. parameters: labels and patterns of uses in files of parameters."""
 
     words: frozenset[str] = frozenset()
     qualified: frozenset[str] = frozenset()
@@ -257,6 +257,7 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     version: str = ""
     fields: Fields | None = None
     surfaces: Any = None
+    parameters: list[tuple[str, Pattern]] = []
 
     @cached_property
     def changing_python(self) -> Changing | None:
@@ -333,6 +334,7 @@ class _Join:
             _ASIDE_NAME.search(self.name) or self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         )
         python: dict[str, PythonFile] = {}
+        parameters: list[str] = []
         references, plugins, registered, setup, interfaces = [], [], [], [], []
         for path in self.files:
             kind = self.kinds.get(path)
@@ -360,13 +362,15 @@ class _Join:
             elif isinstance(facts, SetupFile):
                 setup.append((path, facts))
             else:
+                if path.endswith((".yaml", ".yml")):
+                    parameters.append(path)
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
         self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined})
         roles = self.roles()
         includes, names, needed = self.sources(roles)
         imports, python_names, syntax, modules = self.python(python)
-        uses = [*self.uses(roles), *self.python_uses(python)]
+        uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
         return Digest(
             self.name,
             self.path,
@@ -554,6 +558,15 @@ class _Join:
                 for label, pattern in self.watched.modules[package]:
                     for line, column, _, _ in first_places(places_of_use(self.read(path), pattern)):
                         yield NameUse(label, At(path, line, column), self.python_role(path), False, "python")
+
+    def parameter_uses(self, paths: Iterable[str]) -> Iterator[NameUse]:
+        """The same in files of parameters."""
+        for path in paths:
+            data = self.read(path)
+            for label, pattern in self.watched.parameters:
+                if pattern.word.encode() in data:
+                    for line, column, _, _ in first_places(places_of_use(data, pattern)):
+                        yield NameUse(label, At(path, line, column), self.python_role(path), False, "yaml")
 
     def members(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""

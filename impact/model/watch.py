@@ -49,7 +49,10 @@ def watched() -> Watched:
     for row in all_uses():
         if row.pattern.language == "python":
             modules.setdefault(row.package, []).append((row.label, _bare(row.pattern)))
+    parameters = []
     for row in all_behaviour().values():
+        if row.pattern.language == "yaml":
+            parameters.append((row.label, _bare(row.pattern)))
         for module in row.imports:
             modules.setdefault(module, []).append((row.label, _bare(row.pattern)))
     fields = default_fields()
@@ -61,6 +64,7 @@ def watched() -> Watched:
                 sorted(python),
                 sorted(headers.items()),
                 modules,
+                parameters,
                 stamp(),
                 fields.version,
                 shipped().stamp,
@@ -68,7 +72,8 @@ def watched() -> Watched:
         ).encode()
     ).hexdigest()
     return Watched(
-        frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields, shipped()
+        *(frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields, shipped()),
+        parameters=parameters,
     )
 
 

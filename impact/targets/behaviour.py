@@ -34,6 +34,7 @@ class _Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     source: str
     uses: dict[str, _Use]
     library: bool = False
+    until: str = ""
 
 
 class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -44,7 +45,8 @@ class Behaviour(NamedTuple):
     """A use that does something else from a version of a package or platform library on.
 
     label: as a user reads it, no other row has it. since: as the bounds of changes.Row. clause: what it does now, and
-    what before. help: what is right in both, or empty. source: an address. imports: see above.
+    what before. help: what is right in both, or empty. source: an address. imports: see above. until: the version from
+    which on it is as it was before since, empty where none is known.
     """
 
     package: str
@@ -56,6 +58,7 @@ class Behaviour(NamedTuple):
     source: str
     pattern: Pattern
     imports: tuple[str, ...]
+    until: str = ""
 
     @property
     def change(self) -> Change:
@@ -67,7 +70,7 @@ class Behaviour(NamedTuple):
         version = version_of(self.package, self.library, target)
         if not version or (self.since in DISTROS and _ros(self.since) != target.ros):
             return None
-        return reached(self.since, version, target)
+        return reached(self.since, version, target) and not reached(self.until, version, target)
 
 
 def _ros(distro: str) -> int:
@@ -87,7 +90,7 @@ def all_behaviour() -> dict[str, Behaviour]:
             if label in found:
                 raise SnapshotError(f"{_FILE}: two rows are called `{label}`; install rosimpact again")
             found[label] = Behaviour(
-                g.package, g.library, label, g.since, use.clause, use.help, g.source, use, use.imports
+                *(g.package, g.library, label, g.since, use.clause, use.help, g.source, use, use.imports), until=g.until
             )
     return found
 

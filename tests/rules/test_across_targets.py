@@ -71,3 +71,34 @@ def test_a_name_in_a_module_that_is_gone_is_not_called_deprecated(tmp_path):
         ("deprecated-name", 1, ("jazzy",)),
         ("deprecated-name", 2, ("jazzy",)),
     ]
+
+
+PARAMETERS = """\
+controller_server:
+  ros__parameters:
+    controller_frequency: 20.0  # of enable_stamped_cmd_vel nothing is said
+"""
+
+
+@pytest.mark.parametrize(
+    ("added", "depends", "expected"),
+    [
+        ("", "nav2_bringup", [(2, ("kilted",))]),
+        ("    enable_stamped_cmd_vel: true\n", "nav2_bringup", []),
+        ("", "rclcpp", []),  # whose server that is, nobody knows
+    ],
+)
+def test_parameters_mean_something_else(added, depends, expected, tmp_path):
+    (tmp_path / "porter/config").mkdir(parents=True)
+    (tmp_path / "porter/config/nav2.yaml").write_text(f"# Navigation\n{PARAMETERS}{added}")
+    (tmp_path / "porter/package.xml").write_text(
+        '<package format="3"><name>porter</name><version>1.0.0</version><description>p</description>'
+        '<maintainer email="robots@example.org">R</maintainer><license>MIT</license>'
+        f"<buildtool_depend>ament_cmake</buildtool_depend><exec_depend>{depends}</exec_depend></package>"
+    )
+    (tmp_path / "porter/CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.8)\nproject(porter)\nfind_package(ament_cmake REQUIRED)\n"
+        "install(DIRECTORY config DESTINATION share/${PROJECT_NAME})\nament_package()\n"
+    )
+    found = check(tmp_path, Options(targets=("humble", "kilted"), cache=tmp_path / "cache", jobs=1)).findings
+    assert [(f.line, f.targets) for f in found if f.rule == "changed-behaviour"] == expected

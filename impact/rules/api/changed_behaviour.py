@@ -1,9 +1,10 @@
 """changed-behaviour: a call that is written rightly does something else on a target.
 
 What it does
-    Reports the first use in each package of what, as the reviewed table of behaviour says, does, returns or expects
-    something else since a version of a package or library: where the targets asked for lie on both sides of that
-    version, or, when one target is asked for, where the long-term distro before it was on the other side.
+    Reports the first use in each package, in C++, Python or a file of parameters, of what, as the reviewed table of
+    behaviour says, does, returns or expects something else since a version of a package or library: where the
+    targets asked for lie on both sides of that version, or, when one target is asked for, where the long-term
+    distro before it was on the other side.
 
 Why it matters
     Everything compiles and starts, and one developer's robot does other than another's.
