@@ -81,16 +81,17 @@ controller_server:
 
 
 @pytest.mark.parametrize(
-    ("added", "depends", "expected"),
+    ("folder", "added", "depends", "expected"),
     [
-        ("", "nav2_bringup", [(2, ("kilted",))]),
-        ("    enable_stamped_cmd_vel: true\n", "nav2_bringup", []),
-        ("", "rclcpp", []),  # whose server that is, nobody knows
+        ("config", "", "nav2_bringup", [(2, ("kilted",))]),
+        ("config", "    enable_stamped_cmd_vel: true\n", "nav2_bringup", []),
+        ("config", "", "rclcpp", []),  # whose server that is, nobody knows
+        ("config/humble", "", "nav2_bringup", []),
     ],
 )
-def test_parameters_mean_something_else(added, depends, expected, tmp_path):
-    (tmp_path / "porter/config").mkdir(parents=True)
-    (tmp_path / "porter/config/nav2.yaml").write_text(f"# Navigation\n{PARAMETERS}{added}")
+def test_parameters_mean_something_else(folder, added, depends, expected, tmp_path):
+    (tmp_path / "porter" / folder).mkdir(parents=True)
+    (tmp_path / "porter" / folder / "nav2.yaml").write_text(f"# Navigation\n{PARAMETERS}{added}")
     (tmp_path / "porter/package.xml").write_text(
         '<package format="3"><name>porter</name><version>1.0.0</version><description>p</description>'
         '<maintainer email="robots@example.org">R</maintainer><license>MIT</license>'

@@ -19,8 +19,8 @@ Use instead
     float angle = std::fmod(box.angle + 90.0F, 90.0F); // the same on every version, beside a like step for the size
 
 Not reported
-    Code that a version test excludes on the target; tests and examples; uses that show that they know, such as a
-    default that is given.
+    Code that a version test excludes on the target; tests and examples; files of parameters in a folder that is called
+    after another distro; uses that show that they know, such as a default that is given.
 """
 
 from collections.abc import Iterator, Sequence
@@ -32,6 +32,7 @@ from ...targets.behaviour import Behaviour, all_behaviour
 from ...targets.distro import DistroTarget, known_distros
 from ...targets.evidence import Evidence
 from ..rule import Hit, rule
+from .build_api import of_another_distro
 
 
 @rule(severity="note", across=True)
@@ -84,6 +85,8 @@ def _counts(view: View, package: Package, use: NameUse, row: Behaviour) -> bool:
     if package.build_type == "catkin" and view.target.ros == 2:
         return False
     if row.holds(view.target) is None or not view.active(use.conditions):
+        return False
+    if use.language == "yaml" and of_another_distro(view, use.at.path, package.digest.files):
         return False
     return view.concerned(package, row.change, use.at.path)
 
