@@ -58,6 +58,8 @@ _AV = re.compile(
     r"lib(?:avutil/\w+|avcodec/(?:avcodec|codec\w*|packet|defs|bsf|version\w*|old_codec_ids)"
     r"|avformat/(?:avformat|avio|version\w*)|avdevice/(?:avdevice|version\w*)|swscale/(?:swscale|version\w*))\.h"
 )
+# Headers that a library's build makes, and that include nothing.
+_MADE = {"libav": ("libavutil/avconfig.h",)}
 # Interfaces of rclcpp's nodes, for which its build makes headers from templates.
 _INTERFACES = tuple(
     f"node_{name}"
@@ -72,7 +74,7 @@ _DIRECTIVE = re.compile(
 )
 _ELSEWHERE = re.compile(
     r"_WIN32|\bWIN32|_MSC_VER|__APPLE__|__BORLANDC__|_WIN64|__CYGWIN__|_LIBCPP_VERSION|__QNX__|__ANDROID__|__VXWORKS__"
-    r"|__CUDACC__|__HIPCC__|EIGEN_GPU|EIGEN_CUDA|EIGEN_HIP|EIGEN_HAS_GPU|SYCL|EIGEN_USE_|__ARM|__ALTIVEC|__VSX|__ZVECTOR"
+    r"|HAVE_AV_CONFIG_H|__CUDACC__|__HIPCC__|EIGEN_GPU|EIGEN_CUDA|EIGEN_HIP|EIGEN_HAS_GPU|SYCL|EIGEN_USE_|__ARM|__ALTIVEC|__VSX|__ZVECTOR"
 )
 _NEGATED = re.compile(r"!|__linux|__GNUC__|__unix|\|\|")
 
@@ -162,6 +164,9 @@ class Clone:
             headers: dict[str, bytes] = {}
             for path, entry in _walk(tree, ""):
                 self._add(headers, path, entry, "")
+            for path in _MADE.get(self.library, ()) if headers else ():
+                self.blobs.setdefault(b"", Header((), frozenset(), frozenset()))
+                headers.setdefault(path, b"")
             return {self.library: headers}
         known = self.trees.get(tree.id.raw)
         if known is None:
