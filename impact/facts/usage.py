@@ -92,6 +92,9 @@ _SCOPES = re.compile(rb"(?:[A-Za-z_]\w*::)+\Z")
 _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&)[ \t]+\Z")
 # The same before a variable, which may be a reference or a pointer.
 _TYPE_OF_VARIABLE = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|>)(?:\s*[&*]+\s*|[ \t]+)\Z")
+_ASSIGNED = re.compile(rb"\s*=(?!=)")
+_NAMED = re.compile(rb"\s+\w+\s*[;={]")
+_BEFORE_MEMBER = re.compile(rb"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?")
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
@@ -143,14 +146,12 @@ def may_have(data: bytes, pattern: Pattern) -> bool:
     """False when a use is surely not in a file; cheap, so that few files have to be looked at closely."""
     if not pattern.before:
         return True
-    word, before = pattern.word.encode(), _in_bytes(rf"(?:{pattern.before})\Z")
-    at = data.find(word)
-    while at >= 0:
+    before = _in_bytes(rf"(?:{pattern.before})\Z")
+    for at, _ in _places(pattern.word.encode(), data):
         # No use reaches back over the end of the statement before it.
         begins = max(0, at - _FAR, data.rfind(b";", max(0, at - _FAR), at))
         if before.search(data, begins, at) is not None:
             return True
-        at = data.find(word, at + len(word))
     return False
 
 
@@ -162,10 +163,7 @@ def _in_bytes(expression: str) -> re.Pattern[bytes]:
 def declares(data: bytes, function: str) -> bool:
     """Whether a C++ file seems to declare or define a function of this name: a type stands before it in its line, or
     at the end of the line before where it begins its own."""
-    name = function.encode()
-    at = data.find(name)
-    while at >= 0:
-        end = at + len(name)
+    for at, end in _places(function.encode(), data):
         if _OPENED.match(data, end) is not None:
             start = data.rfind(b"\n", 0, at) + 1
             ahead = _SCOPES.sub(b"", data[start:at])
@@ -174,16 +172,17 @@ def declares(data: bytes, function: str) -> bool:
             found = _TYPE_AHEAD.search(ahead)
             if found is not None and found.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
                 return True
-        at = data.find(name, end)
     return False
 
 
 def initialises(data: bytes, variable: str) -> bool:
     """Whether a C++ file declares a variable of this name with a value: a type stands before it and `=` behind."""
-    name = re.escape(variable.encode())
-    for found in re.finditer(rb"\b" + name + rb"\s*=(?!=)", data):
-        begins = max(data.rfind(b"\n", 0, found.start()) + 1, found.start() - _FAR)
-        ahead = _TYPE_OF_VARIABLE.search(data[begins : found.start()])
+    for at, end in _places(variable.encode(), data):
+        before = data[at - 1 : at]
+        if _ASSIGNED.match(data, end) is None or before.isalnum() or before == b"_":
+            continue
+        begins = max(data.rfind(b"\n", 0, at) + 1, at - _FAR)
+        ahead = _TYPE_OF_VARIABLE.search(data[begins:at])
         if ahead is not None and ahead.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
             return True
     return False
@@ -191,8 +190,18 @@ def initialises(data: bytes, variable: str) -> bool:
 
 def names_a_variable(data: bytes, type_: str) -> bool:
     """Whether a line of a C++ file declares a variable or member of this type itself, not a pointer or reference."""
-    written = rb"^[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?" + re.escape(type_.encode()) + rb"\s+\w+\s*[;={]"
-    return re.search(written, data, re.MULTILINE) is not None
+    return any(
+        _NAMED.match(data, end) and _BEFORE_MEMBER.fullmatch(data, data.rfind(b"\n", 0, at) + 1, at)
+        for at, end in _places(type_.encode(), data)
+    )
+
+
+def _places(name: bytes, data: bytes) -> Iterator[tuple[int, int]]:
+    """Where a name begins and ends, within other words too."""
+    at = data.find(name)
+    while at >= 0:
+        yield at, at + len(name)
+        at = data.find(name, at + len(name))
 
 
 def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:

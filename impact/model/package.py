@@ -9,7 +9,7 @@ import posixpath
 import re
 from collections.abc import Callable, Collection, Container, Iterable, Iterator
 from functools import cache, cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -24,15 +24,14 @@ from ..facts.python_objects import PythonUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, first_places, initialises, names_a_variable, place_in, places_of_use, python_text
 from ..targets.fields import Fields
-from .api import ASSIGNING, Changes, Vocabulary
-from .api_cpp import ApiUses
-from .api_python import Changing, python_packages, uses_of
 from .build import At, Build
 from .macros import Macros
-from .members import Interface as Meant
-from .members import Scope, interface_named, interfaces_imported, interfaces_included
-from .members_cpp import CppUses, mentions
-from .members_python import PythonUses
+
+# What looks for uses is imported where it does: most packages are read back as they were joined before.
+if TYPE_CHECKING:
+    from .api import Changes
+    from .api_python import Changing
+    from .members import Interface as Meant
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
 ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutorial", "tutorials", "sample", "samples"})
@@ -262,11 +261,15 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def changing_python(self) -> Changing | None:
         """Python names that surfaces tell to have changed."""
+        from .api_python import Changing
+
         return Changing(self.surfaces) if self.surfaces is not None else None
 
     @cached_property
     def changing_cpp(self) -> Changes | None:
         """C++ names that surfaces tell to have changed."""
+        from .api import Changes
+
         return Changes(self.surfaces.lines) if self.surfaces is not None else None
 
     def meant(self, text: str) -> str:
@@ -570,6 +573,9 @@ class _Join:
 
     def members(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
+        from .members import Scope, interface_named, interfaces_included
+        from .members_cpp import CppUses, mentions
+
         table = self.watched.fields
         if table is None:
             return
@@ -621,6 +627,9 @@ class _Join:
     def cpp_api(self, roles) -> Iterator[CppApiUse]:
         """Uses of C++ names of packages outside of the workspace that are not the same in all versions, in files that
         are compiled."""
+        from .api import ASSIGNING, Vocabulary
+        from .api_cpp import ApiUses
+
         if self.watched.changing_cpp is None:
             return
         spoken = {path: _spoken(facts) for path, facts in self.cpp.items() if path in roles}
@@ -629,8 +638,9 @@ class _Join:
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
         ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp, ros, self.home)
+        assigning = vocabulary.words & ASSIGNING.keys()
         for path, (role, _, targets, conditions) in roles.items():
-            words = vocabulary.words & (spoken[path] | ASSIGNING.keys()) if path in spoken else None
+            words = vocabulary.words & spoken[path] | assigning if path in spoken else None
             if not words:
                 continue
             reached = sorted(to for to in self.reached_files(path) if to in spoken)
@@ -670,6 +680,9 @@ class _Join:
 
     def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""
+        from .members import Scope, interfaces_imported
+        from .members_python import PythonUses
+
         table = self.watched.fields
         if table is None:
             return
@@ -693,6 +706,8 @@ class _Join:
 
     def python_api(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
         """Uses of Python names of other packages that may not be the same in all versions."""
+        from .api_python import python_packages, uses_of
+
         changing = self.watched.changing_python
         if changing is None:
             return

@@ -42,6 +42,7 @@ def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Hit]]:
     table = all_behaviour()
     workspace = views[0].workspace
     own = {function for package in workspace for function in package.digest.functions}
+    before = _before(views[0]) if len(views) == 1 else None
     fresh: dict[str, bool] = {}
     for package in workspace:
         told: set[tuple[str, str]] = set()
@@ -51,15 +52,15 @@ def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Hit]]:
                 continue
             if row.package in workspace.packages or (row.pattern.calls and row.pattern.word in own):
                 continue
+            if row.label not in fresh:
+                fresh[row.label] = before is not None and row.holds(before) is False
+            holding = [view for view in views if row.holds(view.target)]
+            if not holding or (len(holding) == len(views) and not fresh[row.label]):
+                continue  # known before it is asked what the use is of, which is dear
             asked = [view for view in views if _counts(view, package, use, row)]
-            with_it = [view for view in asked if row.holds(view.target)]
-            if not with_it:
+            with_it = [view for view in asked if view in holding]
+            if not with_it or (len(with_it) == len(asked) and not fresh[row.label]):
                 continue
-            if len(with_it) == len(asked):
-                if row.label not in fresh:
-                    fresh[row.label] = len(views) == 1 and _is_new(row, views[0])
-                if not fresh[row.label]:
-                    continue
             told.add((row.clause, row.package))
             for view in with_it:
                 since = f"{row.package} {row.since}" if row.since[0].isdigit() else row.since
@@ -91,9 +92,9 @@ def _counts(view: View, package: Package, use: NameUse, row: Behaviour) -> bool:
     return view.concerned(package, row.change, use.at.path)
 
 
-def _is_new(row: Behaviour, view: View) -> bool:
-    """Whether the long-term distro before the target's has the old behaviour."""
+def _before(view: View) -> DistroTarget | None:
+    """The long-term distro before the target's."""
     known = known_distros()
     here = next((one.released for one in known if one.name == view.target.distro), "")
     earlier = [one.name for one in known if one.lts and one.ros == view.target.ros and one.released < here]
-    return bool(earlier) and row.holds(DistroTarget(earlier[-1])) is False
+    return DistroTarget(earlier[-1]) if earlier else None
