@@ -505,6 +505,8 @@ class View:
             return None
         name = f"{use.package}/{use.interface}"
         spans = [span for row in rows for span in row.spans]
+        if history.may_be_back(spans, version):
+            return None
         if any(before(row.spans, state) for row in rows):
             lost = _field_lost(use.package, history, spans, state)._replace(name=use.member)
             reviewed = self._successors.get((use.package, _told(use)))
@@ -565,7 +567,7 @@ class View:
     def _lost_interface_named(self, package: str, name: str, known: tuple[History, int, str]) -> Misnamed | None:
         history, state, version = known
         spans = history.spans(name)
-        if spans is None or there(spans, state):
+        if spans is None or there(spans, state) or history.may_be_back(spans, version):
             return None
         if before(spans, state):
             return Misnamed(f"`{package}/{name}` is no longer in {package} {version}", "",

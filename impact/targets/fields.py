@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Iterable
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -93,6 +94,13 @@ class History:
         """False when newer releases of the version's line were not read: something may have come since."""
         major = parts(version)[:1]
         return any(parts(last)[:1] == major and at_least(last, version) for last in self._last)
+
+    def may_be_back(self, spans: Iterable[tuple[int, int]], version: str) -> bool:
+        """Whether what earlier states had and this one lacks may be in a version all the same: newer releases of its
+        line were not read, and a later state has it again, so that it was brought to an older line and goes on there.
+        """
+        state = self.state(version)
+        return state is not None and any(first > state for first, _ in spans) and not self.read_up_to(version)
 
     @property
     def interfaces(self) -> list[str]:

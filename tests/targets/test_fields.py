@@ -106,6 +106,21 @@ def test_a_line_is_read_up_to_its_last_tag(history, version, read):
 
 
 @pytest.mark.parametrize(
+    ("version", "back"),
+    [
+        ("2.1.0", False),  # it was read, and lacks the message
+        ("2.1.5", True),  # a release that was not read may go on from 2.0.1
+        ("3.0.5", False),  # nothing of it comes later
+    ],
+)
+def test_what_was_brought_to_an_older_line_may_be_in_its_later_releases(tmp_path, version, back):
+    contents = {"2.0.0": ONE, "2.0.1": TWO, "2.1.0": ONE, "3.0.0": TWO}
+    made = released(tmp_path, {v: (v, "ament_cmake", files) for v, files in contents.items()})
+    history = History(made["arm_msgs 2"])
+    assert history.may_be_back(history.spans("msg/New"), version) == back
+
+
+@pytest.mark.parametrize(
     ("stem", "interface"),
     [("srv/start", "srv/Start"), ("StartRequest", "srv/Start"), ("State", "msg/State"), ("state", None)],
 )
