@@ -629,7 +629,9 @@ class ApiUses:
             return None
         if given.group(1) == "=":
             built = re.match(r"((?:\w+\s*::\s*)*\w+)\s*(?:<[^;(){}]*>)?\s*[({]", text)
-            if built and chain_before(self.text, at) is not None:
+            whole = arguments_at(text, built.end() - 1) if built else None
+            # What a method of the new object gives is something else.
+            if built and whole is not None and whole[1] == len(text):
                 type_ = self.type_of(text[: built.end() - 1])
                 if type_ is not None and not type_.pointer:
                     return type_

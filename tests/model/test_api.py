@@ -111,6 +111,9 @@ def uses(text: str, changes: Changes, *headers: str) -> list[str]:
         # constructors
         ("void g() { arm::Arm a(1); auto b = arm::Arm(1, 2); }", ["arm::Arm::Arm/1", "arm::Arm::Arm/2"]),
         ("arm::Arm make(int a);", []),
+        ("void g() { auto b = arm::Base(); b += 1; b.went(1); }", ["arm::Base::operator+=", "arm::Base::went/1"]),
+        ("void g() { auto b = arm::Base().reach(); b += 1; b.went(1); }", []),
+        ("void g() { auto b = arm::Base{} - arm::Base{}; b.went(1); }", []),
         ("class M : public arm::Arm { M() : Arm(1) {} };", ["arm::Arm::Arm/1"]),
         # members of the class around
         ("class M : public arm::Arm { void g() { went(1); this->went(2); } };", ["arm::Base::went/1"] * 2),
