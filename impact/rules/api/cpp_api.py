@@ -60,12 +60,15 @@ def severity_of(view: View, use: CppApiUse, found: Judged) -> str:
 
 
 def when(found: Judged) -> str:
-    """Since or from which version a use is taken, as a help line says it."""
+    """Since or from which version a use is taken, or what the header of the last version with it said, as a help line
+    says it."""
     offered = found.offered
     if found.kind == "absent":
         return f"it is there since {offered.package} {offered.first}"
     if not found.earlier and offered.coming:
         return f"it is so since {offered.package} {offered.coming}"
+    if found.kind == "removed" and offered.before is not None and offered.before.deprecated:
+        return f"its header said: {offered.before.deprecated}"
     return ""
 
 
