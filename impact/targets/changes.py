@@ -172,7 +172,7 @@ def changes_in_force(target: Target, providers: Providers | None = None) -> tupl
     for row in all_rows():
         if row.ros and row.ros != target.ros:
             continue
-        version = version_of(row.package, row.library, target)
+        version = version_of(row.package, row.library, target, bool(row.last_in))
         if not version:
             if row.kind in ("package-removed", "package-renamed") and reached(row.removed_in, "", target):
                 found.append(_change(row, "removed", ""))
@@ -187,10 +187,16 @@ def _change(row: Row, state: str, version: str) -> Change:
     return Change(row.kind, row.package, row.old, row.new, state, version, row.new_since, row.source, row.library)
 
 
-def version_of(package: str, library: bool, target: Target) -> str | None:
-    """Version of a released package, or of a platform library, on a target; None when it is not there or not known."""
+def version_of(package: str, library: bool, target: Target, derived: bool = False) -> str | None:
+    """Version of a released package, or of a platform library, on a target; None when it is not there or not known.
+
+    derived: what is asked was read from Debian's packages of the library. ROS releases some of those itself (urdfdom,
+    ompl), under upstream's numbers and ahead of the platform's own.
+    """
     if not library:
         return target.version(package)
+    if derived and (released := target.version(package.replace("-", "_"))):
+        return released
     if package == "python" and getattr(target, "python_major", 3) == 2:
         return "2.7"
     return target.library(package)

@@ -255,7 +255,8 @@ def holds_on(evidence: Evidence, target: Target, providers: Providers) -> bool |
 
 
 def _on(evidence: Evidence, target: Target, providers: Providers) -> OnTarget | None:
-    version = version_of(evidence.package, evidence.library, target)
+    # Of a library, only rows that were read from packages tell the last version before.
+    version = version_of(evidence.package, evidence.library, target, bool(evidence.last))
     if not version or not (evidence.first or evidence.new_in or evidence.header):
         return None
     holds = _holds(evidence, version, target, providers)
@@ -277,6 +278,8 @@ def _holds(evidence: Evidence, version: str, target: Target, providers: Provider
     if target.distro in distros:
         first = distros[target.distro]
         return bool(first) and at_least(version, first)
+    if evidence.library and evidence.last and parts(evidence.last) < parts(version) < parts(evidence.first):
+        return None  # between two packaged versions
     return reached(evidence.first, version, target) if evidence.first else None
 
 

@@ -127,7 +127,7 @@ def uses_in_force(target: Target) -> tuple[Change, ...]:
     """Uses that a target does not take: state `removed` for no longer, `absent` for not yet."""
     found = []
     for row in all_uses():
-        version = version_of(row.package, row.library, target)
+        version = version_of(row.package, row.library, target, bool(row.last_in))
         if not version:
             continue
         if row.removed_in and reached(row.removed_in, version, target) and not reached(row.back_in, version, target):

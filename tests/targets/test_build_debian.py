@@ -7,8 +7,10 @@ import tarfile
 
 import pytest
 from rosimpact.impact.targets.build import debian
-from rosimpact.impact.targets.changes import all_rows
-from rosimpact.impact.targets.evidence import evidence_of
+from rosimpact.impact.targets.changes import all_rows, changes_in_force
+from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.evidence import evidence_of, holds_on
+from rosimpact.impact.targets.providers import default_providers
 from rosimpact.impact.targets.snapshot import DATA
 from rosimpact.impact.targets.target import Change
 from rosimpact.impact.targets.uses import all_uses
@@ -164,3 +166,31 @@ def test_the_evidence_gives_the_interval():
         Change(row.kind, row.package, row.old, row.new, "removed", row.removed_in, "", row.source, True)
     )
     assert (evidence.last, evidence.first) == (row.last_in, row.removed_in)
+
+
+@pytest.mark.parametrize(
+    ("distro", "expected"),
+    # OpenCV 4.5.4 lies between 4.5.1, whose detectMarkers takes eight arguments, and 4.6.0, whose does not.
+    [("noetic", False), ("humble", None), ("jazzy", True)],
+)
+def test_of_a_version_between_two_packaged_ones_nothing_is_said(distro, expected):
+    use = next(use for use in all_uses() if use.label == "cv::aruco::detectMarkers with 8 arguments")
+    change = Change(use.kind, use.package, use.label, "", "removed", "4.6.0", "", use.source, True)
+    assert holds_on(evidence_of(change), DistroTarget(distro), default_providers()) is expected
+
+
+@pytest.mark.parametrize(
+    ("distro", "name", "gone_in"),
+    [
+        # Ubuntu 22.04 has OMPL 1.5.2, and Humble its own, newer one.
+        ("humble", "ompl::geometric::QuotientSpace", "1.7.0"),
+        ("jazzy", "urdf::parsePose", ""),
+        ("lyrical", "urdf::parsePose", "6.0.0"),
+        # 4.6.0 has it, 4.10.0 has not.
+        ("jazzy", "cv::aruco::PREDEFINED_DICTIONARY_NAME", ""),
+        ("lyrical", "cv::aruco::PREDEFINED_DICTIONARY_NAME", "4.10.0"),
+    ],
+)
+def test_the_version_that_a_target_builds_with_decides(distro, name, gone_in):
+    found = [change for change in changes_in_force(DistroTarget(distro)) if change.old == name]
+    assert [change.version for change in found if change.state == "removed"] == ([gone_in] if gone_in else [])

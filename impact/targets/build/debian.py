@@ -1,10 +1,10 @@
-"""Builds data/changes_debian.json: what versions of platform libraries no longer have, read from Debian's packages.
+"""Builds data/changes_debian.json and uses_debian.json: what versions of platform libraries no longer have, or take.
 
     python -m rosimpact.impact.targets.build.debian FOLDER --output DATA
 
-FOLDER holds a folder for each Debian release, oldest first by the versions in it, with the development packages of the
-libraries as `apt-get download PACKAGE=VERSION` gives them. Their headers are read as `surface diff` reads those of an
-installed package, and those of consecutive versions compared. Only names and versions are kept.
+FOLDER holds a folder for each Debian release, with the development packages of the libraries as `apt-get download
+PACKAGE=VERSION` gives them. Their headers are read as `surface diff` reads those of an installed package, and those of
+consecutive versions compared. Only names and versions are kept.
 
 A header is gone when no package of that release, or of a later one, has it. A name is gone when its last part is not
 even a word in any header of its library in that version or a later one: then no macro, alias, specialisation or
