@@ -52,12 +52,16 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "flow_cpp": ("flow_cpp", "FlowFile", 4),
     "flow_python": ("flow_python", "FlowFile", 4),
     "flow_script": ("", "", 1),
-    "surface_cpp": ("surface_cpp", "HeaderSurface", 1),
+    "surface_cpp": ("surface_cpp", "HeaderSurface", 2),
     "surface_python": ("surface_python", "ModuleSurface", 1),
+    "parameters_cpp": ("parameters", "ParametersFile", 1),
+    "parameters_python": ("parameters", "ParametersFile", 1),
+    "parameters_cfg": ("parameters", "ParametersFile", 1),
+    "parameters_yaml": ("parameters", "ParametersFile", 1),
 }
 """kind: (module, struct, version). Raise the version with every change of what an extractor says: it is part of the key
 under which facts are stored."""
-WITH_KIND = frozenset({"interface", "launch", "setup"})
+WITH_KIND = frozenset({"interface", "launch", "parameters", "setup"})
 FLOW = {"cpp": "flow_cpp", "python": "flow_python", "script": "flow_script"}
 """The second look that the message-flow graph takes at files of a kind."""
 SURFACE = {"cpp": "surface_cpp"}

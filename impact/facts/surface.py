@@ -88,7 +88,8 @@ class Entity(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class HeaderSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """entities in the order of the file; includes as in CppFile; inline: qualified names of inline namespaces;
+    """entities in the order of the file; includes as in CppFile; announced: qualified names of types that are declared
+    but not defined here, outside of classes; inline: qualified names of inline namespaces;
     deprecated: the message with which the whole header warns whoever includes it, None for no warning; instead: the
     header that it then takes in, empty when that cannot be told; lost: characters of declarations that were not
     understood; problems: what could not be read."""
@@ -100,6 +101,7 @@ class HeaderSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     instead: str = ""
     lost: int = 0
     problems: tuple[Problem, ...] = ()
+    announced: tuple[str, ...] = ()
 
 
 FUNCTIONS = frozenset(("function", "method", "constructor", "destructor", "conversion"))

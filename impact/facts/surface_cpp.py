@@ -91,6 +91,7 @@ class _Reader:
         self.text = scanned.text
         self.entities: list[Entity] = []
         self.inline: list[str] = []
+        self.announced: dict[str, None] = {}
         self.lost = 0
         self.deprecated: str | None = None
         self.access = ""
@@ -117,6 +118,7 @@ class _Reader:
             instead,
             self.lost,
             tuple(scanned.problems),
+            tuple(self.announced),
         )
 
     # Declarations
@@ -330,16 +332,18 @@ class _Reader:
             self._add(
                 "concept", tokens[place + 1] if place + 1 < len(tokens) else "", start, at, template=reading.template
             )
-        elif word in ("class", "struct", "union", "enum") and self._is_forward(tokens, place, reading):
-            return
+        elif word in ("class", "struct", "union", "enum") and (forward := self._forward(tokens, place, reading)):
+            if not scope.class_name and not reading.specialised and forward.name:
+                self.announced[scope.prefix + forward.name] = None
         else:
             self._declare(tokens, reading, deprecated, start, at)
 
-    def _is_forward(self, tokens: list[str], place: int, reading: Head) -> bool:
-        if "typedef" in reading.words:
-            return False
-        found = class_head(tokens, place)
-        return found is not None and (found.ends or found.kind == "enum") and "doubtful" not in found.traits
+    def _forward(self, tokens: list[str], place: int, reading: Head) -> ClassHead | None:
+        """The type that a statement declares and does not define."""
+        found = class_head(tokens, place) if "typedef" not in reading.words else None
+        if found is None or "doubtful" in found.traits or not (found.ends or found.kind == "enum"):
+            return None
+        return found
 
     def _using(self, rest: list[str], reading: Head, deprecated: str | None, start: int, at: int) -> None:
         if not rest:

@@ -139,7 +139,7 @@ class Exported(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One generator call: files relative to the workspace root, packages it depends on, the CMake target it makes.
     how: rosidl, catkin (add_*_files plus generate_messages), reconfigure, parameters (generate_parameter_library),
-    protobuf."""
+    protobuf. installed: False where what is made is for the package itself alone (SKIP_INSTALL)."""
 
     how: str
     target: str
@@ -147,6 +147,12 @@ class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False
     dependencies: tuple[tuple[str, At], ...]
     at: At
     conditions: tuple[Condition, ...] = ()
+    installed: bool = True
+
+    @property
+    def offered(self) -> bool:
+        """Whether others find what is made."""
+        return self.installed and not for_tests(self.conditions)
 
 
 class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -7,10 +7,9 @@ from collections.abc import Iterator, Sequence
 import msgspec
 
 from ..facts.surface import CLASSES, FUNCTIONS, Entity
-from ..facts.surface_python import Parameter
 from .surface import Change, State, compare
 from .surface_changes import Event, Form, Line, Overload, Told, brief, pack
-from .surface_python import UNKNOWN, Entry
+from .surface_python import UNKNOWN
 
 # What other tables tell (messages), and what a package has for itself.
 _UNTOLD = frozenset(("dependency", "system dependency", "package", "standard"))
@@ -106,13 +105,13 @@ def _form(package: str, side: str, name: str, state: State) -> Form | None:
         called = [one for one in entities if one.kind in _CALLED and one.parameters is not None]
         overloads = dict.fromkeys(map(_overload, called))
         messages = [one.deprecated for one in entities]
-        return Form(tuple(overloads), None, None if None in messages else brief(messages[0] or ""))
+        return Form(tuple(overloads), None if None in messages else brief(messages[0] or ""))
     if side == "python":
         entry = state.python(package).find(name)
         if entry is None or entry is UNKNOWN:
             return None
         deprecated = entry.bound.deprecated if entry.bound is not None else ""
-        return Form((), _parameters(package, entry, state), brief(deprecated) if deprecated else None)
+        return Form((), brief(deprecated) if deprecated else None)
     return None
 
 
@@ -122,18 +121,6 @@ def _overload(one: Entity) -> Overload:
     most = -1 if "variadic" in one.traits or any(p.pack for p in parameters) else len(parameters)
     kept = tuple(t for t in one.traits if t in ("const", "virtual", "pure", "override", "final", "static", "deleted"))
     return Overload(required, most, tuple(p.type for p in parameters), kept)
-
-
-def _parameters(package: str, entry: Entry, state: State) -> tuple[Parameter, ...] | None:
-    names = state.python(package)
-    if entry.kind == "class":
-        found = names.member(entry, "__init__")
-        if found is None or found is UNKNOWN or found.bound is None:
-            return None
-        entry = found
-    if entry.bound is None or entry.bound.kind not in ("function", "method", "classmethod", "staticmethod"):
-        return None
-    return tuple(msgspec.structs.replace(p, annotation="") for p in entry.bound.parameters)
 
 
 def _bases(package: str, state: State) -> dict[str, tuple[str, ...]]:

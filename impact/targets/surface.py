@@ -17,6 +17,7 @@ import msgspec
 from ..facts import kinds
 from ..facts.interface import PRIMITIVES, Field, Interface, Section
 from ..facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
+from ..model.package import role_of_folder
 from . import surface_build, surface_diff, surface_python
 from .surface_build import BuildSurface
 from .surface_includes import compiled
@@ -24,6 +25,7 @@ from .surface_python import UNKNOWN, Names, PythonSurface
 
 if TYPE_CHECKING:
     from ..facts.store import Store
+    from ..gather import Gathered
     from ..model.workspace import Package
     from ..tree import Tree
 
@@ -33,8 +35,9 @@ class Surface(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     headers: by the path that dependants write; generated ones are in the build only. interfaces: by `msg/Name`,
     without comments. guessed: the build does not tell which headers are installed, so those of `include/` are taken.
-    runs_with: packages that come along when this one is installed. The C++ standard, re-exported packages, targets,
-    programs and launch files are in the build.
+    runs_with: packages that come along when this one is installed. parameters: that its nodes declare, by name, with
+    their default: None for none, `?` where it is no plain value, or not one. The C++ standard, re-exported packages,
+    targets, programs and launch files are in the build.
     """
 
     package: str
@@ -45,6 +48,7 @@ class Surface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     interfaces: tuple[tuple[str, Interface], ...] = ()
     guessed: bool = False
     runs_with: tuple[str, ...] = ()
+    parameters: tuple[tuple[str, str | None], ...] = ()
 
 
 # -- reading -----------------------------------------------------------------------------------------------------------
@@ -72,7 +76,10 @@ def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, 
         for path in surface_python.installed(package).modules.values():
             if surface_python.kind_of(path) is not None:
                 wanted[path] = "surface_python"
+    declaring = {package.name: dict(_declaring(package)) for package in workspace}
     looked = gather(tree, store, jobs=jobs, kind_of=wanted.get)
+    sources = {path: kind for each in declaring.values() for path, kind in each.items()}
+    declared = gather(tree, store, jobs=jobs, kind_of=sources.get)
 
     def facts(path: str) -> Any:
         file = looked.facts(path) if path in looked.kinds else None
@@ -92,11 +99,36 @@ def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, 
             tuple(sorted(dict(_interfaces(package)).items())),
             name in guessed,
             tuple(sorted(name for name, how in package.declared.items() if how & _WITH)),
+            _parameters(declared, declaring[name]),
         )
     return surfaces
 
 
 _WITH = frozenset(("exec", "build_export"))
+
+
+def _declaring(package: Package) -> Iterator[tuple[str, str]]:
+    """Files that may declare parameters of nodes, with the kind of facts that tells it."""
+    base = f"{package.path}/" if package.path else ""
+    for path in package.files:
+        full = path if path.startswith(base) else f"{base}{path}"
+        kind = kinds.kind_of(full)
+        if kind in ("cpp", "python") and role_of_folder(full[len(base) :]) is None:
+            yield full, f"parameters_{kind}"
+    for made in package.build.generated:
+        kind = {"parameters": "parameters_yaml", "reconfigure": "parameters_cfg"}.get(made.how)
+        if kind is not None and made.offered:
+            yield from ((path, kind) for path in made.files if "$" not in path)
+
+
+def _parameters(declared: Gathered, files: Iterable[str]) -> tuple[tuple[str, str | None], ...]:
+    """The parameters that some files declare, each with the default that all of them give it."""
+    found: dict[str, set[str | None]] = defaultdict(set)
+    for path in files:
+        facts = declared.facts(path) if path in declared.kinds else None
+        for one in facts.facts.parameters if facts is not None and facts.facts is not None else ():
+            found[one.name].add(one.default)
+    return tuple((name, next(iter(each)) if len(each) == 1 else "?") for name, each in sorted(found.items()))
 
 
 def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:
@@ -151,7 +183,11 @@ def _headers(package: Package, build: BuildSurface) -> tuple[dict[str, str], boo
 
 
 def _interfaces(package: Package) -> Iterator[tuple[str, Interface]]:
+    made = {path: False for one in package.build.generated if not one.offered for path in one.files}
+    made.update((path, True) for one in package.build.generated if one.offered for path in one.files)
     for file in package.digest.interfaces:
+        if not made.get(file.path, True):
+            continue
         kind = file.definition.kind
         if kind == "idl":
             kind = posixpath.basename(posixpath.dirname(file.path)) or "msg"
@@ -330,6 +366,7 @@ def compare(old: Surface, new: Surface, before: State | None = None, after: Stat
     changes = surface_diff.compare(dict(old.headers), dict(new.headers)) if old.headers != new.headers else ()
     found = [*_headers_changed(old, new, after, changes), *_cpp(old, new, before, after, changes)]
     found += [*_python(old, new, after), *_messages(old, new, after), *_build(old, new, after)]
+    found += _parameters_changed(old, new)
     order = {"message": 0, "c++": 1, "python": 2, "build": 3}
     return tuple(dict.fromkeys(sorted(found, key=lambda c: (order[c.side], c.what != "header", c.name, c.kind, c.old))))
 
@@ -707,6 +744,22 @@ def _build(old: Surface, new: Surface, after: State) -> Iterator[Change]:
             breaks,
             sure,
         )
+
+
+def _parameters_changed(old: Surface, new: Surface) -> Iterator[Change]:
+    had, has = dict(old.parameters), dict(new.parameters)
+
+    def change(kind: str, name: str, before: str | None, now: str | None, breaks: bool) -> Change:
+        return Change(old.package, "build", kind, "parameter of a node", name, before or "", now or "", (), "", "", "",
+                      breaks, OPEN if breaks else 1.0)  # fmt: skip
+
+    for name, default in had.items():
+        if name not in has:
+            # Who still sets it is ignored. It may be declared by a name that is put together.
+            yield change("removed", name, default, "", True)
+        elif has[name] != default and "?" not in (has[name], default):
+            yield change("default", name, default, has[name], False)
+    yield from (change("added", name, "", default, False) for name, default in has.items() if name not in had)
 
 
 def _things(what: str, surface: Surface) -> set[str]:

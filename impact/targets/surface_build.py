@@ -137,6 +137,7 @@ class _Surface:
         self.of_catkin = frozenset(found.name for found in self.build.found if found.how == "catkin")
         self.installs = [install for install in self.build.installs if not for_tests(install.conditions)]
         self.exports = [export for export in self.build.exports if not for_tests(export.conditions)]
+        self.generated = [made for made in self.build.generated if made.offered]
 
     def surface(self) -> BuildSurface:
         package, manifest = self.package, self.package.manifest
@@ -218,14 +219,14 @@ class _Surface:
                     certain = sure and not install.conditions and not (target is not None and target.conditions)
                     members[name] = certain
                     yield ExportedTarget(name, kind, target.public_standard if target is not None else 0, certain)
-        for made in self.build.generated:
+        for made in self.generated:
             if made.how == "rosidl":
                 # The other type supports are those that are installed where the package is built.
                 for support in ("rosidl_typesupport_c", "rosidl_typesupport_cpp"):
                     yield ExportedTarget(f"{self.name}::{made.target}__{support}", "generated", 0, not made.conditions)
                 self.note("targets", f"`{self.name}::{made.target}__*` is generated")
         for missing in sorted(set(spaces) - seen):
-            if not any(made.target == missing for made in self.build.generated):
+            if not any(made.target == missing for made in self.generated):
                 self.note("targets", f"the export set `{missing}`")
 
     def libraries(self) -> Iterator[str]:
@@ -258,7 +259,7 @@ class _Surface:
             if of_catkin or export.how in ("ament_export_dependencies", "catkin_depends"):
                 yield export.item
         # In catkin the packages that messages come from are declared again; rosidl exports them by itself.
-        yield from (name for made in self.build.generated if made.how == "rosidl" for name, _ in made.dependencies)
+        yield from (name for made in self.generated if made.how == "rosidl" for name, _ in made.dependencies)
 
     # -- what the package's CMake files define
 
@@ -363,7 +364,7 @@ class _Surface:
                     yield self.inside(path), f"{top}/{path[len(base) :]}"
 
     def generated_headers(self, roots: list[str]) -> Iterator[Header]:
-        for made in self.build.generated:
+        for made in self.generated:
             sure = not made.conditions
             for path in made.files if made.how != "protobuf" else ():
                 stem, ending = posixpath.splitext(posixpath.basename(path))

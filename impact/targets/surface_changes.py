@@ -12,7 +12,6 @@ from collections.abc import Mapping
 import msgspec
 import zstandard
 
-from ..facts.surface_python import Parameter
 from .version import newest_up_to
 
 
@@ -31,12 +30,10 @@ class Overload(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Form(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """How a thing looked in a run of versions. overloads: in C++, empty for what is not called. parameters: of a Python
-    function or of a class's constructor, without annotations; None for what is not called or whose parameters do not
-    show. deprecated: the message, None where it is not; of C++ functions where no overload is left."""
+    """How a thing looked in a run of versions. overloads: in C++, empty for what is not called. deprecated: the
+    message, None where it is not; of C++ functions where no overload is left."""
 
     overloads: tuple[Overload, ...] = ()
-    parameters: tuple[Parameter, ...] | None = None
     deprecated: str | None = None
 
 

@@ -10,7 +10,7 @@ import msgspec
 import zstandard
 
 from ..facts.cpp import Include
-from ..facts.surface import HeaderSurface
+from ..facts.surface import HeaderSurface, plain
 from ..model.conditions import Environment, all_hold
 from .version import newest_up_to
 
@@ -19,21 +19,23 @@ _NOTHING_KNOWN = Environment()
 
 def compiled(header: HeaderSurface) -> HeaderSurface:
     """A header with those of its includes that some Linux compiles, so none under `#if 0` or `#ifdef _WIN32`; without
-    lines, and without conditions that hold on all."""
+    lines, and without conditions that hold on all. Types that it announces are named as users write them."""
     kept = []
     for include in header.includes:
         holds = all_hold(include.conditions, _NOTHING_KNOWN)
         if holds is not False:
             kept.append(Include(include.path, include.angled, 0, 0, () if holds else include.conditions))
-    return msgspec.structs.replace(header, includes=tuple(kept))
+    announced = tuple(dict.fromkeys(plain(name, header.inline) for name in header.announced))
+    return msgspec.structs.replace(header, includes=tuple(kept), announced=announced)
 
 
 class Row(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What a header includes in some versions. spans: first and last places of those, over and over; empty for all.
-    includes: places in Included.every."""
+    """What a header includes, and which types it announces without defining them, in some versions. spans: first and
+    last places of those, over and over; empty for all. includes, announced: places in Included.every and types."""
 
     spans: tuple[int, ...]
     includes: tuple[int, ...]
+    announced: tuple[int, ...] = ()
 
 
 class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -44,6 +46,7 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
     approximate: tuple[str, ...]
     generations: tuple[int, ...]
     every: tuple[Include, ...]
+    types: tuple[str, ...]
     headers: dict[str, tuple[Row, ...]]
 
     def stands_for(self, version: str, ros: int) -> str | None:
@@ -58,13 +61,19 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     def written(self, header: str, version: str) -> tuple[Include, ...] | None:
         """What a header includes in a stored version, as written; None where the version has no such header."""
+        row = self._row(header, version)
+        return None if row is None else tuple(self.every[number] for number in row.includes)
+
+    def announced(self, header: str, version: str) -> tuple[str, ...]:
+        """Types that a header announces in a stored version without defining them."""
+        row = self._row(header, version)
+        return () if row is None else tuple(self.types[number] for number in row.announced)
+
+    def _row(self, header: str, version: str) -> Row | None:
         if version not in self.versions:
             return None
         place = self.versions.index(version)
-        for row in self.headers.get(header, ()):
-            if there(row.spans, place):
-                return tuple(self.every[number] for number in row.includes)
-        return None
+        return next((row for row in self.headers.get(header, ()) if there(row.spans, place)), None)
 
     def answer(self, include: Include, header: str, version: str) -> str:
         """The path that dependants would write for what a header includes: that of a header of this package, where one
@@ -100,7 +109,8 @@ class Including:
         self._approximate: list[str] = []
         self._generations: list[int] = []
         self._numbers: dict[Include, int] = {}
-        self._places: dict[str, dict[tuple[int, ...], list[int]]] = {}
+        self._types: dict[str, int] = {}
+        self._places: dict[str, dict[tuple[tuple[int, ...], tuple[int, ...]], list[int]]] = {}
 
     def add(
         self,
@@ -116,18 +126,24 @@ class Including:
         if approximate:
             self._approximate.append(version)
         for path, header in headers:
-            state = tuple(self._numbers.setdefault(include, len(self._numbers)) for include in header.includes)
-            self._places.setdefault(path, {}).setdefault(state, []).append(place)
+            includes = tuple(self._numbers.setdefault(include, len(self._numbers)) for include in header.includes)
+            announced = tuple(self._types.setdefault(name, len(self._types)) for name in header.announced)
+            self._places.setdefault(path, {}).setdefault((includes, announced), []).append(place)
 
     def packed(self) -> bytes:
         """All versions as they are stored."""
         count = len(self._versions)
         headers = {
-            path: tuple(Row(tuple(spans_of(places, count)), state) for state, places in states.items())
+            path: tuple(Row(tuple(spans_of(places, count)), *state) for state, places in states.items())
             for path, states in sorted(self._places.items())
         }
         whole = Included(
-            tuple(self._versions), tuple(self._approximate), tuple(self._generations), tuple(self._numbers), headers
+            tuple(self._versions),
+            tuple(self._approximate),
+            tuple(self._generations),
+            tuple(self._numbers),
+            tuple(self._types),
+            headers,
         )
         return zstandard.ZstdCompressor(level=19).compress(_encoder.encode(whole))
 

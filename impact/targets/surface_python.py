@@ -208,6 +208,8 @@ class _Installed:
         """Modules made while building, and extensions."""
         package = self.package
         for made in package.build.generated:
+            if not made.offered:
+                continue
             if made.how in ("rosidl", "catkin"):
                 kinds = {posixpath.splitext(path)[1].lstrip(".") for path in made.files} | {
                     posixpath.basename(posixpath.dirname(interface.path)) for interface in package.digest.interfaces

@@ -111,6 +111,7 @@ class History:
             tuple(sorted(self._values("interface", version, Interface), key=_name)),
             guessed,
             tuple(runs_with),
+            tuple(sorted(self._values("parameter", version), key=_name)),
         )
 
     def build(self, version: str) -> BuildSurface | None:
@@ -191,6 +192,7 @@ class History:
                     deprecated,
                     instead,
                     lost,
+                    announced=self.included.announced(path, version),
                 ),
             )
 
@@ -345,6 +347,7 @@ def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
         if field.name in ("package", "version"):
             continue
         yield from (("build", field.name, item) for item in (value if isinstance(value, tuple) else (value,)))
+    yield from (("parameter", name, default) for name, default in surface.parameters)
     yield "surface", "", [surface.guessed, surface.runs_with]
 
 

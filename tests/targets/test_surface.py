@@ -230,6 +230,39 @@ def test_messages(told):
     ]
 
 
+@pytest.mark.parametrize(
+    ("body", "offered"),
+    [
+        (INTERFACES.format("msg/Pose.msg"), True),
+        (INTERFACES.format("msg/Pose.msg SKIP_INSTALL"), False),
+        (f"if(BUILD_TESTING)\n{INTERFACES.format('msg/Pose.msg')}\nendif()", False),
+        (f"{INTERFACES.format('msg/Pose.msg')}\nif(BUILD_TESTING)\n{INTERFACES.format('msg/Pose.msg')}\nendif()", True),
+    ],
+)
+def test_messages_that_only_the_package_itself_has_are_not_offered(state, body, offered):
+    arm = state(files("arm", body=body, also={"msg/Pose.msg": "float32 x\n"})).surfaces["arm"]
+    assert [name for name, _ in arm.interfaces] == ["msg/Pose"] * offered
+    assert ("arm/msg/pose.hpp" in [header.include for header in arm.build.headers]) == offered
+    assert ("arm.msg" in arm.python.unknown) == offered
+
+
+def test_parameters_of_nodes(told):
+    def arm(*lines, test=""):
+        cpp = "".join(f"declare_parameter({line});\n" for line in lines)
+        return files("arm", also={"src/node.cpp": cpp, "test/node.cpp": test})
+
+    old = arm('"rate", 20.0', '"frame", "map"', '"speed", 1', '"size", 2', '"mode", mode()')
+    new = arm('"rate", 20.0f', '"frame", "odom"', '"speed", 2', '"speed", 3', '"mode", 1', '"size", 2')
+    assert told([old], [new]) == ["build default parameter of a node frame ok"]
+    assert told([old], [arm('"rate", 20.0', '"new", 1', test='declare_parameter("frame", 1);')]) == [
+        "build removed parameter of a node frame",
+        "build removed parameter of a node mode",
+        "build added parameter of a node new ok",
+        "build removed parameter of a node size",
+        "build removed parameter of a node speed",
+    ]
+
+
 def test_a_message_that_moved_to_another_package(told):
     old = [messages(Pose="int8 x\n", Keep="int8 a\n")]
     new = [messages(Keep="int8 a\n"), messages("core", Pose="int8 x\n")]

@@ -31,13 +31,26 @@ def test_includes_that_some_linux_compiles(code, expected):
     )
 
 
+@pytest.mark.parametrize(
+    ("code", "announced"),
+    [
+        ("class A; struct B; enum C : int; class D {};", ("A", "B", "C")),
+        ("namespace arm { class A; template <typename T> class B; void f(class C c); }", ("arm::A", "arm::B")),
+        ("namespace arm { inline namespace v1 { class A; } }", ("arm::A",)),
+        ("class A { class Inner; friend class B; }; typedef class C D; struct E e;", ()),
+    ],
+)
+def test_types_that_a_header_only_announces(code, announced):
+    assert compiled(header(code.encode())).announced == announced
+
+
 def _header(code):
     return compiled(header(code.encode()))
 
 
 def test_each_version_includes_what_it_did():
     including = Including()
-    including.add("1.0.0", [("arm/a.h", _header("#include <x>\n#include <y>")), ("arm/b.h", _header(""))], (1,))
+    including.add("1.0.0", [("arm/a.h", _header("#include <x>\n#include <y>")), ("arm/b.h", _header("class B;"))], (1,))
     including.add("2.0.0", [("arm/a.h", _header("#include <y>\n#include <x>"))], (2,))
     including.add("3.0.0", [("arm/a.h", _header("#include <x>\n#include <y>"))], (2,), True)
     included = unpack(including.packed())
@@ -49,6 +62,7 @@ def test_each_version_includes_what_it_did():
         "4.0.0": None,
     }
     assert included.written("arm/b.h", "1.0.0") == () and included.written("arm/b.h", "2.0.0") is None
+    assert included.announced("arm/b.h", "1.0.0") == ("B",) and included.announced("arm/b.h", "2.0.0") == ()
     # A branch stands for no other version, and a generation has versions of its own.
     stands = {(version, ros): included.stands_for(version, ros) for version in ("1.5.0", "3.5.0") for ros in (1, 2)}
     assert stands == {("1.5.0", 1): "1.0.0", ("1.5.0", 2): None, ("3.5.0", 1): "1.0.0", ("3.5.0", 2): "2.0.0"}

@@ -42,9 +42,9 @@ def surface(version, code=CODE):
     modules = (Module("arm", "arm/__init__.py", True, module(PYTHON.encode())),)
     definitions = (("msg/M", interface(b"int8 a 1\nint8 B=2\n", "msg")),)
     python = PythonSurface("arm", modules, ("arm.msg",))
-    return Surface(
-        "arm", version, build, python, (("a.hpp", compiled(header(code.encode()))),), definitions, False, ("rclcpp",)
-    )
+    headers = (("a.hpp", compiled(header(code.encode()))),)
+    parameters = (("a", None), ("rate", "2.0"))
+    return Surface("arm", version, build, python, headers, definitions, False, ("rclcpp",), parameters)
 
 
 def packed(*surfaces, approximate=False):
@@ -63,7 +63,8 @@ def test_what_comes_back_is_what_was_packed():
     one = surface("1.0.0")
     back = stored(one).surface("1.0.0")
     assert compare(one, back) == compare(back, one) == ()
-    assert (back.build, back.runs_with) == (one.build, one.runs_with)
+    told = ("build", "runs_with", "parameters")
+    assert [getattr(back, name) for name in told] == [getattr(one, name) for name in told]
     entities = [msgspec.structs.replace(e, line=0) for _, h in one.headers for e in h.entities]
     nameless = [
         msgspec.structs.replace(e, parameters=tuple(msgspec.structs.replace(p, name="") for p in e.parameters))

@@ -93,7 +93,15 @@ def rosidl_generate_interfaces(run: Interpreter, call: Call, args: list[Word]) -
         run.message_files[(path, run.place(item.at))] = None
     wanted = tuple((str(item), run.place(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
     run.generated.append(
-        GeneratedInterfaces("rosidl", str(target), tuple(files), wanted, run.place(call.at), run.under(target))
+        GeneratedInterfaces(
+            "rosidl",
+            str(target),
+            tuple(files),
+            wanted,
+            run.place(call.at),
+            run.under(target),
+            "SKIP_INSTALL" not in given,
+        )
     )
     run.new_target(target, "generated", target.at)
     run.set_text("rosidl_generate_interfaces_TARGET", str(target), call.at)

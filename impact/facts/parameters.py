@@ -1,0 +1,195 @@
+"""Parameters that the sources of a node declare by their names, with their defaults.
+
+Read are calls of `declare_parameter` and of functions that are called alike, in C++ and Python; the parameter files of
+generate_parameter_library; and `gen.add` in the .cfg files of dynamic_reconfigure. Nothing is run: a name that is put
+together counts by its last part, written `*.name`, and a default that is no plain value is `?`.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import msgspec
+
+from .cpp import scan
+from .place import Problem
+
+
+class Declared(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A parameter. default: as written, None for none, `?` where it is no plain value."""
+
+    name: str
+    default: str | None = None
+
+
+class ParametersFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """parameters: in the order of the file."""
+
+    parameters: tuple[Declared, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+def extract(data: bytes, kind: str) -> ParametersFile:
+    """What a file declares. kind: `parameters_cpp`, `parameters_python`, `parameters_cfg` or `parameters_yaml`. Raises
+    nothing that kinds.extract() does not contain."""
+    readers = {"cpp": _in_cpp, "python": _in_python, "cfg": _in_cfg, "yaml": _in_yaml}
+    return ParametersFile(tuple(dict.fromkeys(readers[kind.removeprefix("parameters_")](data))))
+
+
+_DECLARES = re.compile(r"declare\w*_parameters?(?:_\w+)?\Z")
+_CALL = re.compile(r"\b(declare\w*_parameters?(?:_\w+)?)\s*(?:<[^;(){}]*>)?\s*\(")
+_NAME = re.compile(r'\s*(?:std::string\s*\(\s*)?"([\w./]+)"\s*\)?\s*\Z')
+_LAST_NAME = re.compile(r'[\s\S]*[\w)]\s*\+\s*"\.?([\w./]+)"\s*\Z')
+_PAIR = re.compile(r'\{\s*"([\w./]+)"\s*,([^{}]*|[^{}]*\{[^{}]*\}[^{}]*)\}')
+_WRAPPED = re.compile(r"(?:(?:rclcpp::)?ParameterValue|std::string)\s*[({]\s*(.*?)\s*[)}]\Z", re.DOTALL)
+_VALUE = r'(?:[-+]?[\d.][\w.+\'-]*|true|false|"(?:[^"\\\n]|\\.)*")'
+_VECTOR = re.compile(r"\Astd::vector<[\w:]+>\s*(?=\{)")
+_PLAIN = re.compile(rf"{_VALUE}\Z|\{{(?:\s*{_VALUE}\s*,?)*\}}\Z")
+_NO_DEFAULT = re.compile(
+    r"(?:rclcpp::)?(?:ParameterType::)?PARAMETER_\w+\Z|rcl_interfaces::|(?:\w+_)?desc(?:riptor)?\w*\Z"
+)
+_LONGEST = 3000
+_SHOWN = 60
+
+
+def _in_cpp(data: bytes) -> Iterator[Declared]:
+    if b"declare" not in data:
+        return
+    scanned = scan(data)
+    for call in _CALL.finditer(scanned.visible):
+        arguments = list(_arguments(scanned.visible, scanned.text, call.end()))
+        if call[1].endswith("_parameters"):
+            space = _NAME.match(arguments[0]) if arguments else None
+            for name, value in _PAIR.findall(arguments[1]) if len(arguments) > 1 else ():
+                yield Declared(f"{space[1]}.{name}" if space else name, _cpp_value(value))
+            continue
+        for place, text in enumerate(arguments[:2]):
+            whole, last = _NAME.match(text), _LAST_NAME.match(text)
+            if whole or last:
+                name = whole[1] if whole else f"*.{last[1]}" if last else ""
+                yield Declared(name, _cpp_value(arguments[place + 1]) if place + 1 < len(arguments) else None)
+                break
+
+
+def _arguments(visible: str, text: str, start: int) -> Iterator[str]:
+    """The arguments of a call that begin at a place, as written. visible: the text without literals and comments."""
+    depth, begun = 0, start
+    for at in range(start, min(len(visible), start + _LONGEST)):
+        sign = visible[at]
+        if sign in "([{":
+            depth += 1
+        elif sign in ")]}":
+            depth -= 1
+            if depth < 0:
+                if visible[begun:at].strip():
+                    yield text[begun:at]
+                return
+        elif sign == "," and not depth:
+            yield text[begun:at]
+            begun = at + 1
+
+
+def _cpp_value(text: str) -> str | None:
+    value = " ".join(text.split())
+    while (wrapped := _WRAPPED.match(value)) is not None:
+        value = wrapped[1]
+    if not value or _NO_DEFAULT.match(value):
+        return None
+    value = _VECTOR.sub("", value.replace("'", ""))
+    return _short(_number(value)) if _PLAIN.match(value) else "?"
+
+
+def _number(value: str) -> str:
+    """A real number as Python writes it; anything else as it is."""
+    try:
+        return str(float(value.rstrip("fF"))) if "." in value and value[0] not in '"{' else value
+    except ValueError:
+        return value
+
+
+def _short(value: str) -> str:
+    return value if len(value) <= _SHOWN else "?"
+
+
+def _in_python(data: bytes) -> Iterator[Declared]:
+    if b"declare" not in data:
+        return
+    for node in ast.walk(ast.parse(data)):
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+            continue
+        if not _DECLARES.match(node.func.attr):
+            continue
+        given = {keyword.arg: keyword.value for keyword in node.keywords}
+        if node.func.attr.endswith("_parameters"):
+            space, listed = [*node.args, None, None][:2]
+            space, listed = space or given.get("namespace"), listed or given.get("parameters")
+            start = f"{space.value}." if isinstance(space, ast.Constant) and space.value else ""
+            for item in listed.elts if isinstance(listed, (ast.List, ast.Tuple)) else ():
+                if isinstance(item, (ast.Tuple, ast.List)) and item.elts:
+                    yield from _python_parameter(item.elts[0], item.elts[1] if len(item.elts) > 1 else None, start)
+            continue
+        name = node.args[0] if node.args else given.get("name")
+        yield from _python_parameter(name, node.args[1] if len(node.args) > 1 else given.get("value"))
+
+
+def _python_parameter(name: ast.expr | None, default: ast.expr | None, start: str = "") -> Iterator[Declared]:
+    if isinstance(name, ast.Constant) and isinstance(name.value, str):
+        yield Declared(start + name.value, _python_value(default))
+        return
+    last = name.values[-1] if isinstance(name, ast.JoinedStr) and name.values else None
+    last = name.right if isinstance(name, ast.BinOp) else last
+    if isinstance(last, ast.Constant) and isinstance(last.value, str) and last.value.strip("."):
+        yield Declared(f"*.{last.value.lstrip('.')}", _python_value(default))
+
+
+def _python_value(node: ast.expr | None) -> str | None:
+    if node is None or (isinstance(node, ast.Attribute) and "Parameter" in ast.unparse(node)):
+        return None  # a type
+    try:
+        return _written(ast.literal_eval(node))
+    except (ValueError, TypeError, SyntaxError, MemoryError):
+        return "?"
+
+
+def _written(value: Any) -> str:
+    """A value in the words of C++, as both languages may declare the same."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _short(f'"{value}"')
+    if isinstance(value, (list, tuple)):
+        return _short("{" + ", ".join(map(_written, value)) + "}")
+    return _short(str(value))
+
+
+def _in_cfg(data: bytes) -> Iterator[Declared]:
+    for node in ast.walk(ast.parse(data)):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "add":
+            given = {keyword.arg: keyword.value for keyword in node.keywords}
+            name = node.args[0] if node.args else given.get("name")
+            if len(node.args) + len(node.keywords) > 2 and isinstance(name, ast.Constant):
+                yield from _python_parameter(name, node.args[4] if len(node.args) > 4 else given.get("default"))
+
+
+def _in_yaml(data: bytes) -> Iterator[Declared]:
+    import yaml
+
+    whole = yaml.load(data, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    for each in whole.values() if isinstance(whole, Mapping) else ():
+        yield from _of_library(each, "")
+
+
+def _of_library(node: Any, start: str) -> Iterator[Declared]:
+    """Parameters of generate_parameter_library: what has a `type` is one, all else is a group."""
+    for name, inner in node.items() if isinstance(node, Mapping) else ():
+        if not isinstance(inner, Mapping):
+            continue
+        path = f"{start}{'*' if str(name).startswith('__map_') else name}"
+        if isinstance(inner.get("type"), str):
+            default = inner.get("default_value")
+            yield Declared(path, None if default is None else _written(default))
+        else:
+            yield from _of_library(inner, f"{path}.")
