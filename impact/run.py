@@ -454,12 +454,12 @@ def surface_show(what: str, *, repos, all_of_it, format, output, jobs) -> int:
     def answer(store) -> str:
         package, _, asked = what.partition("@")
         source, state = _surface(package, asked, repos, store, jobs)
-        surface = state.surfaces[package]
+        surface, hashes = state.surfaces[package], _hashes(package, source.asked, state)
         if format == "json":
-            return report.show_json(surface, source, __version__)
+            return report.show_json(surface, source, __version__, hashes)
         if format == "markdown":
-            return report.show_markdown(surface, source)
-        return report.show_text(surface, source, _style(output), all_of_it)
+            return report.show_markdown(surface, source, hashes)
+        return report.show_text(surface, source, _style(output), all_of_it, hashes)
 
     return _of_surfaces(answer, format, output)
 
@@ -486,6 +486,11 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
             (first, before), (second, after) = (_surface(what, asked, repos, store, jobs) for asked in (old, new))
             changes = {what: compare(before.surfaces[what], after.surfaces[what], before, after)}
             sources = [first, second]
+            old_hashes, new_hashes = _hashes(what, first.asked, before), _hashes(what, second.asked, after)
+            changes[what] = tuple(
+                report.with_hashes(change, old_hashes, new_hashes) if change.kind == "wire" else change
+                for change in changes[what]
+            )
         found = report.Difference(sources[0], sources[1], changes)
         if format == "json":
             return report.diff_json(found, __version__)
@@ -549,6 +554,28 @@ def _surface(package: str, asked: str, repos: Path | None, store, jobs):
     found, state = clones.surface(package, asked, store, jobs)
     revision = found.revision.removeprefix("refs/").partition("/")[2] or found.revision
     return Source(asked, found.version, found.clone.name, revision, found.approximate), state
+
+
+def _hashes(package: str, asked: str, state) -> dict[str, str]:
+    """The hashes of a package's interfaces, by `msg/Name`, as far as all that is in them is known: in the state of its
+    repository, or of other packages of the distro that was asked for."""
+    from .targets.hashes import hash_of
+    from .targets.stored_versions import StoredVersions
+    from .targets.surface_installed import is_installed
+    from .targets.surface_store import shipped
+
+    others = None if asked[:1].isdigit() or is_installed(asked) else StoredVersions(shipped())
+
+    def find(name: str):
+        owner, _, short = name.partition("/")
+        if owner in state.surfaces:
+            return dict(state.surfaces[owner].interfaces).get(f"msg/{short}")
+        return others.message(asked, name) if others is not None else None
+
+    surface = state.surfaces[package]
+    ros = 2 if surface.build.build_type.startswith("ament") else 1
+    known = ((name, hash_of(f"{package}/{name}", ros, definition, find)) for name, definition in surface.interfaces)
+    return {name: told for name, told in known if told is not None}
 
 
 def _of_surfaces(answer: Callable, format: str, output: Path | None) -> int:

@@ -1,6 +1,7 @@
 """rosimpact surface: what a package offers, and what changed, from the command line."""
 
 import json
+import re
 import subprocess
 
 import pytest
@@ -161,6 +162,15 @@ def test_errors_are_one_line(repos, arguments, said):
     assert result.exit_code == 2
     assert result.stderr.startswith("rosimpact: ") and result.stderr.count("\n") == 1
     assert said in result.stderr
+
+
+def test_hashes_of_messages():
+    assert "\n  hash  std_msgs/msg/String  992ce8a1687cec8c8bd883ec73ca41d1\n" in run("show", "std_msgs@noetic").stdout
+    # A version alone does not tell what other packages' messages were at that time.
+    version = run("show", "std_msgs@noetic").stdout.split()[1]
+    assert "PoseStamped  " not in run("show", f"geometry_msgs@{version}").stdout
+    changed = run("diff", "sensor_msgs", "foxy", "jazzy", "--all").stdout
+    assert re.search(r"wire interface  sensor_msgs/msg/Range\n +- RIHS01_9430\w+\n +\+ RIHS01_b42b\w+\n", changed)
 
 
 def test_build(repos, tmp_path):

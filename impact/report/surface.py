@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import msgspec
@@ -128,6 +128,13 @@ def _change(change: Change, style: Style) -> Iterator[str]:
         yield from laid_out([Piece(help_, "help")], style, 4, 6)
 
 
+def with_hashes(change: Change, old: Mapping[str, str], new: Mapping[str, str]) -> Change:
+    """A change of what goes over the wire, with the hashes of the interface where both are known. old, new: by
+    `msg/Name`."""
+    name = change.name.partition("/")[2]
+    return msgspec.structs.replace(change, old=old[name], now=new[name]) if name in old and name in new else change
+
+
 def instead_of(change: Change) -> str:
     """What to do now, in a clause; empty where that is not known."""
     told = []
@@ -188,6 +195,9 @@ def _json(value: Any) -> str:
 # -- one surface -------------------------------------------------------------------------------------------------------
 
 
+_NONE: Mapping[str, str] = {}
+
+
 class Item(NamedTuple):
     """Something that a package offers. part: Interfaces, C++, Python, CMake or Programs. where: header or file.
     deprecated: None for what is not."""
@@ -200,9 +210,11 @@ class Item(NamedTuple):
     deprecated: str | None = None
 
 
-def items(surface: Surface) -> Iterator[Item]:
-    """All that a package offers, part by part."""
+def items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[Item]:
+    """All that a package offers, part by part. hashes: of its interfaces, by `msg/Name`, as far as they are known."""
     for name, definition in surface.interfaces:
+        if name in hashes:
+            yield Item("Interfaces", "hash", f"{surface.package}/{name}", hashes[name])
         for section in definition.sections:
             part = "" if section.name == "message" else f"{section.name}."
             for field in section.fields:
@@ -216,7 +228,7 @@ def items(surface: Surface) -> Iterator[Item]:
                     f"{surface.package}/{name} {part}{one.name}",
                     f"{one.type} {one.name}={one.value}",
                 )
-        if not any(section.fields or section.constants for section in definition.sections):
+        if name not in hashes and not any(one.fields or one.constants for one in definition.sections):
             yield Item("Interfaces", "interface", f"{surface.package}/{name}")
     known = dict(surface.headers)
     for header in surface.build.headers:
@@ -248,10 +260,14 @@ def items(surface: Surface) -> Iterator[Item]:
     for launch in build.launches:
         written = ", ".join(name if default is None else f"{name}:={default}" for name, default in launch.arguments)
         yield Item("Programs", "launch file", launch.path, written)
+    yield from (Item("Programs", "parameter", name, default or "") for name, default in surface.parameters)
 
 
-def show_text(surface: Surface, source: Source, style: Style, everything: bool) -> str:
-    """What a package offers, for people. everything: members of classes, constants and macros too."""
+def show_text(
+    surface: Surface, source: Source, style: Style, everything: bool, hashes: Mapping[str, str] = _NONE
+) -> str:
+    """What a package offers, for people. everything: members of classes, constants and macros too. hashes: see
+    items()."""
     build = surface.build
     lines = [painted(style, "bold", f"{surface.package} {_short(source)}"), *_source(source, style)]
     facts = [f"build type {build.build_type}"]
@@ -264,7 +280,7 @@ def show_text(surface: Surface, source: Source, style: Style, everything: bool) 
         lines += laid_out([Piece("the build does not tell which headers are installed; those of include/ are listed",
                                  "warning")], style, 2, 4)  # fmt: skip
     last = ""
-    for item in items(surface):
+    for item in items(surface, hashes):
         if not everything and item.part != "Interfaces" and item.what in _DETAILS:
             continue
         if item.part != last:
@@ -290,7 +306,7 @@ _DETAILS = frozenset(("method", "field", "constructor", "destructor", "conversio
 _WRITTEN = FUNCTIONS | {"class", "struct", "union", "enum", "alias", "variable", "macro"}
 
 
-def show_json(surface: Surface, source: Source, tool: str) -> str:
+def show_json(surface: Surface, source: Source, tool: str, hashes: Mapping[str, str] = _NONE) -> str:
     """What a package offers as JSON: `tool`, `source` (see Source), `package`, `items` (see Item), `unknown`."""
     return _json({
         "tool": tool,
@@ -299,13 +315,13 @@ def show_json(surface: Surface, source: Source, tool: str) -> str:
         "build_type": surface.build.build_type,
         "standard": surface.build.standard,
         "passes_on": surface.build.dependencies,
-        "items": [item._asdict() for item in items(surface)],
+        "items": [item._asdict() for item in items(surface, hashes)],
         "unknown": [{"part": part, "why": why} for part, why in surface.build.unknown],
     })  # fmt: skip
 
 
-def show_markdown(surface: Surface, source: Source) -> str:
+def show_markdown(surface: Surface, source: Source, hashes: Mapping[str, str] = _NONE) -> str:
     """What a package offers as a table."""
     lines = [f"## {surface.package} {_short(source)}", "", "| what | name | declaration |", "|---|---|---|"]
-    lines += [f"| {i.what} | {_code(i.name)} | {_code(i.declaration)} |" for i in items(surface)]
+    lines += [f"| {i.what} | {_code(i.name)} | {_code(i.declaration)} |" for i in items(surface, hashes)]
     return "\n".join(lines) + "\n"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from ..facts.interface import Interface
 from .clones import VersionError, newest_with, release_of
 from .distro import DistroTarget
 from .snapshot import Snapshot, default
@@ -66,6 +67,17 @@ class StoredVersions:
             if surface is not None:
                 surfaces[name] = surface
         return found, State(surfaces)
+
+    def message(self, distro: str, name: str) -> Interface | None:
+        """What a distro (`jazzy`, `jazzy@2024-08-01`) has of a message, by `package/Name`; None where it has none, or
+        it is not stored."""
+        package, _, short = name.partition("/")
+        try:
+            found = self.find(package, distro)
+        except VersionError:
+            return None
+        history = self.surfaces.history(package)
+        return history.interfaces(found.stored).get(f"msg/{short}") if history is not None else None
 
     def _beside(self, package: str, version: str) -> Iterator[str]:
         """Other packages that were released with a version of a package."""

@@ -69,6 +69,14 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
         row = self._row(header, version)
         return () if row is None else tuple(self.types[number] for number in row.announced)
 
+    def announcing(self) -> dict[str, tuple[str, ...]]:
+        """Types with the headers that announce them in any version."""
+        found: dict[str, dict[str, None]] = {}
+        for header, rows in self.headers.items():
+            for number in {number for row in rows for number in row.announced}:
+                found.setdefault(self.types[number], {})[header] = None
+        return {name: tuple(sorted(headers)) for name, headers in found.items()}
+
     def _row(self, header: str, version: str) -> Row | None:
         if version not in self.versions:
             return None

@@ -415,10 +415,11 @@ def _main() -> None:
 
 def beside(surfaces: Surfaces, table: includes.Table) -> includes.Table:
     """The table without what stored surfaces tell: what their packages' headers include, from the first stored version
-    of each on. Names get the headers that define them there."""
+    of each on. Names get the headers that define or announce them there."""
     numbers: dict[str, int] = {}
     owners: dict[str, dict[str, str]] = {}
     names = {name: dict.fromkeys(headers) for name, headers in table.names.items()}
+    announced = {name: dict.fromkeys(headers) for name, headers in table.announced.items()}
     for owner, headers in table.owners.items():
         included = None if owner in table.libraries else surfaces.included(owner)
         kept = headers if included is None else _before(included, headers)
@@ -426,9 +427,14 @@ def beside(surfaces: Surfaces, table: includes.Table) -> includes.Table:
             owners[owner] = {header: _numbered(states, table.paths, numbers) for header, states in kept.items()}
     for package in sorted(surfaces.packages):
         history = surfaces.history(package)
-        for name, where in (history.types() if history is not None else {}).items():
+        if history is None:
+            continue
+        for name, where in history.types().items():
             if name in names:
                 names[name].update(dict.fromkeys(where))
+        for name, where in history.included.announcing().items():
+            if name in names:
+                announced.setdefault(name, {}).update(dict.fromkeys(where))
     versions = {
         distro: {owner: version for owner, version in known.items() if owner == "gcc" or owner in owners}
         for distro, known in table.versions.items()
@@ -438,6 +444,7 @@ def beside(surfaces: Surfaces, table: includes.Table) -> includes.Table:
         paths=tuple(numbers),
         owners=owners,
         names={name: tuple(headers) for name, headers in names.items()},
+        announced={name: tuple(headers) for name, headers in announced.items()},
         versions=versions,
     )
 
