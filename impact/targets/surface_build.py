@@ -156,10 +156,10 @@ class _Surface:
             tuple(sorted(commands)),
             tuple(sorted(variables)),
             max((target.standard for target in targets), default=0),
-            tuple(sorted(set(self.programs()), key=lambda p: (p.name, p.place))),
-            tuple(sorted(set(self.plugins()), key=lambda p: p.name)),
+            tuple(sorted(set(self.programs()), key=msgspec.structs.astuple)),  # what is sure comes last, and counts
+            tuple(sorted(set(self.plugins()), key=msgspec.structs.astuple)),
             tuple(self.launches()),
-            tuple(sorted(set(self.headers()), key=lambda h: (h.include, h.installed))),
+            tuple(sorted(set(self.headers()), key=msgspec.structs.astuple)),
             tuple(self.unknown),
         )
 
