@@ -117,9 +117,7 @@ def test_python_and_programs(store):
     package = Offers(target(arm="2.0.0"), surfaces).package("arm")
     assert package.get("python", "arm.rest").state == "removed"
     moved = package.get("python", "arm.move")
-    assert [p.name for p in moved.here.parameters] == ["x", "speed"] and [p.name for p in moved.before.parameters] == [
-        "x"
-    ]
+    assert (moved.state, moved.last, moved.first) == ("changed", "1.0.0", "2.0.0")
     assert package.get("executable", "drive").state == "removed"
     assert package.declarations("python", "arm.move", "2.0.0") == ("arm.move(x, *, speed)",)
 
