@@ -15,8 +15,9 @@ Severity
     error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for the first
     include of each header that only the newest distro lacks, for interfaces that go when a dated target's distro is
     updated, for headers of C where nothing else brings the C++ types, for installed headers that include what is not
-    installed, and for the folder of a version that is there, since another machine may have it elsewhere; note for
-    examples, for installed headers that the package does not compile itself, and under conditions that are not known.
+    installed, and once in a package for the folder of a version that is there, since another machine may have it
+    elsewhere; note for the other includes of that folder, for examples, for installed headers that the package does not
+    compile itself, and under conditions that are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -56,6 +57,7 @@ def removed_header(view: View):
     for package in view:
         dual = view.target.ros == 2 and any(i.path.startswith("ros/") for i in package.digest.includes)
         coming: list[tuple[IncludeUse, Change, bool]] = []
+        named: set[str] = set()  # libraries whose folder is named loudly already
         for include in package.digest.includes:
             path = include.path
             if path in quiet or not view.active(include.conditions):
@@ -78,6 +80,9 @@ def removed_header(view: View):
                 )
             folder = versioned_folder(view.target, path)
             if folder is not None:
+                if folder.there:
+                    severity = "warning" if severity == "error" and folder.library not in named else "note"
+                    named.update((folder.library,) if severity == "warning" else ())
                 yield _in_folder(package, include, folder, severity)
                 continue
             change = gone.get(path)
@@ -158,8 +163,6 @@ def _in_folder(package: Package, include: IncludeUse, folder: Folder, severity: 
         if folder.there
         else f"`{include.path}` is not there with {folder.library} {folder.version}"
     )
-    if folder.there and severity == "error":
-        severity = "warning"
     return Hit(include.at, include.path, text, f"include `{folder.path}`", package.name, severity=severity)
 
 
