@@ -535,7 +535,8 @@ def _stopped(table: includes.Table, ros: int) -> set[str]:
 
 
 def _write(table: includes.Table, output: Path) -> None:
-    raw = json.dumps(msgspec.to_builtins(table), separators=(",", ":"), sort_keys=True).encode()
+    plain = msgspec.to_builtins(table, order="deterministic")
+    raw = json.dumps(plain, separators=(",", ":"), sort_keys=True).encode()
     (output / "includes.json.zst").write_bytes(zstandard.ZstdCompressor(level=19).compress(raw))
 
 
