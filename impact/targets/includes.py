@@ -157,6 +157,10 @@ class Machine:
         return self._versions[owner]
 
     @cached_property
+    def _gcc(self) -> int:
+        return parts(self.version("gcc") or "5")[0]
+
+    @cached_property
     def surfaces(self) -> Surfaces:
         """The stored surfaces."""
         from .surface_store import shipped
@@ -292,13 +296,16 @@ class Machine:
         """Everything that a header brings along here; of standard ones, by the machine's GCC."""
         known = self._closures.get(header)
         if known is None:
-            gcc = parts(self.version("gcc") or "5")[0]
             seen, outside, stack = {header}, set(), [header]
             while stack:
                 at = stack.pop()
+                if at in self._closures:
+                    seen |= self._closures[at].headers
+                    outside |= self._closures[at].outside
+                    continue
                 found = self.includes(at)
                 if found is None:
-                    standard = brought_by(at, gcc)
+                    standard = brought_by(at, self._gcc)
                     seen |= standard
                     if len(standard) == 1:
                         outside.add(at)

@@ -171,9 +171,13 @@ def brought_by(header: str, gcc: int) -> frozenset[str]:
     gcc: major version; one that is not known is answered as the nearest older one, or the oldest. Raises SnapshotError
     when the data cannot be read.
     """
+    return _table(gcc).get(header, frozenset()) | {header}
+
+
+@cache
+def _table(gcc: int) -> dict[str, frozenset[str]]:
     older = [table for major, table in _tables() if major <= gcc]
-    table = older[-1] if older else _tables()[0][1]
-    return table.get(header, frozenset()) | {header}
+    return older[-1] if older else _tables()[0][1]
 
 
 def reaches(headers: frozenset[str], name: str, gcc: int) -> bool | None:

@@ -78,17 +78,19 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return {name: tuple(sorted(headers)) for name, headers in found.items()}
 
     def _row(self, header: str, version: str) -> Row | None:
-        if version not in self.versions:
+        rows = self.headers.get(header)
+        if not rows or version not in self.versions:
             return None
         place = self.versions.index(version)
-        return next((row for row in self.headers.get(header, ()) if there(row.spans, place)), None)
+        return next((row for row in rows if there(row.spans, place)), None)
 
     def answer(self, include: Include, header: str, version: str) -> str:
         """The path that dependants would write for what a header includes: that of a header of this package, where one
         lies there, else as it is written."""
+        if include.angled and self._row(include.path, version) is not None:
+            return include.path
         beside = posixpath.normpath(posixpath.join(posixpath.dirname(header), include.path))
-        order = (include.path, beside) if include.angled else (beside, include.path)
-        return next((path for path in order if self.written(path, version) is not None), include.path)
+        return beside if self._row(beside, version) is not None else include.path
 
 
 def there(spans: Sequence[int], place: int) -> bool:
