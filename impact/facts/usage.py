@@ -210,9 +210,7 @@ def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
     scanned = scan(data) if pattern.language == "cpp" else None
     text = scanned.visible if scanned is not None else _TEXTS[pattern.language](data)
     whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
-    if (pattern.file and not _compiled(pattern.file).search(whole)) or (
-        pattern.unless and _compiled(pattern.unless).search(whole)
-    ):
+    if (pattern.file and not _stands_in(pattern.file, whole)) or (pattern.unless and _stands_in(pattern.unless, whole)):
         return
     for at in standing(pattern.word, text):
         conditions = () if scanned is None else scanned.under(at)
@@ -222,6 +220,12 @@ def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
         if types is not None and (pattern.inside != "class" or _in_class(text, at)):
             line, column = place_in(text, at) if scanned is None else scanned.place(at)
             yield line, column, conditions, types
+
+
+@lru_cache(maxsize=64)
+def _stands_in(expression: str, text: str) -> bool:
+    """Whether a file has what an expression looks for; many rows ask the same of it."""
+    return _compiled(expression).search(text) is not None
 
 
 def place_in(text: str, offset: int) -> tuple[int, int]:
