@@ -15,8 +15,8 @@ Severity
     error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for the first
     include of each header that only the newest distro lacks, for interfaces that go when a dated target's distro is
     updated, for headers of C where nothing else brings the C++ types, for installed headers that include what is not
-    installed, and once in a package for the folder of a version that is there, since another machine may have it
-    elsewhere; note for the other includes of that folder, for examples, for installed headers that the package does not
+    installed, and once in a package for a path through the folder of a version that is there, since another machine may
+    have it elsewhere; note for its other includes, for examples, for installed headers that the package does not
     compile itself, and under conditions that are not known.
 
 Example
@@ -57,7 +57,7 @@ def removed_header(view: View):
     for package in view:
         dual = view.target.ros == 2 and any(i.path.startswith("ros/") for i in package.digest.includes)
         coming: list[tuple[IncludeUse, Change, bool]] = []
-        named: set[str] = set()  # libraries whose folder is named loudly already
+        named: set[str] = set()  # paths through a library's folder that are told loudly already
         for include in package.digest.includes:
             path = include.path
             if path in quiet or not view.active(include.conditions):
@@ -81,8 +81,8 @@ def removed_header(view: View):
             folder = versioned_folder(view.target, path)
             if folder is not None:
                 if folder.there:
-                    severity = "warning" if severity == "error" and folder.library not in named else "note"
-                    named.update((folder.library,) if severity == "warning" else ())
+                    severity = "warning" if severity == "error" and path not in named else "note"
+                    named.update((path,) if severity == "warning" else ())
                 yield _in_folder(package, include, folder, severity)
                 continue
             change = gone.get(path)
