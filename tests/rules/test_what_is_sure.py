@@ -25,10 +25,17 @@ def severities(folder: Path, rule: str, subject: str, target: str, **files: str)
     return {finding.severity for finding in found if finding.subject == subject}
 
 
-@pytest.mark.parametrize(("target", "expected"), [("noetic", {"error"}), ("melodic", set())])
-def test_a_python_test_that_calls_what_is_gone(target, expected, tmp_path):
+@pytest.mark.parametrize(
+    ("target", "cmake", "expected"),
+    [
+        ("noetic", "catkin_add_nosetests(test/timing.py)\n", {"error"}),
+        ("noetic", "", {"warning"}),  # nobody may run it
+        ("melodic", "catkin_add_nosetests(test/timing.py)\n", set()),
+    ],
+)
+def test_a_python_test_that_calls_what_is_gone(target, cmake, expected, tmp_path):
     text = "import time, unittest\nclass Timing(unittest.TestCase):\n    def test(self):\n        time.clock()\n"
-    told = severities(tmp_path, "removed-symbol", "time.clock", target, test__timing_DOT_py=text)
+    told = severities(tmp_path, "removed-symbol", "time.clock", target, cmake=cmake, test__timing_DOT_py=text)
     assert told - {"note"} == expected
 
 

@@ -10,9 +10,9 @@ Why it breaks
     The compiler stops with "was not declared in this scope", or Python with an AttributeError or ImportError.
 
 Severity
-    error for unguarded names in code that is built or run, tests in Python and ROS 2's in C++ included; warning in
-    other tests, under conditions that are not known, where the name stays and changed its meaning, and for the first
-    name of a library that only the newest distro lacks; note in examples and for the rest of those.
+    error for unguarded names in code that is built or run, tests in Python that CMake runs and ROS 2's in C++ included;
+    warning in other tests, under conditions that are not known, where the name stays and changed its meaning, and for
+    the first name of a library that only the newest distro lacks; note in examples and for the rest of those.
 
 Example
     cv::imread(path, CV_LOAD_IMAGE_ANYDEPTH)    // gone in OpenCV 4
@@ -32,6 +32,7 @@ from collections.abc import Iterator
 from ...facts.condition import Condition
 from ...model.package import NameUse, is_header
 from ...model.view import View
+from ...model.workspace import Package
 from ...targets.changes import excuses, removed_in
 from ...targets.evidence import evidence_of, of_offered
 from ...targets.library import include_roots
@@ -134,7 +135,7 @@ def _reviewed(view: View) -> Iterator[Hit]:
                 if any(_brings_back(view, change, endings, path) for path in included.get(use.at.path, included[""])):
                     continue
             guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
-            built = view.built(use.role) if use.language == "cpp" else use.role in ("build", "run", "test")
+            built = view.built(use.role) if use.language == "cpp" else _is_run(package, use)
             brought_back = use.language == "python" and stood_in_for(use.text)
             sure = built and not brought_back and not guarded and change.kind != "api-changed"
             if endings and sure and included is not None:
@@ -163,6 +164,13 @@ def _reviewed(view: View) -> Iterator[Hit]:
                 evidence=evidence_of(change),
             )
         yield from _what_is_coming(view, package.name, coming)
+
+
+def _is_run(package: Package, use: NameUse) -> bool:
+    """Whether the package runs a Python file, as a program or as a test that CMake is told of."""
+    if use.role != "test":
+        return use.role in ("build", "run")
+    return any(use.at.path in target.sources for target in package.build.targets if target.kind == "test")
 
 
 def _what_is_coming(view: View, package: str, coming: list[tuple[NameUse, Change, bool]]) -> Iterator[Hit]:
