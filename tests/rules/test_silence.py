@@ -439,6 +439,15 @@ SILENT = {
         ),
         ("CMakeLists.txt", "set(TOOLS run walk)", "set(TOOLS run)"),
     ),
+    "headers that a build fetches": Silent(
+        "missing-install",
+        ("jazzy",),
+        ament(
+            "install(DIRECTORY ${arm_SOURCE_DIR}/include/arm/ DESTINATION include/sled)",
+            include__arm__arm_hpp="#pragma once\n",
+        ),
+        ("CMakeLists.txt", "${arm_SOURCE_DIR}/", ""),
+    ),
     "a target that waits through a library": Silent(
         "missing-interface-wiring",
         ("noetic",),

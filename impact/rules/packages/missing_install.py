@@ -183,6 +183,8 @@ def _under_another_name(view: View, package, installs):
         root, _, tail = install.destination.rstrip("/").rpartition("include")
         for item in install.items:
             folder = re.search(r"(?:^|/)include/([\w-]+)/\Z", item)
+            if "$" in item:
+                continue  # how others include what lies outside of the workspace is not known
             if folder is None or root or tail in ("", "/" + folder.group(1)) or tail.count("/") != 1:
                 continue
             name = folder.group(1)
