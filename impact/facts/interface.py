@@ -63,7 +63,21 @@ PRIMITIVES = frozenset({
     "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64",
 })  # fmt: skip
 """Types of fields that are no interfaces, in .msg and IDL files of ROS 2; ROS 1 has `time` and `duration` besides."""
+TIMES = frozenset(("time", "duration"))
+"""What ROS 1 has besides, and ROS 2 as messages of builtin_interfaces."""
 SECTIONS = {"msg": ("message",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
+
+
+def full_name(type_: str, package: str) -> str:
+    """`package/Name` of the message that a field's type names, as either generation of ROS writes it. type_: no
+    primitive type, without bounds. package: whose definition it stands in."""
+    if type_ == "Header":
+        return "std_msgs/Header"
+    if type_ in TIMES:
+        return f"builtin_interfaces/{type_.title()}"
+    plain = type_.replace("/msg/", "/")
+    return plain if "/" in plain else f"{package}/{plain}"
+
 
 # The grammar of http://wiki.ros.org/msg and https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html
 DECLARATION = re.compile(

@@ -10,7 +10,7 @@ import json
 from collections.abc import Callable
 from typing import Any
 
-from ..facts.interface import Field, Interface
+from ..facts.interface import Field, Interface, full_name
 
 Find = Callable[[str], Interface | None]
 """The definition of `package/Name`, a message; None where it is not known."""
@@ -48,7 +48,7 @@ def _text_of(package: str, constants: Any, fields: Any, find: Find, above: tuple
         if field.type in _PRIMITIVES_1:
             lines.append(f"{field.type}{field.array} {field.name}")
             continue
-        name = _full(field.type, package)
+        name = full_name(field.type, package)
         inner = find(name)
         if inner is None or name in above:
             return None
@@ -93,7 +93,7 @@ def _describe(package: str, name: str, definition: Interface, find: Find, known:
         elif plain in _NUMBERS:
             number = _NUMBERS[plain]
         else:
-            other, _, short = _full(plain, package).partition("/")
+            other, _, short = full_name(plain, package).partition("/")
             number, nested = _NESTED, f"{other}/msg/{short}"
             if nested not in known:
                 inner = find(f"{other}/{short}")
@@ -118,16 +118,6 @@ def _array(text: str) -> tuple[int, int] | None:
     if not most.isdecimal():
         return None
     return (_ARRAY if most == inside else _BOUNDED), int(most)
-
-
-def _full(type_: str, package: str) -> str:
-    """`package/Name` of a message's name as it is written in a definition."""
-    if type_ == "Header":
-        return "std_msgs/Header"
-    head, _, name = type_.replace("/msg/", "/").rpartition("/")
-    if not head and name in ("time", "duration"):
-        return f"builtin_interfaces/{name.title()}"
-    return f"{head or package}/{name}"
 
 
 def hash_of(name: str, ros: int, definition: Interface, find: Find) -> str | None:

@@ -8,14 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from ..facts.interface import PRIMITIVES, Interface
+from ..facts.interface import PRIMITIVES, TIMES, Interface, full_name
 from .fields import ROS1_SUFFIXES, snake
 
 _ROS1 = re.compile(r"(?P<package>\w+)/(?P<name>[A-Z]\w*)\.h\Z")
 _ROS2 = re.compile(
     r"(?P<folder>(?P<package>\w+)/(?P<kind>msg|srv|action)/)(?:detail/)?(?P<stem>[a-z0-9_]+?)(?P<part>__\w+)?\.hpp\Z"
 )
-_TIMES = frozenset(("time", "duration"))
 _OF_ACTIONS = ("actionlib_msgs/GoalID.h", "actionlib_msgs/GoalStatus.h", "std_msgs/Header.h")
 
 
@@ -85,7 +84,7 @@ def _nested(definition: Interface, package: str) -> Iterator[tuple[str, str]]:
     for section in definition.sections:
         for field in section.fields:
             type_ = field.type.partition("<")[0]
-            if type_ in PRIMITIVES or type_ in _TIMES:
+            if type_ in PRIMITIVES or type_ in TIMES:
                 continue
-            other, _, name = type_.rpartition("/")
-            yield other.split("/")[0] or ("std_msgs" if name == "Header" else package), name
+            other, _, name = full_name(type_, package).partition("/")
+            yield other, name

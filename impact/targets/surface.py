@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from ..facts import kinds
-from ..facts.interface import PRIMITIVES, Field, Interface, Section
+from ..facts.interface import PRIMITIVES, Field, Interface, Section, full_name
 from ..facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
 from ..model.package import role_of_folder
 from . import surface_build, surface_diff, surface_python
@@ -700,14 +700,7 @@ def _written(field: Field) -> str:
 def _type(field: Field, package: str) -> str:
     """The type, however it is written."""
     plain, bound, limit = field.type.partition("<=")
-    plain = plain.replace("/msg/", "/")
-    if plain == "Header":
-        plain = "std_msgs/Header"
-    elif plain in ("time", "duration"):
-        plain = f"builtin_interfaces/{plain.title()}"
-    elif "/" not in plain and plain not in PRIMITIVES:
-        plain = f"{package}/{plain}"
-    return f"{plain}{bound}{limit}{field.array}"
+    return f"{plain if plain in PRIMITIVES else full_name(plain, package)}{bound}{limit}{field.array}"
 
 
 # The build
