@@ -4,7 +4,7 @@ many packages reads little."""
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import msgspec
 import zstandard
@@ -52,12 +52,13 @@ class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def stands_for(self, version: str, ros: int) -> str | None:
         """The stored version of a ROS generation that stands for one: itself, or the newest before it that was read at
         its tag; None for one older than all."""
-        read = (
-            known
-            for known, whose in zip(self.versions, self.generations, strict=True)
-            if whose & ros and known not in self.approximate
-        )
-        return newest_up_to(version, read)
+        return newest_up_to(version, self.read(ros))
+
+    def read(self, ros: int) -> Iterator[str]:
+        """The versions of a ROS generation that were read at their tags, oldest first."""
+        for version, whose in zip(self.versions, self.generations, strict=True):
+            if whose & ros and version not in self.approximate:
+                yield version
 
     def written(self, header: str, version: str) -> tuple[Include, ...] | None:
         """What a header includes in a stored version, as written; None where the version has no such header."""

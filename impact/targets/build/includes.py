@@ -451,11 +451,7 @@ def beside(surfaces: Surfaces, table: includes.Table) -> includes.Table:
 
 def _before(included: Included, headers: dict[str, str]) -> dict[str, str]:
     """The states of headers that no stored version stands for: of those that surfaces never have, all."""
-    firsts = [
-        next((v for v, whose in zip(included.versions, included.generations, strict=True)
-              if whose & ros and v not in included.approximate), None)
-        for ros in (1, 2)
-    ]  # fmt: skip
+    firsts = [next(included.read(ros), None) for ros in (1, 2)]
     known = [parts(first) for first in firsts if first is not None]
     found = {}
     for header, states in headers.items():
