@@ -14,7 +14,7 @@ import msgspec
 from msgspec import structs
 
 from .condition import Condition
-from .cpp import KEYWORDS, CppFile, Use, scan, standing
+from .cpp import KEYWORDS, CppFile, Use, scan, standing, text_of
 
 
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -426,7 +426,7 @@ _INSIDE = re.compile(r"[^\n]")
 @lru_cache(maxsize=2)
 def python_text(data: bytes) -> str:
     """The text of a Python file with comments and the insides of literals blanked, offsets kept."""
-    text = data.decode("utf-8-sig", "replace").replace("\r\n", "\n").replace("\r", "\n")
+    text = text_of(data)
 
     def blank(match: re.Match[str]) -> str:
         hidden = match.group()
@@ -442,8 +442,7 @@ _YAML_COMMENT = re.compile(r"(?m)(?:^|(?<=[ \t]))#.*$")
 
 def yaml_text(data: bytes) -> str:
     """The text of a YAML file with comments blanked, offsets kept."""
-    text = data.decode("utf-8-sig", "replace").replace("\r\n", "\n").replace("\r", "\n")
-    return _YAML_COMMENT.sub(lambda match: " " * len(match.group()), text)
+    return _YAML_COMMENT.sub(lambda match: " " * len(match.group()), text_of(data))
 
 
 _TEXTS = {"python": python_text, "yaml": yaml_text}

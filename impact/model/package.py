@@ -558,18 +558,19 @@ class _Join:
         for path, facts in files.items():
             heads = {item.module.split(".")[0] for item in facts.imports}
             for package in sorted(self.watched.modules.keys() & heads):
-                for label, pattern in self.watched.modules[package]:
-                    for line, column, _, _ in first_places(places_of_use(self.read(path), pattern)):
-                        yield NameUse(label, At(path, line, column), self.python_role(path), False, "python")
+                yield from self.alike(path, self.watched.modules[package])
 
     def parameter_uses(self, paths: Iterable[str]) -> Iterator[NameUse]:
         """The same in files of parameters."""
         for path in paths:
             data = self.read(path)
-            for label, pattern in self.watched.parameters:
-                if pattern.word.encode() in data:
-                    for line, column, _, _ in first_places(places_of_use(data, pattern)):
-                        yield NameUse(label, At(path, line, column), self.python_role(path), False, "yaml")
+            yield from self.alike(path, [row for row in self.watched.parameters if row[1].word.encode() in data])
+
+    def alike(self, path: str, rows: Iterable[tuple[str, Pattern]]) -> Iterator[NameUse]:
+        """Where a file that no compiler reads has what looks like one of these rows' uses."""
+        for label, pattern in rows:
+            for line, column, _, _ in first_places(places_of_use(self.read(path), pattern)):
+                yield NameUse(label, At(path, line, column), self.python_role(path), False, pattern.language)
 
     def members(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
