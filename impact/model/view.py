@@ -33,7 +33,6 @@ from .workspace import Package, Workspace, snake
 
 # Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's
 # Depends).
-_FOUND = re.compile(r"(\w+)_FOUND")
 _INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
 # Kinds that are on the machine that builds the package from source.
 _BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test", "doc"})
@@ -93,6 +92,8 @@ _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _UNCONFIGURED = Config()
 # What may be known by its identity as long as it is kept, since it does not change.
 _LASTING = (frozenset, MappingProxyType)
+# The variable that tells whether CMake found a package.
+_FOUND = re.compile(r"(\w+)_FOUND")
 
 
 class View:
