@@ -24,6 +24,7 @@ from ..facts.python_objects import PythonUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, first_places, initialises, names_a_variable, place_in, places_of_use, python_text
 from ..targets.fields import Fields
+from ..targets.message_headers import type_in
 from .build import At, Build
 from .macros import Macros
 
@@ -517,7 +518,7 @@ class _Join:
                         IncludeUse(include.path, At(path, include.line, include.column), role, public,
                                    conditions + self.macros.asked(include.conditions, targets), targets)
                     )  # fmt: skip
-            reach = None
+            reach, types = None, set()
             for name in facts.qualified:
                 text = name.text.removeprefix("::")
                 wanted = watched.meant(text)
@@ -526,6 +527,9 @@ class _Join:
                                          conditions + self.macros.asked(name.conditions, targets),
                                          targets))  # fmt: skip
                 headers = watched.headers_of.get(text)
+                if headers is None and (made := type_in(text)) is not None and made.name not in types:
+                    types.add(made.name)
+                    text, headers = made.name, made.headers
                 if headers is not None:
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in headers) and not self.declares(path, text):
@@ -738,10 +742,19 @@ class _Join:
             for path, before in self.met(source, own):
                 if role == roles[path][0]:
                     found[path].add(tuple(sorted(own[path] | before)))
+        alone = {path: own[path] for path, sets in found.items() if not sets}
+        for header in self.outermost(roles) if alone else ():
+            for path, before in self.met(header, alone):
+                found[path].add(tuple(sorted(own[path] | before)))
         return {
             path: tuple(sorted(sets, key=lambda s: (len(s), s))[:_SOURCES]) or (self.outward(path),)
             for path, sets in found.items()
         }
+
+    def outermost(self, roles) -> Iterator[str]:
+        """The headers that no other header of the package includes."""
+        inner = {to for path, resolved in self.resolved.items() if is_header(path) for to, _ in resolved}
+        return (path for path in roles if is_header(path) and path not in inner)
 
     def met(self, source: str, wanted: Container[str]) -> Iterator[tuple[str, frozenset[str]]]:
         """Headers among the wanted ones as a source comes to include them, with the include paths that no file of the
@@ -876,6 +889,8 @@ def _spoken(facts: CppFile) -> frozenset[str]:
 
 _TYPE_AHEAD = re.compile(rb"\b(?:class|struct|enum|typedef|using)\b[^;{}=]*(?<!\w)\Z")
 _TYPE_BEHIND = re.compile(rb"\s*[;:{=<]")
+# The macro of ros/message_forward.h that announces a message.
+_MESSAGE_AHEAD = re.compile(rb"\bROS_DECLARE_MESSAGE\s*\(\s*\Z")
 
 
 def _declares_type(data: bytes, word: bytes) -> bool:
@@ -884,6 +899,8 @@ def _declares_type(data: bytes, word: bytes) -> bool:
     while at >= 0:
         end = at + len(word)
         if _TYPE_BEHIND.match(data, end) and _TYPE_AHEAD.search(data, max(0, at - 300), at):
+            return True
+        if _MESSAGE_AHEAD.search(data, max(0, at - 40), at):
             return True
         at = data.find(word, end)
     return False

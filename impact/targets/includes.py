@@ -146,6 +146,7 @@ class Machine:
         self._outside: dict[frozenset[str], frozenset[str]] = {}
         self._alone: dict[str, int] = {}
         self._masks: dict[frozenset[str], int] = {}
+        self._telling: dict[str, bool] = {}
         self._bits: dict[str, int] = {}
         self._versions: dict[str, str | None] = {}
 
@@ -336,6 +337,21 @@ class Machine:
         if known is None:
             known = self._outside[headers] = frozenset().union(*(self.brought(header).outside for header in headers))
         return known
+
+    def tells(self, header: str) -> bool:
+        """False for a header that is made from an interface of which no definition is known here, so that neither its
+        being there nor what it brings along of others' is known."""
+        package = message_headers.package_of(header, self.ros)
+        if package is None or self.includes(header) is None:
+            return True
+        return message_headers.included_by(header, self.ros, self._interfaces_of(package), True) is not None
+
+    def tells_all(self, headers: frozenset[str]) -> bool:
+        """Whether it tells of all generated headers that these bring along."""
+        for header in headers:
+            if header not in self._telling:
+                self._telling[header] = all(map(self.tells, self.brought(header).headers))
+        return all(self._telling[header] for header in headers)
 
     def bits(self, headers: Iterable[str]) -> int:
         """One bit for each of these headers, the same in all answers of this machine."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import NamedTuple
 
 from ..facts.interface import PRIMITIVES, TIMES, Interface, full_name
 from .fields import ROS1_SUFFIXES, snake
@@ -15,6 +17,11 @@ _ROS1 = re.compile(r"(?P<package>\w+)/(?P<name>[A-Z]\w*)\.h\Z")
 _ROS2 = re.compile(
     r"(?P<folder>(?P<package>\w+)/(?P<kind>msg|srv|action)/)(?:detail/)?(?P<stem>[a-z0-9_]+?)(?P<part>__\w+)?\.hpp\Z"
 )
+_TYPE1 = re.compile(r"(?P<package>\w+_(?:msgs|srvs|actions))::[A-Z][A-Za-z0-9]*?(?=(?:Const)?Ptr\b|\b)")
+_TYPE2 = re.compile(
+    r"(?P<package>\w+)::"
+    r"(?:msg::[A-Z][A-Za-z0-9]*\b|(?:srv|action)::[A-Z][A-Za-z0-9]*(?=_(?:Re|Goal|Send|Get|Feed)|\b))"
+)
 _OF_ACTIONS = ("actionlib_msgs/GoalID.h", "actionlib_msgs/GoalStatus.h", "std_msgs/Header.h")
 
 
@@ -22,6 +29,40 @@ def package_of(header: str, ros: int) -> str | None:
     """The package of a header that is made from an interface in this ROS generation, by its path; None for others."""
     found = (_ROS1 if ros == 1 else _ROS2).match(header)
     return None if found is None else found["package"]
+
+
+class InterfaceType(NamedTuple):
+    """A type of C++ that is made from an interface. name: as code writes it. headers: that define it, first the one to
+    include, then parts of it that other headers include."""
+
+    name: str
+    package: str
+    ros: int
+    headers: tuple[str, ...]
+
+
+@lru_cache(maxsize=20000)
+def type_in(name: str) -> InterfaceType | None:
+    """The type that a qualified name of C++ begins with; None where it looks like none. Of ROS 1, types in packages
+    whose names say that they hold messages, without what only some of them have (`Ptr`)."""
+    found, ros = _TYPE2.match(name), 2
+    if found is None:
+        found, ros = _TYPE1.match(name), 1
+    return None if found is None else InterfaceType(found[0], found["package"], ros, _defining(found[0].split("::")))
+
+
+def _defining(parts: list[str]) -> tuple[str, ...]:
+    if len(parts) == 2:
+        return (f"{parts[0]}/{parts[1]}.h",)
+    folder, stem = f"{parts[0]}/{parts[1]}/", snake(parts[2])
+    return f"{folder}{stem}.hpp", f"{folder}detail/{stem}__struct.hpp", f"{folder}{stem}__struct.hpp"
+
+
+def headers_of(definition: Interface, package: str, ros: int) -> tuple[str, ...]:
+    """The generated headers of the interfaces that are types of fields of one of a package."""
+    if ros == 1:
+        return tuple(f"{other}/{type_}.h" for other, type_ in _nested(definition, package))
+    return tuple(f"{other}/msg/{snake(type_)}.hpp" for other, type_ in _nested(definition, package))
 
 
 def included_by(header: str, ros: int, interfaces: Mapping[str, Interface], apart: bool) -> tuple[str, ...] | None:

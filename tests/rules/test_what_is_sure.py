@@ -81,3 +81,44 @@ def test_a_path_through_the_folder_of_a_library_is_told_loudly_once(tmp_path):
     files = {"a_DOT_cpp": include, "b_DOT_cpp": include, "cmake": "add_library(sled a.cpp b.cpp)\n"}
     told = severities(tmp_path, "removed-header", "opencv4/opencv2/core.hpp", "noetic", **files)
     assert told == {"warning", "note"}
+
+
+@pytest.mark.parametrize(
+    ("included", "source", "expected"),
+    [
+        ("geometry_msgs/Pose.h", "nav_msgs::PathConstPtr path;", {"error"}),
+        ("nav_msgs/GetPlan.h", "nav_msgs::PathConstPtr path;", set()),  # a field of it
+        ("tf/transform_listener.h", "geometry_msgs::PoseStamped pose;", set()),  # comes along, over many headers
+        ("sled/unknown.h", "nav_msgs::PathConstPtr path;", set()),
+        (
+            "ros/message_forward.h",
+            "namespace nav_msgs {\nROS_DECLARE_MESSAGE(Path)\n}\nnav_msgs::PathConstPtr path;",
+            set(),
+        ),
+        ("sensor_msgs/PointCloud2.h", "sensor_msgs::PointCloud2Modifier fields(cloud);", set()),  # is no message
+    ],
+)
+def test_a_message_type_whose_header_nothing_brings(included, source, expected, tmp_path):
+    told = severities(
+        tmp_path, "missing-include", "nav_msgs/Path.h", "noetic", depend="geometry_msgs nav_msgs sensor_msgs tf",
+        cmake="add_library(sled sled.cpp)\n", sled_DOT_cpp=f"#include <{included}>\n{source}\n",
+    )  # fmt: skip
+    assert told == expected
+
+
+@pytest.mark.parametrize(("first", "expected"), [("", {"warning"}), ("#include <nav_msgs/Path.h>\n", set())])
+def test_an_installed_header_that_only_another_header_includes(first, expected, tmp_path):
+    told = severities(
+        tmp_path, "missing-include", "nav_msgs/Path.h", "noetic", depend="nav_msgs",
+        cmake="install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})\n",
+        include__sled__sled_DOT_h=f"{first}#include <vector>\n#include <sled/impl.h>\n",
+        include__sled__impl_DOT_h="#pragma once\ninline bool any(nav_msgs::Path & path) { return path.size(); }\n",
+    )  # fmt: skip
+    assert told == expected
+
+
+@pytest.mark.parametrize(("opened", "expected"), [("sled", {"error"}), ("snow", {"warning"})])
+def test_a_package_of_data_that_installs_none_of_it(opened, expected, tmp_path):
+    launch = f'<launch><include file="$(find {opened})/launch/drive.launch" /></launch>\n'
+    told = severities(tmp_path, "missing-install", "install", "noetic", launch__sled_DOT_launch=launch)
+    assert told == expected

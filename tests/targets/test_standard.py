@@ -24,6 +24,13 @@ from rosimpact.impact.targets.standard import DEFINED_IN, brought_by, reaches
         ({"algorithm"}, "std::numeric_limits", 10, True),
         ({"algorithm"}, "std::numeric_limits", 11, False),
         ({"thread"}, "std::shared_ptr", 10, True),
+        # C's own headers: <string> reads <stdlib.h>, which has the types with a sign, and no others
+        ({"string"}, "int16_t", 13, True),
+        ({"string"}, "std::int16_t", 13, False),
+        ({"vector"}, "int16_t", 13, False),
+        ({"inttypes.h"}, "uint8_t", 13, True),
+        ({"netinet/in.h"}, "uint16_t", 13, True),
+        ({"sys/types.h"}, "uint16_t", 13, False),
         ({"iostream"}, "std::vector", 13, False),
         ({"vector"}, "std::no_such_name", 13, None),
         (set(), "std::vector", 13, False),

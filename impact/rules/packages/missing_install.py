@@ -12,9 +12,10 @@ Why it breaks
 Severity
     error for an install rule of something that does not exist, or with a variable that nothing sets; and where the
     installed package is sure to fail: a program that an installed launch file starts in any case, a script among
-    programs, or a node in Python, that cannot be executed, the description of plugins whose library is installed,
-    headers in a folder where another package of the workspace, which compiles them, does not look. warning otherwise:
-    in a workspace that is never installed all of this works.
+    programs, or a node in Python, that cannot be executed, the description of plugins whose library is installed, all
+    of a package that only holds data which launch files open, headers in a folder where another package of the
+    workspace, which compiles them, does not look. warning otherwise: in a workspace that is never installed all of this
+    works.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
@@ -51,7 +52,7 @@ def missing_install(view: View):
         yield from _under_another_name(view, package, installs)
         yield from _variables(view, package)
         if not installs and package.build_type == "catkin" and not package.build.targets:
-            yield from _nothing(view, package)
+            yield from _nothing(package, opened=package.name in referred)
             continue
         yield from _targets(view, package, installs, referred)
         yield from _descriptions(view, package, installs)
@@ -231,8 +232,8 @@ def _variables(view: View, package):
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
 
 
-def _nothing(view: View, package):
-    """A package that only holds data, and installs none of it."""
+def _nothing(package, opened: bool):
+    """A package that only holds data, and installs none of it. opened: a launch file or a script opens files of it."""
     folders = [folder for folder in _DATA if package.has_files(folder)]
     if folders and package.build.catkin_package is not None and not package.manifest.metapackage:
         yield Hit(
@@ -241,6 +242,7 @@ def _nothing(view: View, package):
             f"nothing of `{package.name}` is installed, and it has {', '.join(folders)}",
             f"install(DIRECTORY {' '.join(folders)} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})",
             package.name,
+            severity="error" if opened else "warning",
         )
 
 

@@ -2,8 +2,9 @@
 
 What it does
     Reports names of the standard library, of Boost and of ROS packages in files that do not include the header that
-    offers them, when the headers that they do include stopped bringing it along; and names of Boost that none of them
-    brings, where some of them are Boost's.
+    offers them, when the headers that they do include stopped bringing it along; names of Boost that none of them
+    brings, where some of them are Boost's; and types of messages, services and actions whose header none of them
+    brings.
 
 Why it breaks
     Some other header brought it. The next compiler or library version stops including it, and the build fails on the
@@ -12,9 +13,9 @@ Why it breaks
 Severity
     error when a source compiles the file, none of the headers that reach it there brings the name on the target, and
     all of them are known, or for a ROS package's name none of the others depends on that; warning when something else
-    is not known, or is known to announce the type, when nothing is known to have brought the name before, and in
-    installed headers that only tests compile; note for files that no source compiles, and for what lies ahead, in the
-    newest distro.
+    is not known, or is known to announce the type, when nothing is known to have brought a name of Boost before, and in
+    installed headers that only tests compile, or nothing; note for files that no source compiles, and for what lies
+    ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
@@ -26,7 +27,8 @@ Use instead
 
 Not reported
     Names that a header which reaches the file may still bring; names of the standard library and of Boost in files that
-    something unknown reaches; types that a file of the package announces itself.
+    something unknown reaches; types that a file of the package announces itself; types of the workspace's own
+    interfaces.
 """
 
 import re
@@ -36,13 +38,16 @@ from ...model.build import for_tests
 from ...model.package import NeededHeader
 from ...model.view import View
 from ...targets.includes import Machine, announced, offered
+from ...targets.message_headers import headers_of, package_of, type_in
 from ...targets.standard import DEFINED_IN
 from ..cure import Insert
 from ..rule import Hit, rule
 
-# Headers that other ones include and that bring nothing: made of macros while a library is built, of other processors,
-# or of Boost, whose own headers are all known as far as they are there.
-_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|intrin\.h$|^boost/|@")
+# Headers that other ones include and that bring nothing: made of macros while a library is built, or of Boost, whose
+# own headers are all known as far as they are there.
+_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|^boost/|@")
+# What compilers have for one processor.
+_OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+)\.h$")
 
 
 @rule(severity="warning")
@@ -64,7 +69,11 @@ def missing_include(view: View):
             if lost is None or (need.at.path, lost.header) in told:
                 continue
             told.add((need.at.path, lost.header))
-            here = now and (need.at.path in compiled or need.at.path in offered_to_others)
+            here = now and (
+                need.at.path in compiled
+                or need.at.path in offered_to_others
+                or (lost.sure and need.at.path in package.digest.public_headers)
+            )
             sure = (
                 need.at.path in compiled
                 and now
@@ -109,37 +118,63 @@ def _lost(
 ) -> _Lost | None:
     """What one of the sources that compile a file misses on a machine: what an earlier one brought along, or nothing
     ever did."""
-    offering = DEFINED_IN.get(need.name) or offered().get(need.name)
-    if offering is None:
+    offering = _offering(view, need.name)
+    if not offering:
         return None
     if need.name not in DEFINED_IN and all(machine.includes(header) is None for header in offering):
         return None
     wanted, best = frozenset(offering), None
-    bits = machine.bits(wanted)
+    bits, made = machine.bits(wanted), type_in(need.name)
     # To a type that is announced, pointers may be made.
     pointed = 0 if need.whole else machine.bits(announced(need.name))
     for reach, own in reaches:
         if bits & machine.mask(reach) or not wanted.isdisjoint(own):
             continue
         outside = _outside(view, need.name, reach, machine)
-        if outside is None:
+        if outside is None or (made is not None and not _all_told(view, bits, reach, machine)):
             continue
         dropped = _dropped(view, wanted, reach, machine, earlier)
-        found = dropped or _never(need.name, wanted, reach, machine)
+        found = dropped or _never(need.name, offering, reach, machine)
         if found is None or (best is not None and (best.sure or outside)):
             continue
         # Of what reaches the file and is not known, nothing depends on a ROS package whose name it is.
         known = not outside or not (need.name in DEFINED_IN or machine.of_library(offering[0]))
-        sure = dropped is not None and known and not pointed & machine.mask(reach)
+        sure = (dropped is not None or made is not None) and known and not pointed & machine.mask(reach)
         best = _Lost(offering[0], *found, sure, dropped is not None)
     return best
 
 
-def _never(name: str, wanted: frozenset[str], reach: frozenset[str], machine: Machine) -> tuple[str, str] | None:
-    """A library and its version, where a file includes some of its headers, and none that offers a name of its."""
+def _offering(view: View, name: str) -> tuple[str, ...]:
+    """The headers that offer a name, best first; none for types of interfaces that are the workspace's own, or not
+    known on the target."""
+    made = type_in(name)
+    if made is None:
+        return DEFINED_IN.get(name) or offered().get(name) or ()
+    known = made.ros == view.target.ros and made.package not in view.workspace.packages
+    return made.headers if known and view.machine.tells(made.headers[0]) else ()
+
+
+def _all_told(view: View, bits: int, reach: frozenset[str], machine: Machine) -> bool:
+    """Whether all interfaces are known whose headers reach a file, and none that is the workspace's own, which the
+    machine may know of another version, brings what is wanted."""
+    ros = view.target.ros
+    owners = {package_of(header, ros) for header in reach}
+    for package in view.workspace:
+        for file in package.digest.interfaces if package.name in owners else ():
+            if bits & machine.mask(frozenset(headers_of(file.definition, package.name, ros))):
+                return False
+    return machine.tells_all(reach)
+
+
+def _never(name: str, offering: tuple[str, ...], reach: frozenset[str], machine: Machine) -> tuple[str, str] | None:
+    """Whose a name is that nothing ever brought, and its version: a Boost library's, where a file includes some of its
+    headers, or an interface's."""
+    if (made := type_in(name)) is not None:
+        version = machine.version(made.package)
+        return (made.package, version) if version else None
     if not name.startswith("boost::"):
         return None
-    owners = {owner for header in wanted if (owner := machine.owner(header)) is not None}
+    owners = {owner for header in offering if (owner := machine.owner(header)) is not None}
     return next((owner for header in sorted(reach) if (owner := machine.owner(header)) in owners), None)
 
 
@@ -165,11 +200,16 @@ def _outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> 
     outside = {
         path
         for path in machine.outside(reach)
-        if not view.is_standard(path) and (path in reach or (view.header(path) and not _GENERATED.search(path)))
+        if not view.is_standard(path)
+        and not _OF_PROCESSOR.search(path)
+        and (path in reach or (view.header(path) and not _GENERATED.search(path)))
     }
     if name in DEFINED_IN:
         return None if outside & reach else sorted(outside)
-    owners = {owner[0] for header in offered()[name] if (owner := machine.owner(header)) is not None}
+    if (made := type_in(name)) is not None:
+        owners = {made.package}
+    else:
+        owners = {owner[0] for header in offered()[name] if (owner := machine.owner(header)) is not None}
     for path in outside:
         around = view.around(path)
         if not around or (path in reach and machine.knows(path)) or not owners.isdisjoint(around):
