@@ -74,11 +74,13 @@ def weight(need: Need) -> tuple:
 
 
 class Misnamed(NamedTuple):
-    """Why an include path cannot be right, and what to write."""
+    """Why an include path, or a name, cannot be right, and what to write. soon: it still is, until the distro's next
+    sync."""
 
     message: str
     help: str
     evidence: Evidence | None = None
+    soon: bool = False
 
 
 # Metapackages whose name other packages' headers begin with (ros/ros.h is roscpp's).
@@ -452,13 +454,17 @@ class View:
         return None if history is None or state is None or not version else (history, state, version)
 
     @cached_property
-    def _updated(self) -> Target | None:
-        return self.target.updated()
+    def _ahead(self) -> tuple[tuple[Target, bool], ...]:
+        """What this distro becomes, soonest first, and whether its next sync brings that."""
+        ahead = (self.target.in_testing(), True), (self.target.updated(), False)
+        return tuple((target, soon) for target, soon in ahead if target is not None)
 
     def coming_member(self, use: MemberUse) -> Misnamed | None:
         """What is wrong when the interface has a member here, and lacks it once this distro is updated."""
-        now = self._interfaces_of(use.package)
-        later = self._interfaces_of(use.package, self._updated) if self._updated else None
+        return next((c for target, soon in self._ahead if (c := self._coming_member(use, target, soon))), None)
+
+    def _coming_member(self, use: MemberUse, target: Target, soon: bool) -> Misnamed | None:
+        now, later = self._interfaces_of(use.package), self._interfaces_of(use.package, target)
         if use.ros != self.target.ros or not now or not later or now[1] >= later[1]:
             return None
         definition = now[0].definition(use.interface)
@@ -469,21 +475,26 @@ class View:
             return None
         spans = [span for row in rows for span in row.spans]
         lost = _field_lost(use.package, now[0], spans, later[1])._replace(name=use.member, ahead=True)
-        return Misnamed(f"`{use.member}` of `{use.package}/{use.interface}` is there, and gone in {use.package} "
-                        f"{later[2]} of {self.target.distro}", "", lost)  # fmt: skip
+        return self._goes(f"`{use.member}` of `{use.package}/{use.interface}`", use.package, later[2], soon, lost)
 
     def coming_interface(self, path: str) -> Misnamed | None:
         """The same for the interface of a generated header."""
+        return next((c for target, soon in self._ahead if (c := self._coming_interface(path, target, soon))), None)
+
+    def _coming_interface(self, path: str, target: Target, soon: bool) -> Misnamed | None:
         head, _, _, name = self._generated(path)
-        now = self._interfaces_of(head)
-        later = self._interfaces_of(head, self._updated) if self._updated else None
+        now, later = self._interfaces_of(head), self._interfaces_of(head, target)
         if not name or not now or not later or now[1] >= later[1]:
             return None
         spans = now[0].spans(name)
         if spans is None or not there(spans, now[1]) or there(spans, later[1]):
             return None
-        return Misnamed(f"`{path}` is there, and gone in {head} {later[2]} of {self.target.distro}", "",
-                        _field_lost(head, now[0], spans, later[1])._replace(name=path, ahead=True))  # fmt: skip
+        lost = _field_lost(head, now[0], spans, later[1])._replace(name=path, ahead=True)
+        return self._goes(f"`{path}`", head, later[2], soon, lost)
+
+    def _goes(self, what: str, package: str, version: str, soon: bool, evidence: Evidence) -> Misnamed:
+        where = f"the next sync of {self.target.distro}" if soon else self.target.distro
+        return Misnamed(f"{what} is there, and gone in {package} {version} of {where}", "", evidence, soon)
 
     def _generated(self, path: str) -> tuple[str, str, str, str]:
         """Package, rest, stem and interface (empty: none known) of the include path of a generated header."""

@@ -448,6 +448,15 @@ class DistroTarget(Target):
         """The newest long-term distro of this generation, None when this distro is it or newer."""
         return _newest(self.distro, self.date if self.distro == "rolling" else "", self._data)
 
+    def in_testing(self) -> DistroTarget | None:
+        """The same distro with what has been released on its day and waits for the next sync, which its build farm
+        builds against already; None when nothing waits, or syncs are not known."""
+        if self.approximate or self._cut >= end_of_day(self.date):
+            return None
+        found = self.changed()
+        found._cut = end_of_day(self.date)
+        return found
+
     def updated(self) -> DistroTarget | None:
         """The same distro as of the data's newest day, None when this is it."""
         if self.date >= self.data_date and not self._overrides:

@@ -146,6 +146,11 @@ class Target(Protocol):
         """The newest long-term distro of this generation as of the data's day, None when this is it or a newer one."""
         ...
 
+    def in_testing(self) -> Target | None:
+        """The same distro with what has been released on its day and waits for the next sync, which its build farm
+        builds against already; None when nothing waits, or syncs are not known."""
+        ...
+
     def updated(self) -> Target | None:
         """The same distro as of the data's newest day, None when this is it."""
         ...

@@ -31,3 +31,26 @@ def test_nothing_is_coming_where_the_newest_distro_is_asked_for_itself(tmp_path)
     assert told("melodic") == {("warning", ("melodic",))}
     assert told("melodic", "noetic") == {("error", ("noetic",))}
     assert told("melodic") == {("warning", ("melodic",))}  # and what was said of two targets is not remembered for one
+
+
+@pytest.mark.parametrize(
+    ("target", "expected"),
+    [
+        ("iron@2023-06-01", {"warning"}),  # some update will take it away
+        ("iron@2023-06-04", {"error"}),  # released on the day before, in the sync of the 16th
+        ("iron@2023-06-20", {"error"}),
+    ],
+)
+def test_a_field_that_goes_with_the_next_sync(target, expected, tmp_path):
+    (tmp_path / "package.xml").write_text(
+        '<package format="3"><name>sled</name><version>1.0.0</version><description>sled</description>'
+        '<maintainer email="robots@example.org">Robots</maintainer><license>MIT</license>'
+        "<depend>control_msgs</depend><export><build_type>ament_cmake</build_type></export></package>"
+    )
+    (tmp_path / "CMakeLists.txt").write_text("project(sled)\nadd_library(sled sled.cpp)\nament_package()\n")
+    (tmp_path / "sled.cpp").write_text(
+        "#include <control_msgs/msg/joint_trajectory_controller_state.hpp>\n"
+        "void drive(control_msgs::msg::JointTrajectoryControllerState & state) { state.actual.positions.clear(); }\n"
+    )
+    found = check(tmp_path, Options(targets=(target,), select=("unknown-field",), cache=tmp_path / "cache", jobs=1))
+    assert {f.severity for f in found.findings} == expected

@@ -14,10 +14,11 @@ Why it breaks
 Severity
     error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for the first
     include of each header that only the newest distro lacks, for interfaces that go when a dated target's distro is
-    updated, for headers of C where nothing else brings the C++ types, for installed headers that include what is not
-    installed, and once in a package for a path through the folder of a version that is there, since another machine may
-    have it elsewhere; note for its other includes, for examples, for installed headers that the package does not
-    compile itself, and under conditions that are not known.
+    updated, after its next sync (which its build farm builds against already), for headers of C where nothing else
+    brings the C++ types, for installed headers that include what is not installed, and once in a package for a path
+    through the folder of a version that is there, since another machine may have it elsewhere; note for its other
+    includes, for examples, for installed headers that the package does not compile itself, and under conditions that
+    are not known.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -132,7 +133,7 @@ def removed_header(view: View):
                     soon.message,
                     soon.help,
                     package.name,
-                    severity="warning" if severity == "error" else "note",
+                    severity=severity if soon.soon else "warning" if severity == "error" else "note",
                     evidence=soon.evidence,
                 )
                 continue

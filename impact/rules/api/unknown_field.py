@@ -11,8 +11,9 @@ Why it breaks
     robot, or an ImportError.
 
 Severity
-    error for C++ that is built, tests of ROS 2 included; warning in tests of ROS 1, for Python, for what only goes with
-    an update, and where a telling name is used on something whose type does not show; note in examples.
+    error for code that is built or run, tests of ROS 2 included, also for what goes with the distro's next sync, since
+    its build farm builds against that already; warning in tests of ROS 1, for what only goes with a later update, and
+    where a telling name is used on something whose type does not show; note in examples.
 
 Example
     request->start_controllers = {"arm"};       // controller_manager_msgs of Iron has activate_controllers
@@ -54,21 +55,21 @@ def unknown_field(view: View):
             if not view.active(use.conditions) or not view.certain(c for c in use.conditions if c.language == "cpp"):
                 continue
             lacking = view.lacking_member(use)
+            built = view.built(use.role) and view.certain(use.conditions)
             if lacking is None:
                 coming = view.coming_member(use)
                 if coming is not None:
-                    severity = "warning" if use.sure and use.role != "aside" else "note"
+                    loud = use.sure and use.role != "aside"
                     yield Hit(
                         use.at,
                         use.member,
                         coming.message,
                         coming.help,
                         package.name,
-                        severity=severity,
+                        severity="error" if loud and built and coming.soon else "warning" if loud else "note",
                         evidence=coming.evidence,
                     )
                 continue
-            built = view.built(use.role) and use.language == "cpp" and view.certain(use.conditions)
             yield Hit(
                 use.at,
                 use.member,
