@@ -6,14 +6,14 @@ What it does
     asked for brings them. What is found for the tests alone counts for the tests alone. Also components of catkin that
     are system libraries on the target, libraries that their vendor package no longer finds, and pkg_check_modules
     whose first argument, the prefix of its variables, is REQUIRED, and programs that include a client library and are
-    linked to nothing.
+    linked to nothing, or that compile the headers of a library which no component they are linked to exports (ROS 1).
 
 Why it breaks
     The compiler misses the include path, or the linker the library, unless another package happens to add them.
 
 Severity
     error where a target is linked or an include path used under a name that only the missing find_package defines,
-    where catkin is asked for a system library, for a program that is linked to nothing, for a variable that nothing
+    where catkin is asked for a system library, for a program that lacks a library of ROS, for a variable that nothing
     sets where it stands for a library whose headers the target compiles, and, since Kinetic, where no target gets ROS's
     include folder; warning for includes, since an include path may come along by accident, and for other variables that
     nothing sets.
@@ -35,6 +35,7 @@ from ...model.build import for_tests
 from ...model.view import View, interface_of
 from ...targets.version import at_least
 from ..rule import Hit, rule
+from .unlinked import unlinked
 
 _SYSTEM_BY_DEFAULT = (
     "boost/",
@@ -65,6 +66,7 @@ def missing_find_package(view: View):
         yield from _never_set(view, package)
         yield from _no_prefix(view, package)
         yield from _linked_to_nothing(view, package)
+        yield from unlinked(view, package)
         found = found_names(view, package)
         if found is None:
             continue

@@ -1,0 +1,197 @@
+"""Programs of catkin packages that compile the headers of a library in ROS, and are linked to nothing that brings it.
+
+What `catkin_LIBRARIES` holds is told by what the components asked for export, themselves and through CATKIN_DEPENDS:
+by the build of those in the workspace, and by the stored surfaces of those that are released.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+
+from ...model.build import BuildTarget, for_tests
+from ...model.package import IncludeUse
+from ...model.view import View
+from ..rule import Hit
+
+
+def unlinked(view: View, package) -> Iterator[Hit]:
+    """Programs, or libraries of the package that programs of it link, which the linker stops at."""
+    build = package.build
+    if package.build_type != "catkin" or view.target.ros != 1 or build.unresolved:
+        return
+    found = {f.name for f in build.found}
+    if any("$" in name for name in found):
+        return
+    exported = _Exported(view)
+    targets = {t.name: t for t in build.targets}
+    includes: dict[str, list[IncludeUse]] = {}
+    for include in package.digest.includes:
+        if include.role == "build" and view.certain(include.conditions):
+            for name in include.targets:
+                includes.setdefault(name, []).append(include)
+    told = set()
+    for target in build.targets:
+        if target.kind != "executable" or for_tests(target.conditions) or not view.certain(target.conditions):
+            continue
+        linked = _linked(package, targets, target)
+        if linked is None:
+            continue
+        items, parts = linked
+        brought = exported.closure(_packages(view, package, items))
+        if brought is None:
+            continue
+        words = [_plain(item) for item in items]
+        for part in parts:
+            for include in includes.get(part, ()):
+                if not include.path.startswith(_COMPILED):
+                    continue
+                providers = view.header(include.path)
+                if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
+                    continue
+                name = providers[0].name
+                if name in brought or name in told or name == package.name:
+                    continue
+                libraries = exported.libraries(name)
+                if not libraries or any(_plain(lib) in word for lib in (*libraries, name) for word in words):
+                    continue
+                told.add(name)
+                yield Hit(
+                    include.at,
+                    name,
+                    f"`{target.name}` compiles `{include.path}` and is linked to nothing that brings `{name}`",
+                    f"add `{name}` to find_package(catkin REQUIRED COMPONENTS ...) and link ${{catkin_LIBRARIES}}",
+                    package.name,
+                    severity="error",
+                )
+
+
+# Headers of classes and functions that stand in a library, so that a program that uses them is linked to it. Headers
+# that are templates, or inline, are left out: who includes those may do without the library. Source: the packages'
+# sources, in which the constructors and functions of these stand in a .cpp file.
+_COMPILED = (
+    "camera_info_manager/camera_info_manager.h",
+    "control_toolbox/pid.h",
+    "controller_manager/controller_manager.h",
+    "costmap_2d/costmap_2d_ros.h",
+    "cv_bridge/cv_bridge.h",
+    "eigen_conversions/eigen_kdl.h",
+    "eigen_conversions/eigen_msg.h",
+    "geometric_shapes/shape_operations.h",
+    "image_geometry/",
+    "image_transport/image_transport.h",
+    "interactive_markers/interactive_marker_server.h",
+    "interactive_markers/menu_handler.h",
+    "kdl_conversions/kdl_msg.h",
+    "kdl_parser/kdl_parser.hpp",
+    "laser_geometry/laser_geometry.h",
+    "map_server/image_loader.h",
+    "moveit/move_group_interface/move_group_interface.h",
+    "moveit/planning_scene/planning_scene.h",
+    "moveit/planning_scene_monitor/planning_scene_monitor.h",
+    "moveit/robot_model_loader/robot_model_loader.h",
+    "moveit/robot_state/robot_state.h",
+    "nodelet/loader.h",
+    "resource_retriever/retriever.h",
+    "robot_state_publisher/robot_state_publisher.h",
+    "ros/package.h",
+    "ros/ros.h",
+    "rosbag/bag.h",
+    "rosbag/view.h",
+    "srdfdom/model.h",
+    "tf/transform_broadcaster.h",
+    "tf/transform_listener.h",
+    "tf2_ros/buffer.h",
+    "tf2_ros/static_transform_broadcaster.h",
+    "tf2_ros/transform_broadcaster.h",
+    "tf2_ros/transform_listener.h",
+    "tf_conversions/tf_eigen.h",
+    "tf_conversions/tf_kdl.h",
+    "topic_tools/shape_shifter.h",
+    "urdf/model.h",
+)
+
+
+class _Exported:
+    """What catkin packages hand on to whoever links them."""
+
+    def __init__(self, view: View):
+        self._view = view
+
+    def libraries(self, name: str) -> tuple[str, ...]:
+        """The libraries that a package exports; none where that is not known."""
+        package = self._view.workspace.packages.get(name)
+        if package is not None:
+            return tuple(e.item for e in package.build.exports if e.how == "libraries" and "$" not in e.item)
+        offer = self._view.offers.package(name)
+        return tuple(lib for lib in offer.build.libraries if "$" not in lib) if offer is not None else ()
+
+    def closure(self, names: Iterable[str]) -> frozenset[str] | None:
+        """These packages and all that they bring; None where that of one is not known."""
+        found: set[str] = set()
+        waiting = list(names)
+        while waiting:
+            name = waiting.pop()
+            if name in found:
+                continue
+            found.add(name)
+            further = self._dependencies(name)
+            if further is None:
+                return None
+            waiting.extend(further)
+        return frozenset(found)
+
+    def _dependencies(self, name: str) -> Iterable[str] | None:
+        package = self._view.workspace.packages.get(name)
+        if package is not None:
+            given = [e.item for e in package.build.exports if e.how in ("catkin_depends", "system_depends")]
+            return None if package.build.unresolved or any("$" in item for item in given) else given
+        offer = self._view.offers.package(name)
+        if offer is None:
+            target = self._view.target
+            plain = target.version(name) is None or target.known_build_types(name) <= {"cmake"}
+            return () if plain or _INTERFACES.search(name) else None
+        return (*offer.build.dependencies, *offer.build.system)
+
+
+_INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
+
+
+def _linked(package, targets: dict[str, BuildTarget], program: BuildTarget) -> tuple[set[str], list[str]] | None:
+    """All that a program is linked to, and itself with the libraries of its package that it is linked to; None where
+    that cannot be told."""
+    items = {link.item for link in package.build.links}
+    parts: list[str] = []
+    waiting = [program.name, *items]
+    while waiting:
+        target = targets.get(waiting.pop())
+        if target is None or target.name in parts:
+            continue
+        if target.kind in ("unknown", "external", "fetched", "imported"):
+            return None
+        parts.append(target.name)
+        if target.alias_of:
+            waiting.append(target.alias_of)
+        for link in target.links:
+            if link.how == "link":
+                items.add(link.item)
+                waiting.append(link.item)
+    if any("$" in item and not _VARIABLE.fullmatch(item) for item in items):
+        return None
+    return items, parts
+
+
+_VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
+
+
+def _packages(view: View, package, items: Iterable[str]) -> set[str]:
+    """The packages that link items stand for."""
+    names: set[str] = set()
+    for item in items:
+        match = _VARIABLE.fullmatch(item)
+        names.add(match.group(1) if match else item)
+    if "catkin" in names:
+        names.update(f.name for f in package.build.found if f.how == "catkin")
+    return {name for name in names if view.is_package(name)} - {package.name, "catkin"}
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())

@@ -1,0 +1,85 @@
+"""Programs that are linked to nothing which brings a library of ROS, and what brings it."""
+
+from pathlib import Path
+
+import pytest
+from rosimpact.impact.check import Options, check
+
+MANIFEST = (
+    '<package format="2"><name>{name}</name><version>1.0.0</version><description>d</description>'
+    '<maintainer email="robots@example.org">Robots</maintainer><license>MIT</license>'
+    "<buildtool_depend>catkin</buildtool_depend><depend>roscpp</depend><depend>tf</depend><depend>laser_geometry</depend>"
+    "<depend>image_transport</depend><depend>plough_tools</depend></package>"
+)
+LISTENS = "#include <tf/transform_listener.h>\nint main() { tf::TransformListener listener; }\n"
+
+
+def told(folder: Path, cmake: str, target: str = "noetic", tools: str = "", **sources: str) -> list[tuple[str, str]]:
+    """(severity, subject) of what is said about links in a workspace of two packages, of which `plough` is built by
+    `cmake`, and `plough_tools` exports `tools`."""
+    files = {
+        "plough/package.xml": MANIFEST.format(name="plough").replace("<depend>plough</depend>", ""),
+        "plough/CMakeLists.txt": f"cmake_minimum_required(VERSION 3.0)\nproject(plough)\n{cmake}\ncatkin_package()\n",
+        "plough_tools/package.xml": MANIFEST.format(name="plough_tools").replace("<depend>plough_tools</depend>", ""),
+        "plough_tools/CMakeLists.txt": "cmake_minimum_required(VERSION 3.0)\nproject(plough_tools)\n"
+        f"find_package(catkin REQUIRED COMPONENTS tf)\ncatkin_package({tools})\n",
+        **{f"plough/{name.replace('_DOT_', '.')}": text for name, text in sources.items()},
+    }
+    for path, text in files.items():
+        place = folder / path
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(text)
+    options = Options(targets=(target,), select=("missing-find-package",), cache=folder / "cache", jobs=1)
+    return [(f.severity, f.subject) for f in check(folder, options).findings if "linked to nothing" in f.message]
+
+
+LINKED = "add_executable(plough plough.cpp)\ntarget_link_libraries(plough ${catkin_LIBRARIES})\n"
+
+
+@pytest.mark.parametrize(
+    ("components", "tools", "expected"),
+    [
+        ("roscpp", "", [("error", "tf")]),
+        ("roscpp tf", "", []),
+        ("laser_geometry", "", []),  # exports tf, as its released version does
+        ("image_transport", "", [("error", "tf")]),  # which does not
+        ("plough_tools", "CATKIN_DEPENDS tf", []),
+        ("plough_tools", "", [("error", "tf")]),
+    ],
+)
+def test_a_program_gets_what_its_components_export(components, tools, expected, tmp_path):
+    cmake = f"find_package(catkin REQUIRED COMPONENTS {components})\n{LINKED}"
+    assert told(tmp_path, cmake, tools=tools, plough_DOT_cpp=LISTENS) == expected
+
+
+@pytest.mark.parametrize("target", ["indigo", "kinetic", "noetic"])
+def test_a_library_of_the_package_needs_it_where_a_program_is_linked_to_it(target, tmp_path):
+    cmake = (
+        "find_package(catkin REQUIRED COMPONENTS roscpp)\nadd_library(share share.cpp)\n"
+        "add_executable(plough plough.cpp)\ntarget_link_libraries(plough share ${catkin_LIBRARIES})\n"
+    )
+    sources = {"share_DOT_cpp": LISTENS, "plough_DOT_cpp": "int main() {}\n"}
+    assert told(tmp_path, cmake, target, **sources) == [("error", "tf")]
+    assert told(tmp_path, cmake.replace("plough share", "plough"), target, **sources) == []
+
+
+@pytest.mark.parametrize(
+    "link",
+    [
+        "tf",  # by its name
+        "${tf_LIBRARIES}",
+        "/opt/ros/noetic/lib/libtf.so",
+        "${EVERYTHING}",  # which nobody knows
+    ],
+)
+def test_what_may_be_the_library_is_taken_for_it(link, tmp_path):
+    cmake = (
+        "find_package(catkin REQUIRED COMPONENTS roscpp)\nadd_executable(plough plough.cpp)\n"
+        f"target_link_libraries(plough ${{catkin_LIBRARIES}} {link})\n"
+    )
+    assert told(tmp_path, cmake, plough_DOT_cpp=LISTENS) == []
+
+
+def test_headers_that_need_no_library_say_nothing(tmp_path):
+    cmake = f"find_package(catkin REQUIRED COMPONENTS roscpp)\n{LINKED}"
+    assert told(tmp_path, cmake, plough_DOT_cpp="#include <tf/transform_datatypes.h>\nint main() {}\n") == []
