@@ -83,6 +83,12 @@ class Misnamed(NamedTuple):
     soon: bool = False
 
 
+# How packages of interfaces are called, and what makes interfaces and runs with them.
+_INTERFACES = re.compile(r"_(?:msgs?|messages|srvs|actions|interfaces)\Z")
+_WITH_INTERFACES = (
+    "rosidl_default_generators", "rosidl_default_runtime", "message_generation", "message_runtime",
+)  # fmt: skip
+
 # Metapackages whose name other packages' headers begin with (ros/ros.h is roscpp's).
 _UMBRELLAS = frozenset({"ros", "moveit", "ecl", "pcl", "opencv2", "gazebo", "boost", "rtt", "visp", "flann"})
 # Headers that the package's build writes from templates in some releases.
@@ -129,6 +135,7 @@ class View:
         self._modules: dict[str, tuple[Provider, ...]] = {}
         self._debian: dict[str, frozenset[str]] = {}
         self._sealed: dict[str, list[str]] = {}
+        self._unknown: dict[str, tuple[str, ...]] = {}
         self._around: dict[str, frozenset[str]] = {}
         self._files: dict[str, tuple[str, ...]] = {}
         self._libraries_of: dict[str, list[str]] = {}
@@ -819,16 +826,22 @@ class View:
             known = self._direct[name] = tuple(self.installed_with(name))
         return known
 
-    def blind(self, package: Package) -> bool:
-        """True when dependencies of something in the closure are not known anywhere, so that it may lack something."""
-        target = self.target
-        return any(
-            n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
-            and not target.known_key(n)  # a key that the platform lacks brings nothing
-            and target.dependencies(n) is None and target.similar_dependencies(n) is None
-            and not target.other_generation(n)  # nor does a package that cannot be had
-            for n in self.closure(package)
-        )  # fmt: skip
+    def blind(self, package: Package, name: str = "") -> bool:
+        """True when dependencies of something in the closure are not known anywhere, so that it may lack something; or
+        this name: packages that are called as those of interfaces are bring others of them, and what they run with."""
+        unknown = self._unknown.get(package.name)
+        if unknown is None:
+            target = self.target
+            unknown = self._unknown[package.name] = tuple(
+                n for n in self.closure(package)
+                if n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
+                and not target.known_key(n)  # a key that the platform lacks brings nothing
+                and target.dependencies(n) is None and target.similar_dependencies(n) is None
+                and not target.other_generation(n)  # nor does a package that cannot be had
+            )  # fmt: skip
+        if unknown and name and not _INTERFACES.search(name) and name not in self.spread(_WITH_INTERFACES):
+            return any(not _INTERFACES.search(n) for n in unknown)
+        return bool(unknown)
 
     def sealed(self, package: Package) -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the

@@ -3,8 +3,9 @@
 What it does
     Reports packages and system libraries that CMake or pkg-config is asked for, sources include, Python imports, launch
     files or scripts start, when neither the manifest nor anything it declares brings them, directly or in turn; or when
-    a single declared package happens to bring them. Reports commands that make tests and that no declared package
-    brings, and the one package of its repository that a metapackage leaves out.
+    a single declared package happens to bring them. Reports what ament_auto is told to require under a name that the
+    manifest does not have, commands that make tests and that no declared package brings, and the one package of its
+    repository that a metapackage leaves out.
 
 Why it breaks
     The build works on the machine of whoever happens to have the package. On a machine that has just what the manifest
@@ -14,10 +15,11 @@ Severity
     error: an unconditional find_package(REQUIRED), catkin component, pkg_check_modules(REQUIRED), include of compiled
     code (or of an installed header that another package here compiles) or test command that is sure to miss its package
     on a clean machine of the target: nothing that is declared brings it, and where the target's manifest of something
-    declared is not known, no version of that in any distro does. warning: tests, imports, launch files, installed
-    headers that nothing here compiles, what only comes along with another dependency, or where a dependency is known
-    nowhere and may bring anything. note: conditional code, examples, documentation, files that
-    nothing compiles, and all but the first few imports, launch references and borrowed packages of a package.
+    declared is not known, no version of that in any distro does; and what ament_auto refuses. warning: tests, imports,
+    launch files, installed headers that nothing here compiles, what only comes along with another dependency, or where
+    a dependency is known nowhere and may bring it (one called as interfaces are brings interfaces). note: conditional
+    code, examples, documentation, files that nothing compiles, and all but the first few imports, launch references and
+    borrowed packages of a package.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -158,7 +160,9 @@ def undeclared_package(view: View):
                 continue
             (borrowed if view.answered(need.providers, closure) else missing).setdefault(name, []).append(need)
         # Whichever member of a group is there can bring anything.
-        blind = any(d.kind == "group" for d in package.manifest.dependencies) or view.blind(package)
+        grouped = any(d.kind == "group" for d in package.manifest.dependencies)
+        blind = grouped or view.blind(package)
+        yield from _refused(view, package)
         yield from _borrowed(view, package, borrowed)
         yield from _test_commands(view, package, blind)
         yield from _left_out(view, package)
@@ -167,7 +171,7 @@ def undeclared_package(view: View):
         spoken = 0
         firsts = sorted(((min(needs, key=weight), name) for name, needs in missing.items()), key=lambda f: weight(f[0]))
         for first, name in firsts:
-            severity = _severity(view, package, first, name, blind)
+            severity = _severity(view, package, first, name, grouped or (blind and view.blind(package, name)))
             if severity is None:
                 continue
             if severity == "warning" and first.how in ("launch", "plugin", "shell", "import"):
@@ -183,6 +187,25 @@ def undeclared_package(view: View):
                 package=package.name,
                 severity=severity,
                 fix=_cure(view, package, first, name) if severity != "note" else (),
+            )
+
+
+def _refused(view: View, package):
+    """What ament_auto is told to require, and refuses: what package.xml does not name among the dependencies to build
+    with. Another name for the same, such as its rosdep key, does not count. Source: ament_cmake_auto's
+    ament_auto_find_build_dependencies.cmake, the same in all distros."""
+    named = {d.name for d in package.manifest.dependencies if d.kind in ("build", "buildtool", "test")}
+    for found in package.build.found:
+        if found.how != "ament_auto" or not found.required or found.name in named or "$" in found.name:
+            continue
+        if view.active(found.conditions):
+            yield Hit(
+                found.at,
+                found.name,
+                f"`{found.name}` is REQUIRED of ament_auto, which refuses what `{package.name}` does not declare",
+                f"declare `{found.name}` by this name, or find_package({found.name} REQUIRED) on its own",
+                package.name,
+                severity="error" if view.certain(found.conditions) else "warning",
             )
 
 
