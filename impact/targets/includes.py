@@ -31,14 +31,15 @@ if TYPE_CHECKING:
 class Table(msgspec.Struct, frozen=True):
     """The shipped table. paths: include paths, whose places stand for them. owners: owner to header to its states, as
     `VERSION PLACE PLACE ...;VERSION -;...`: from that version on, and `-` where there is no such header. libraries:
-    owners that are platform libraries. sparse: owners of which not every version was read. names: types to the headers
-    that define them, of types that some header stopped bringing along. announced: types to headers that only announce
-    them. versions: distro to owner to the version that it has in the end, the compiler's as `gcc`."""
+    owners that are platform libraries. sparse: owners of which not every version was read, to those that were. names:
+    types to the headers that define them, of types that some header stopped bringing along. announced: types to
+    headers that only announce them. versions: distro to owner to the version that it has in the end, the compiler's
+    as `gcc`."""
 
     paths: tuple[str, ...]
     owners: dict[str, dict[str, str]]
     libraries: frozenset[str]
-    sparse: frozenset[str]
+    sparse: dict[str, tuple[str, ...]]
     names: dict[str, tuple[str, ...]] = {}
     announced: dict[str, tuple[str, ...]] = {}
     versions: dict[str, dict[str, str]] = {}
@@ -57,6 +58,7 @@ class Includes:
             for header in headers:
                 self.owners_of[header] = (*self.owners_of.get(header, ()), owner)
         self._states: dict[tuple[str, str], tuple[_State, ...]] = {}
+        self._read: dict[str, frozenset[tuple[int, ...]]] = {}
 
     def states(self, owner: str, header: str) -> tuple[_State, ...]:
         """(first version, what it includes; None: no such header), oldest first."""
@@ -76,11 +78,19 @@ class Includes:
         if place < 0:
             return None
         now = states[place][1]
-        if owner not in self.table.sparse or place + 1 == len(states) or states[place][0][:2] == wanted[:2]:
+        if place + 1 == len(states) or self._was_read(owner, wanted):
             return now
         # Between two known versions, a header may include what it does in either.
         later = states[place + 1][1]
         return tuple(dict.fromkeys((*(now or ()), *(later or ())))) if now or later else None
+
+    def _was_read(self, owner: str, wanted: tuple[int, ...]) -> bool:
+        """Whether a version, or another of its minor line, was read."""
+        if owner not in self.table.sparse:
+            return True
+        if owner not in self._read:
+            self._read[owner] = frozenset(parts(version)[:2] for version in self.table.sparse[owner])
+        return wanted[:2] in self._read[owner]
 
 
 @cache

@@ -76,6 +76,28 @@ def test_a_header_that_rviz_stopped_to_include_beside_those_of_its_libraries(mem
     assert told == expected
 
 
+@pytest.mark.parametrize(
+    ("target", "includes", "use", "header", "expected"),
+    [
+        # libav 0.8 brings it, and 9 does not; log4cxx, behind ros.h, needs neither it nor Boost.
+        ("hydro", "ros/ros.h libavcodec/avcodec.h", "av_free(place)", "libavutil/mem.h", set()),
+        ("indigo", "ros/ros.h libavcodec/avcodec.h", "av_free(place)", "libavutil/mem.h", {"error"}),
+        # Boost's whole header of pointers brought it later.
+        ("hydro", "boost/smart_ptr.hpp", "boost::make_shared<int>(1)", "boost/make_shared.hpp", {"error"}),
+        ("indigo", "boost/smart_ptr.hpp", "boost::make_shared<int>(1)", "boost/make_shared.hpp", set()),
+        ("hydro", "boost/smart_ptr.hpp sled.hpp", "boost::make_shared<int>(1)", "boost/make_shared.hpp", set()),
+        ("noetic", "boost/thread/mutex.hpp", "boost::bind(&run, 1)", "boost/bind.hpp", {"error"}),
+        ("noetic", "boost/signals2.hpp", "boost::bind(&run, 1)", "boost/bind.hpp", set()),
+    ],
+)
+def test_a_name_of_a_library_that_nothing_included_brings(target, includes, use, header, expected, tmp_path):
+    told = severities(
+        tmp_path, "missing-include", header, target, depend="roscpp", cmake="add_library(sled sled.cpp)\n",
+        sled_DOT_cpp="".join(f"#include <{path}>\n" for path in includes.split()) + f"void sled() {{ {use}; }}\n",
+    )  # fmt: skip
+    assert told == expected
+
+
 def test_a_path_through_the_folder_of_a_library_is_told_loudly_once(tmp_path):
     include = "#include <opencv4/opencv2/core.hpp>\n"
     files = {"a_DOT_cpp": include, "b_DOT_cpp": include, "cmake": "add_library(sled a.cpp b.cpp)\n"}

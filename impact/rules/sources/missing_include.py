@@ -13,9 +13,8 @@ Why it breaks
 Severity
     error when a source compiles the file, none of the headers that reach it there brings the name on the target, and
     all of them are known, or for a ROS package's name none of the others depends on that; warning when something else
-    is not known, or is known to announce the type, when nothing is known to have brought a name of Boost before, and in
-    installed headers that only tests compile, or nothing; note for files that no source compiles, and for what lies
-    ahead, in the newest distro.
+    is not known, or is known to announce the type, and in installed headers that only tests compile, or nothing; note
+    for files that no source compiles, and for what lies ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
@@ -43,11 +42,11 @@ from ...targets.standard import DEFINED_IN
 from ..cure import Insert
 from ..rule import Hit, rule
 
-# Headers that other ones include and that bring nothing: made of macros while a library is built, or of Boost, whose
-# own headers are all known as far as they are there.
-_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|^boost/|@")
+# Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache Portable
+# Runtime, which needs no other library, or of Boost, whose own headers are all known as far as they are there.
+_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|^apr_?\w*\.h$|^boost/|@")
 # What compilers have for one processor.
-_OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+)\.h$")
+_OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+|builtins)\.h$")
 
 
 @rule(severity="warning")
@@ -134,12 +133,14 @@ def _lost(
         if outside is None or (made is not None and not _all_told(view, bits, reach, machine)):
             continue
         dropped = _dropped(view, wanted, reach, machine, earlier)
-        found = dropped or _never(need.name, offering, reach, machine)
+        # Whose headers a platform library's bring, no table tells.
+        told = made is not None or all(p.kind == "ros" for path in outside for p in view.header(path))
+        found = dropped or (_never(need.name, offering, reach, machine) if told else None)
         if found is None or (best is not None and (best.sure or outside)):
             continue
         # Of what reaches the file and is not known, nothing depends on a ROS package whose name it is.
         known = not outside or not (need.name in DEFINED_IN or machine.of_library(offering[0]))
-        sure = (dropped is not None or made is not None) and known and not pointed & machine.mask(reach)
+        sure = known and not pointed & machine.mask(reach)
         best = _Lost(offering[0], *found, sure, dropped is not None)
     return best
 
@@ -172,7 +173,7 @@ def _never(name: str, offering: tuple[str, ...], reach: frozenset[str], machine:
     if (made := type_in(name)) is not None:
         version = machine.version(made.package)
         return (made.package, version) if version else None
-    if not name.startswith("boost::"):
+    if not name.startswith(("boost::", "BOOST_")):
         return None
     owners = {owner for header in offering if (owner := machine.owner(header)) is not None}
     return next((owner for header in sorted(reach) if (owner := machine.owner(header)) in owners), None)

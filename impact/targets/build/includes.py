@@ -3,10 +3,12 @@
     python -m rosimpact.impact.targets.build.includes FOLDER --installed boost=1.74=DIR ... --output DATA
     python -m rosimpact.impact.targets.build.includes --shipped
 
-FOLDER holds git clones (`OWNER+NAME`, or a git directory below it); their release tags are read. DIR is an include
-folder of one version, for libraries whose repositories are too large to be read; a Debian package unpacked has one.
-With `--onto`, what the table that is there tells stays, and only what is named is read. Only names and versions are
-kept. What the shipped surfaces tell is left out; `--shipped` does only that, to the shipped table, when they are new.
+FOLDER holds git clones (`OWNER+NAME`, or a git directory below it); their release tags are read. Boost is put together
+from all clones of `boostorg` that are named, at the tags of versions that some platform has. DIR is an include folder
+of one version, for libraries whose repositories are too large to be read; a Debian package unpacked has one.
+With `--onto`, what the table that is there tells stays, and only what is named is read: libraries with clones anew,
+others as more versions. Only names and versions are kept. What the shipped surfaces tell is left out; `--shipped` does
+only that, to the shipped table, when they are new.
 
 Headers of detail folders are not kept: what they include counts as included by who includes them.
 """
@@ -17,7 +19,8 @@ import argparse
 import json
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -51,8 +54,11 @@ _LIBRARIES = {
     "google+googletest": "gtest",
     "OctoMap+octomap": "octomap",
     "libav+libav": "libav",
+    "apache+logging-log4cxx": "log4cxx",
 }
-"""Clones of platform libraries, by their names in platform_versions.yaml; all others hold ROS packages."""
+"""Clones of platform libraries, by their names in platform_versions.yaml; all others but Boost's hold ROS packages."""
+_BOOST = "boostorg+"
+"""How clones of Boost's libraries begin."""
 # Headers of libav and FFmpeg that programs include, or that those include.
 _AV = re.compile(
     r"lib(?:avutil/\w+|avcodec/(?:avcodec|codec\w*|packet|defs|bsf|version\w*|old_codec_ids)"
@@ -66,7 +72,14 @@ _INTERFACES = tuple(
     for name in ("base", "clock", "graph", "logging", "parameters", "services", "time_source", "timers", "topics",
                  "type_descriptions", "waitables")
 )  # fmt: skip
-_VERSION = re.compile(r"(?:v|pcl-|release-|yaml-cpp-|ros2_|[a-z_]+-)?(\d+(?:\.\d+){1,3})$")
+# Headers of large libraries that programs include themselves; of others, only those that something includes are kept.
+_MEANT = re.compile(
+    r"boost/(?:algorithm/string|any|array|asio|bind|chrono|date_time(?:/\w+)?|filesystem|format|function|functional"
+    r"|interprocess(?:/sync)?|iostreams(?:/\w+)?|iterator|lexical_cast|math(?:/special_functions)?|multi_array|optional"
+    r"|program_options|property_tree|random|range(?:/\w+)?|serialization|signals2|smart_ptr|system|thread|timer|tuple"
+    r"|unordered|utility|uuid|variant)/\w+\.hpp|opencv2/(\w+)/\1\.hpp"
+)
+_VERSION = re.compile(r"(?:(?:rel/)?v|pcl-|release-|yaml-cpp-|ros2_|[a-z_]+-)?(\d+(?:[._]\d+){1,3})$")
 _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 _DIRECTIVE = re.compile(
@@ -230,22 +243,48 @@ State = dict[str, Header]
 
 
 def read_clones(folder: Path, names: Iterable[str]) -> Iterator[tuple[str, str, State]]:
-    """(package or library, version, its headers) at every release tag of the clones."""
+    """(package or library, version, its headers) at every release tag of the clones; Boost's last, of all its clones
+    together. Of Boost, a version is left out that more than a tenth of the clones stop before."""
+    whole: dict[str, dict[str, State]] = {}
+    for name in names:
+        if name.startswith(_BOOST):
+            wanted = platform_versions("boost")
+            whole[name] = {v: state for _, v, state in _read_clone(folder / name, "boost", wanted)}
+        else:
+            yield from _read_clone(folder / name, _LIBRARIES.get(name, ""))
+    for version in sorted({v for found in whole.values() for v in found}, key=parts):
+        begun = [found for found in whole.values() if any(parts(v) <= parts(version) for v in found)]
+        there = [found[version] for found in begun if version in found]
+        if len(there) * 10 >= len(begun) * 9:
+            yield "boost", version, {path: header for state in there for path, header in state.items()}
+
+
+def _read_clone(folder: Path, library: str, wanted: Container[str] | None = None) -> Iterator[tuple[str, str, State]]:
+    """wanted: the versions that are read, by default all."""
     import pygit2
 
-    for name in names:
-        where = git_directory(folder / name)
-        if where is None:
-            raise FileNotFoundError(f"{folder / name}: no git directory")
-        repository = pygit2.Repository(str(where))
-        clone = Clone(repository, _LIBRARIES.get(name, ""))
-        for ref in sorted(repository.references):
-            tag = ref.removeprefix("refs/tags/")
-            match = _VERSION.match(tag) if ref.startswith("refs/tags/") else None
-            tree = match and _tree(repository, ref)
-            if match and tree:
-                for package, headers in clone.packages(tree).items():
-                    yield package, match.group(1), {h: clone.blobs[b] for h, b in headers.items()}
+    where = git_directory(folder)
+    if where is None:
+        raise FileNotFoundError(f"{folder}: no git directory")
+    repository = pygit2.Repository(str(where))
+    clone = Clone(repository, library)
+    for ref in sorted(repository.references):
+        match = _VERSION.match(ref.removeprefix("refs/tags/")) if ref.startswith("refs/tags/") else None
+        version = match.group(1).replace("_", ".") if match else ""
+        if not version or (wanted is not None and version not in wanted):
+            continue
+        tree = _tree(repository, ref)
+        for package, headers in clone.packages(tree).items() if tree else ():
+            yield package, version, {h: clone.blobs[b] for h, b in headers.items()}
+
+
+@cache
+def platform_versions(library: str) -> frozenset[str]:
+    """The versions of a library that platforms have."""
+    import yaml
+
+    told = yaml.safe_load((DATA / "platform_versions.yaml").read_bytes())["platforms"].values()
+    return frozenset(libraries[library]["version"] for libraries in told if library in libraries)
 
 
 def read_generators(folder: Path) -> Iterator[tuple[str, str, State]]:
@@ -341,7 +380,8 @@ def table_of(states: dict[str, dict[str, dict[str, tuple[str, ...]]]], libraries
                     runs.append(f"{version} {text}".rstrip())
             rows[header] = ";".join(runs)
         owners[owner] = rows
-    return includes.Table(tuple(places), owners, frozenset(libraries), frozenset(sparse))
+    read = {owner: tuple(sorted(states[owner], key=parts)) for owner in sorted(sparse)}
+    return includes.Table(tuple(places), owners, frozenset(libraries), read)
 
 
 def _main() -> None:
@@ -358,6 +398,7 @@ def _main() -> None:
         return
     if asked.folder is None:
         parser.error("a folder of clones is needed, or --shipped")
+    told = [item.split("=") for item in asked.installed]
     states: dict[str, dict[str, dict[str, tuple[str, ...]]]] = defaultdict(dict)
     defining: dict[str, set[str]] = defaultdict(set)
     announcing: dict[str, set[str]] = defaultdict(set)
@@ -369,37 +410,36 @@ def _main() -> None:
             for name in header.announced:
                 announcing[name].add(path)
 
+    large: list[tuple[str, str, State]] = []
     generators = () if asked.onto else read_generators(asked.folder)
     for owner, version, state in (*read_clones(asked.folder, asked.clones), *generators):
-        if version not in states[owner] and state:
+        if owner == "boost":
+            large.append((owner, version, state))
+        elif version not in states[owner] and state:
             states[owner][version] = direct(state, lambda h: not _INNER.search(h))
             note(state)
-    libraries, sparse = set(_LIBRARIES.values()) & set(states), set()
     used = {p for versions in states.values() for v in versions.values() for found in v.values() for p in found}
     if asked.onto:
         used.update(includes.default().table.paths)
-    for item in asked.installed:
-        library, version, where = item.split("=")
-        libraries.add(library)
-        sparse.add(library)
-        state = read_folder(Path(where))
-        states[library][version] = direct(
+    anew = {*states, *(owner for owner, _, _ in large)}
+    large += [(library, version, read_folder(Path(where))) for library, version, where in told]
+    libraries, sparse = (set(_LIBRARIES.values()) | {"boost"}) & anew | {one[0] for one in told}, set()
+    for owner, version, state in large:
+        sparse.add(owner)
+        states[owner][version] = direct(
             state,
             lambda h: (
                 (h.count("/") == 1 and not h.startswith("lib"))
                 or h in used
                 or _AV.fullmatch(h) is not None
-                or bool(
-                    re.match(
-                        r"boost/(thread|filesystem|smart_ptr|date_time|function|bind|algorithm/string)/\w+\.hpp|opencv2/(\w+)/\2\.hpp",
-                        h,
-                    )
-                )
+                or (_MEANT.match(h) is not None and not _INNER.search(h))
             ),
         )
         note({p: h for p, h in state.items() if not p.startswith("boost/")})
     if asked.onto:
-        _write(onto(includes.default().table, states, libraries, sparse), asked.output)
+        known = includes.default().table
+        rest = {o: h for o, h in known.owners.items() if not (o in known.libraries and o in anew)}
+        _write(onto(msgspec.structs.replace(known, owners=rest), states, libraries, sparse), asked.output)
         return
     table = table_of({o: v for o, v in states.items() if any(v.values())}, libraries, sparse)
     table = msgspec.structs.replace(
@@ -482,6 +522,7 @@ def onto(known: includes.Table, states: _States, libraries: Iterable[str], spars
     merged: _States = {}
     for owner, headers in known.owners.items():
         versions = merged[owner] = {v: {} for text in headers.values() for v, _ in _runs(text)}
+        versions.update((v, {}) for v in known.sparse.get(owner, ()))
         for header, text in headers.items():
             runs = _runs(text)
             for version, found in versions.items():
@@ -490,7 +531,7 @@ def onto(known: includes.Table, states: _States, libraries: Iterable[str], spars
                     found[header] = tuple(known.paths[int(place)] for place in now[-1].split())
     for owner, versions in states.items():
         merged.setdefault(owner, {}).update(versions)
-    table = table_of(merged, known.libraries.union(libraries), known.sparse.union(sparse))
+    table = table_of(merged, known.libraries.union(libraries), {*known.sparse, *sparse} & merged.keys())
     versions = {d: {**_versions(d, table), **known.versions.get(d, {})} for d in DISTROS}
     return msgspec.structs.replace(table, names=known.names, announced=known.announced, versions=versions)
 
