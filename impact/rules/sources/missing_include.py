@@ -42,8 +42,8 @@ from ...targets.standard import DEFINED_IN
 from ..cure import Insert
 from ..rule import Hit, rule
 
-# Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache Portable
-# Runtime, which needs no other library, or of Boost, whose own headers are all known as far as they are there.
+# Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache
+# Portable Runtime, which needs no other library, or of Boost, whose own headers are all known as far as they are there.
 _GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|^apr_?\w*\.h$|^boost/|@")
 # What compilers have for one processor.
 _OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+|builtins)\.h$")
