@@ -69,6 +69,17 @@ class Installed(NamedTuple):
     problems: tuple[PathProblem, ...]
     underlays: tuple[str, ...]
 
+    @property
+    def places(self) -> dict[str, str]:
+        """The files of its own libraries, by the names by which they can be found."""
+        found: dict[str, str] = {}
+        for binary in self.binaries:
+            name = binary.path.rpartition("/")[2]
+            for known in (name, binary.elf.soname):
+                if known and ".so" in known:
+                    found.setdefault(known, os.path.join(binary.folder, name))
+        return found
+
 
 def read_installed(
     folder: Path,

@@ -317,6 +317,39 @@ def test_a_version_of_a_symbol_that_the_library_lost_is_reported(tmp_path, gcc, 
     )
 
 
+@pytest.mark.parametrize("kind", ["program", "plugin"])
+def test_a_function_that_a_library_lost_is_reported(kind, tmp_path, gcc, check, monkeypatch):
+    system = tmp_path / "system"
+    system.mkdir()
+    ws = workspace(tmp_path / "ws", "winch")
+    built = ws / "install/winch/lib/winch" / ("run" if kind == "program" else "libplugin.so")
+    built.parent.mkdir(parents=True)
+    (system / "main.cpp").write_text(
+        "namespace rope { struct Drum { Drum(); int turn(int); int length(); }; }\n"
+        "int host();\n"
+        + ("int host() { return 0; }\n" if kind == "program" else "")
+        + "int main() { return rope::Drum().turn(1) + rope::Drum().length() + host(); }\n"
+    )
+    for arguments in ("int", "double"):  # the second is built after the program, and takes another argument
+        (system / "drum.cpp").write_text(
+            f"namespace rope {{ struct Drum {{ Drum(); int turn({arguments}); int length(); }}; }}\n"
+            "rope::Drum::Drum() {}\n"
+            f"int rope::Drum::turn({arguments}) {{ return 0; }}\nint rope::Drum::length() {{ return 0; }}\n"
+        )
+        gcc(system, "-shared", "-fPIC", "-Wl,-soname,libdrum.so", "-o", "libdrum.so", "drum.cpp")
+        if arguments == "int":
+            how = () if kind == "program" else ("-shared", "-fPIC")
+            gcc(system, *how, "-o", str(built), "main.cpp", "./libdrum.so")
+            monkeypatch.setenv("LD_LIBRARY_PATH", str(system))
+            assert check(ws, "--install", ws / "install")[:2] == (0, [])  # host() may be the plugin's host's
+    _, (finding,), _ = check(ws, "--install", ws / "install")
+    assert (finding["severity"], finding["subject"], finding["help"]) == ("error", "rope::Drum::turn", "rebuild winch")
+    assert finding["message"] == (
+        f"`rope::Drum::turn` of `libdrum.so`, which `winch/lib/winch/{built.name}` needs, is gone: "
+        "no library that is loaded has it"
+    )
+
+
 def test_what_runs_on_this_machine_gives_no_finding(tmp_path, check):
     """The programs of this system itself, a hundred of them."""
     ws = workspace(tmp_path, "winch")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import re
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -131,6 +131,25 @@ def _dynamic(segment: Any, found: dict[str, Any]) -> None:
 def _symbols(data: bytes, file: Any, table: Any, versions: Any, names: dict[int, str], found: dict[str, Any]) -> None:
     import numpy
 
+    symbols, text = _table(data, file, table)
+    count = len(symbols)
+    given = numpy.zeros(count, "u2")
+    if versions is not None and versions["sh_size"] // 2 >= count:
+        order = "<" if file.little_endian else ">"
+        given = numpy.frombuffer(data, order + "u2", count, versions["sh_offset"])
+    found["defined"] = int(_for_others(symbols).sum())
+    undefined = []
+    for index in numpy.flatnonzero((symbols["name"] != 0) & (symbols["section"] == 0)).tolist():
+        name = _name_at(text, int(symbols["name"][index])).decode("utf-8", "replace")
+        weak = int(symbols["info"][index]) >> 4 == _WEAK
+        undefined.append(Undefined(name, names.get(int(given[index]) & 0x7FFF, ""), weak))
+    found["undefined"] = tuple(undefined)
+
+
+def _table(data: bytes, file: Any, table: Any) -> tuple[Any, bytes]:
+    """The symbols of a table as a numpy array, and the text that has their names."""
+    import numpy
+
     order = "<" if file.little_endian else ">"
     if file.elfclass == 64:
         fields = [("name", "u4"), ("info", "u1"), ("other", "u1"), ("section", "u2"), ("value", "u8"), ("size", "u8")]
@@ -138,23 +157,65 @@ def _symbols(data: bytes, file: Any, table: Any, versions: Any, names: dict[int,
         fields = [("name", "u4"), ("value", "u4"), ("size", "u4"), ("info", "u1"), ("other", "u1"), ("section", "u2")]
     kind = numpy.dtype([(name, order + size) for name, size in fields])
     count = min(table["sh_size"] // kind.itemsize, _SYMBOLS_AT_MOST)
-    symbols = numpy.frombuffer(data, kind, count, table["sh_offset"])
     strings = file.get_section(table["sh_link"])
     text = data[strings["sh_offset"] : strings["sh_offset"] + strings["sh_size"]]
-    given = numpy.zeros(count, "u2")
-    if versions is not None and versions["sh_size"] // 2 >= count:
-        given = numpy.frombuffer(data, order + "u2", count, versions["sh_offset"])
-    named = symbols["name"] != 0
-    absent = named & (symbols["section"] == 0)
-    visible = (symbols["info"] >> 4) != 0  # not STB_LOCAL
-    found["defined"] = int((named & ~absent & visible).sum())
-    undefined = []
-    for index in numpy.flatnonzero(absent).tolist():
-        start = int(symbols["name"][index])
-        name = text[start : text.index(b"\0", start)].decode("utf-8", "replace")
-        weak = int(symbols["info"][index]) >> 4 == _WEAK
-        undefined.append(Undefined(name, names.get(int(given[index]) & 0x7FFF, ""), weak))
-    found["undefined"] = tuple(undefined)
+    return numpy.frombuffer(data, kind, count, table["sh_offset"]), text
+
+
+def _for_others(symbols: Any) -> Any:
+    """Which of them are defined here and not local."""
+    return (symbols["name"] != 0) & (symbols["section"] != 0) & ((symbols["info"] >> 4) != 0)
+
+
+def _name_at(text: bytes, start: int) -> bytes:
+    return text[start : text.index(b"\0", start)]
+
+
+def defined(data: bytes) -> frozenset[str] | None:
+    """The C++ symbols that a file has for others; None for one that is no ELF file, or cannot be read to its end."""
+    from elftools.elf.elffile import ELFFile
+
+    try:
+        file = ELFFile(io.BytesIO(data))
+        found: set[str] = set()
+        for section in file.iter_sections("SHT_DYNSYM"):
+            symbols, text = _table(data, file, section)
+            starts = symbols["name"][_for_others(symbols)].tolist()
+            names = (_name_at(text, start) for start in starts)
+            found.update(name.decode("utf-8", "replace") for name in names if name.startswith(b"_Z"))
+        return frozenset(found)
+    except Exception:  # as in read()
+        return None
+
+
+_IDENTIFIER = re.compile(r"\d+")
+
+
+class Member(NamedTuple):
+    """A C++ symbol. name: `rclcpp::Node::now`, without its parameters; scope: how all symbols of its class or namespace
+    go on behind `_ZN`, or `_ZNK`; empty for one of none."""
+
+    name: str
+    scope: str
+
+
+def member(symbol: str) -> Member | None:
+    """What a mangled name of C++ is a member of; None for names that do not begin with plain identifiers.
+
+    Source: the Itanium C++ ABI, section 5.1 (nested names, special names)."""
+    if not symbol.startswith("_Z"):
+        return None
+    special = symbol.startswith(("_ZTV", "_ZTI", "_ZTS"))
+    rest = symbol[4:] if special else symbol[2:]
+    nested = rest.startswith("N")
+    rest = rest[1:].lstrip("rVKRO") if nested else rest
+    names, at, before = [], 0, 0
+    while (found := _IDENTIFIER.match(rest, at)) is not None:
+        before, at = at, found.end() + int(found[0])
+        names.append(rest[found.end() : at])
+    if special or rest[at : at + 1] in ("C", "D", "I"):
+        before = at
+    return Member("::".join(names), rest[:before] if nested else "") if names else None
 
 
 def _clause(error: Exception) -> str:

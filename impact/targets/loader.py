@@ -40,7 +40,8 @@ class Loader:
         sourced = [folder for folder in environment.get("LD_LIBRARY_PATH", "").split(":") if folder]
         self._folders = [*sourced, *folders]
         self._heads: dict[str, tuple[str, int] | None] = {}
-        self._offers: dict[str, frozenset[str]] = {}
+        self._read: dict[str, Elf | None] = {}
+        self._defined: dict[str, frozenset[str] | None] = {}
 
     @property
     def knows_prefixes(self) -> bool:
@@ -92,14 +93,43 @@ class Loader:
 
     def offers(self, path: str) -> frozenset[str]:
         """Versions of symbols that a library defines; empty for one without versions, or that cannot be read."""
-        known = self._offers.get(path)
-        if known is None:
+        found = self._elf(path)
+        return frozenset(found.offers) if found else frozenset()
+
+    def _elf(self, path: str) -> Elf | None:
+        if path not in self._read:
             try:
-                found = elf.read(Path(path).read_bytes())
+                self._read[path] = elf.read(Path(path).read_bytes())
             except OSError:
-                found = None
-            known = self._offers[path] = frozenset(found.offers) if found else frozenset()
-        return known
+                self._read[path] = None
+        return self._read[path]
+
+    def loaded(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[str, ...] | None:
+        """The libraries that are loaded with a file, those that they need in turn included; None where one is not
+        found, or cannot be read. own: further names to files."""
+        found: dict[str, None] = {}
+        stack = [(asker, folder)]
+        while stack:
+            by, place = stack.pop()
+            for soname in by.needed:
+                path = own.get(soname) or self.find(soname, by, place)
+                if path in found:
+                    continue
+                library = self._elf(path) if path else None
+                if library is None or library.problem:
+                    return None
+                found[path] = None
+                stack.append((library, os.path.dirname(os.path.realpath(path))))
+        return tuple(found)
+
+    def defined(self, path: str) -> frozenset[str] | None:
+        """The C++ symbols that a library has; None for one that cannot be read."""
+        if path not in self._defined:
+            try:
+                self._defined[path] = elf.defined(Path(path).read_bytes())
+            except OSError:
+                self._defined[path] = None
+        return self._defined[path]
 
     @cached_property
     def _everything(self) -> frozenset[str]:

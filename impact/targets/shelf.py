@@ -5,11 +5,13 @@ Both answer alike: yes, no, or not known. A no is said where it is sure.
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
+from ..facts import elf
 from ..facts.elf import Asked, Elf, stem_and_version
 from .loader import Loader
 from .sonames import Sonames
@@ -25,6 +27,16 @@ class Lack(NamedTuple):
 
     version: str
     there: str
+
+
+class Lost(NamedTuple):
+    """A C++ symbol without a version that none of the libraries which are loaded with a file has. name: as code writes
+    it; library: which of them has others of the same class, empty where none has; more: how many others
+    of it are lost."""
+
+    name: str
+    library: str
+    more: int
 
 
 class Shelf(Protocol):
@@ -54,6 +66,15 @@ class Shelf(Protocol):
     def lacks(self, asked: Asked, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
         """The versions of symbols that are asked of a library and not there; None when it is not known."""
         ...
+
+    def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+        """Symbols without a version that a file asks for and that are not there, one for each library; None when it is
+        not known. own: the files that are installed with it, by name."""
+        ...
+
+
+# How symbols begin that only the library of a class has: constructors, destructors, its table of virtual functions.
+_OF_CLASSES = ("_ZN{}C", "_ZN{}D", "_ZTVN{}", "_ZTIN{}")
 
 
 class MachineShelf:
@@ -85,6 +106,25 @@ class MachineShelf:
         if not offers:
             return None  # the loader only warns of a library without versions
         return tuple(Lack(version, _highest(offers, version)) for version in asked.versions if version not in offers)
+
+    def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+        wanted = {u.name for u in asker.undefined if not u.version and not u.weak and u.name.startswith("_Z")}
+        paths = self._loader.loaded(asker, folder, own) if wanted else ()
+        if paths is None:
+            return None
+        known = {path: self._loader.defined(path) for path in paths}
+        if None in known.values():
+            return None
+        absent = wanted.difference(*filter(None, known.values()))
+        found: dict[str, list[str]] = {}
+        for member in sorted(filter(None, map(elf.member, absent))):
+            marks = tuple(mark.format(member.scope) for mark in _OF_CLASSES)
+            owners = (path for path, names in known.items() if any(n.startswith(marks) for n in names or ()))
+            owner = os.path.basename(next(owners, "")) if member.scope else ""
+            # What is loaded as a plugin may find in its host what its own libraries never had.
+            if owner or asker.program:
+                found.setdefault(owner, []).append(member.name)
+        return tuple(Lost(names[0], owner, len(names) - 1) for owner, names in found.items())
 
 
 class DescribedShelf:
@@ -136,6 +176,9 @@ class DescribedShelf:
             if limit and re.fullmatch(r"[\d.]+", version) and compare(version, limit) > 0:
                 found.append(Lack(name, f"{kind}_{limit}"))
         return tuple(found)
+
+    def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+        return None
 
     @cached_property
     def _reach(self) -> dict[str, str]:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.impact.facts import elf
-from rosimpact.impact.facts.elf import Elf, read, stem_and_version
+from rosimpact.impact.facts.elf import Elf, member, read, stem_and_version
 
 
 def test_the_dynamic_section_is_read(made_elf):
@@ -126,3 +126,23 @@ def test_a_linked_program_that_is_cut_off_is_told(linked, share):
     data = (linked / "crane").read_bytes()
     found = elf.read(data[: int(len(data) * share)])
     assert found is not None and found.problem
+
+
+@pytest.mark.parametrize(
+    ("symbol", "name", "scope"),
+    [
+        ("_ZN6rclcpp4Node3nowEv", "rclcpp::Node::now", "6rclcpp4Node"),
+        ("_ZNK6rclcpp4Node8get_nameEv", "rclcpp::Node::get_name", "6rclcpp4Node"),
+        ("_ZN6rclcpp4NodeC1ERKNS_11NodeOptionsE", "rclcpp::Node", "6rclcpp4Node"),
+        ("_ZTVN6rclcpp4NodeE", "rclcpp::Node", "6rclcpp4Node"),
+        ("_ZN3pcl9VoxelGridINS_8PointXYZEE11applyFilterEv", "pcl::VoxelGrid", "3pcl9VoxelGrid"),
+        ("_Z4foldi", "fold", ""),
+    ],
+)
+def test_what_a_symbol_is_a_member_of(symbol, name, scope):
+    assert member(symbol) == (name, scope)
+
+
+@pytest.mark.parametrize("symbol", ["malloc", "_ZNSt6thread4joinEv", "_ZdlPv", "_Z"])
+def test_symbols_that_are_of_no_class_of_ones_own(symbol):
+    assert member(symbol) is None

@@ -4,11 +4,13 @@ What it does
     With `--install FOLDER`, reads the built files of an install space and reports shared libraries, and versions of
     their symbols, that this machine or a target does not have: what is left behind when an upgrade of the system
     replaces `libpcl_common.so.1.12` by `libpcl_common.so.1.13`, or when a file is built on a newer system than the one
-    that is to run it.
+    that is to run it. Reports C++ functions and classes that this machine's libraries of the same name have no longer,
+    as after an update of ROS that changed a signature.
 
 Why it breaks
     The loader stops the program before it begins: "error while loading shared libraries: libpcl_common.so.1.12: cannot
-    open shared object file", or "version `GLIBC_2.38' not found". A plugin fails when it is loaded.
+    open shared object file", "version `GLIBC_2.38' not found", or "undefined symbol: _ZN6rclcpp4Node...". A plugin
+    fails when it is loaded.
 
 Severity
     error: it is only said where it is sure. What cannot be told is counted in the coverage.
@@ -25,7 +27,7 @@ Not reported
     library that lies outside of the folders that the loader searches, where a program may know of it; on this machine
     without ROS sourced, libraries without a version; on a target whose files are not known (DATA.md says which are),
     libraries whose version does not tell the name of their files; files built for another kind of machine; symbols
-    without a version that a library lost.
+    without a version on a target, in C, or of a plugin where no library has others of the same class.
 """
 
 from __future__ import annotations
@@ -45,11 +47,13 @@ if TYPE_CHECKING:
 
 
 class _Missing(NamedTuple):
-    """What a file asks for in vain. subject: soname or version; library: the soname; there: what is there instead."""
+    """What a file asks for in vain. subject: soname, version or symbol; library: the soname; there: what is there
+    instead; symbols: how many more are lost with the symbol, -1 where it is none."""
 
     subject: str
     library: str
     there: str
+    symbols: int = -1
 
 
 @rule(severity="error", installed=True)
@@ -87,12 +91,19 @@ def _missing(view: View, binary: Binary, installed: Installed, shelf: Shelf) -> 
         lacks = shelf.lacks(asked, binary.elf, binary.folder)
         if lacks:
             yield _Missing(lacks[-1].version, asked.library, f"`{lacks[-1].there}`" if lacks[-1].there else "")
+    for lost in () if absent else shelf.lost(binary.elf, binary.folder, installed.places) or ():
+        yield _Missing(lost.name, lost.library, "", lost.more)
 
 
 def _message(missing: _Missing, binaries: list[Binary], shelf: Shelf) -> str:
     first = min(binary.path for binary in binaries)
     more = f" and {counted(len(binaries) - 1, 'more file')}" if len(binaries) > 1 else ""
-    what = f"`{missing.subject}`" + (f" of `{missing.library}`" if missing.library != missing.subject else "")
+    of = missing.library if missing.library != missing.subject else ""
+    what = f"`{missing.subject}`" + (f" of `{of}`" if of else "")
+    if missing.symbols >= 0:
+        others = f" and {counted(missing.symbols, 'more symbol')}" if missing.symbols else ""
+        told = "are gone: no library that is loaded has them" if others else "is gone: no library that is loaded has it"
+        return f"{what}{others}, which `{first}`{more} need{'' if more else 's'}, {told}"
     gone = "is gone" if shelf.gone and missing.there else "is not there"
     there = f"{shelf.name} has {missing.there}" if missing.there else shelf.nothing
     return f"{what}, which `{first}`{more} need{'' if more else 's'}, {gone}: {there}"
