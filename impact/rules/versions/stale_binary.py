@@ -1,4 +1,4 @@
-"""stale-binary: a built program or library needs a shared library that is gone.
+"""stale-binary: a built program or library needs a shared library, or something of one, that is gone.
 
 What it does
     With `--install FOLDER`, reads the built files of an install space and reports shared libraries, and versions of
