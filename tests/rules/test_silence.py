@@ -587,6 +587,28 @@ SILENT = {
         ),
         ("run.py", "sys.version_info < (3, 12)", "sys.version_info < (3, 13)"),
     ),
+    "what C++17 makes without copying it": Silent(
+        "changed-signature",
+        ("foxy",),
+        ament(
+            "set(CMAKE_CXX_STANDARD 17)\nfind_package(rclcpp REQUIRED)\nadd_library(sled sled.cpp)\n"
+            "ament_target_dependencies(sled rclcpp)\ninstall(TARGETS sled DESTINATION lib)",
+            "depend:rclcpp",
+            sled_cpp=RCLCPP + "void run() { auto rate = rclcpp::Rate(5.0); rate.sleep(); }\n",
+        ),
+        ("CMakeLists.txt", "STANDARD 17", "STANDARD 14"),
+    ),
+    "a message that comes along with one that holds it": Silent(
+        "missing-include",
+        ("jazzy",),
+        ament(
+            "find_package(geometry_msgs REQUIRED)\nadd_library(sled sled.cpp)\n"
+            "ament_target_dependencies(sled geometry_msgs)\ninstall(TARGETS sled DESTINATION lib)",
+            "depend:geometry_msgs",
+            sled_cpp="#include <geometry_msgs/msg/pose_stamped.hpp>\ngeometry_msgs::msg::Pose here();\n",
+        ),
+        ("sled.cpp", "pose_stamped", "vector3_stamped"),
+    ),
     "a header that comes through the package's own": Silent(
         "missing-include",
         ("jazzy",),

@@ -37,6 +37,8 @@ FFMPEG = {"ffmpeg_libavcodec": "6.1.1"}
 LIBAV = {"libav": "9.20", "libavcodec": "54.35.0", "libavutil": "52.3.0"}
 GAZEBO = {"gazebo_classic": "11"}
 
+SLOTS = 'PyTypeObject T = {{PyVarObject_HEAD_INIT(nullptr, 0) "t", sizeof(T), 0, 0, {0}, {0}}};'
+
 SNIPPETS = [
     ("wait(boost::posix_time::seconds(0.5));", BOOST, "boost::posix_time::seconds(floating point)"),
     ("wait(boost::posix_time::seconds(0.5));", {"boost": "1.65.1"}, ""),
@@ -121,6 +123,26 @@ SNIPPETS = [
         "shared_ptr of both std and boost",
     ),
     ("using namespace std;\nshared_ptr<int> p;", {"gcc": "9.4.0"}, ""),
+    ("struct A { std::atomic<bool> on = false; };", {"gcc": "9.4.0"}, "std::atomic<T> x = ..."),
+    ("std::atomic_bool on = false;", {"gcc": "9.4.0"}, "std::atomic_bool x = ..."),
+    ("std::atomic<bool> on{false}; std::atomic<int> n = {1};", {"gcc": "9.4.0"}, ""),
+    ("std::atomic<bool> on = ATOMIC_VAR_INIT(false);", {"gcc": "9.4.0"}, ""),
+    ("void f(std::atomic<bool>& other) { std::atomic<bool>* on = &other; }", {"gcc": "9.4.0"}, ""),
+    ("auto lock = std::lock_guard<std::mutex>(m);", {"gcc": "9.4.0"}, "auto x = std::lock_guard<T>(...)"),
+    ("auto lock = std::unique_lock<std::mutex>(m);", {"gcc": "9.4.0"}, ""),
+    ("auto rate = rclcpp::Rate(p.as_double());", {"gcc": "9.4.0"}, "auto x = rclcpp::Rate(...)"),
+    ("auto rate = std::make_shared<rclcpp::Rate>(5);", {"gcc": "9.4.0"}, ""),
+    (
+        "auto e = rclcpp::executors::SingleThreadedExecutor();",
+        {"gcc": "9.4.0"},
+        "auto x = rclcpp::executors::SingleThreadedExecutor(...)",
+    ),
+    ("bool f() { return goal.header.stamp == rclcpp::Time(0); }", {"gcc": "11.4.0"}, "header.stamp == rclcpp::Time"),
+    ("bool f() { return goal.header.stamp == rclcpp::Time(0); }", {"gcc": "13.2.0"}, ""),
+    ("bool f() { return rclcpp::Time(goal.header.stamp) == now; }", {"gcc": "11.4.0"}, ""),
+    (SLOTS.format("nullptr"), {"python": "3.8.2"}, "nullptr for tp_print"),
+    (SLOTS.format("nullptr"), {"python": "3.6.9"}, ""),
+    (SLOTS.format("NULL"), {"python": "3.8.2"}, ""),  # of which compilers only warn
 ]
 
 
@@ -136,6 +158,8 @@ def test_what_a_library_refuses(code, versions, label):
         ("std::make_unique", (0, 2014)),
         ("isnan() without std::", (2011, 0)),
         ("throw(T) of a declaration", (2017, 0)),
+        ("auto x = rclcpp::Rate(...)", (0, 2017)),
+        ("header.stamp == rclcpp::Time", (2020, 0)),
         ("cv::ORB()", (0, 0)),
     ],
 )

@@ -158,6 +158,16 @@ def _how_bad(view: View, use: NameUse, certain: bool) -> str:
     return "error" if certain and view.built(use.role) else "warning"
 
 
+def _raised_to(view: View) -> int:
+    """The standard that CMake raises a package's to, since the exported targets of rclcpp and others ask for it. Rclcpp
+    does since 9.0 (its CMakeLists.txt); of others before, none is known to ask for more than C++14."""
+    if view.target.ros == 1:
+        return 0
+    if not at_least(view.target.version("rclcpp") or "9.0", "9.0"):
+        return 2014
+    return 2020 if at_least(view.target.library("gcc") or "", "15") else 2017
+
+
 def _under_standard(view: View, package: Package, use: NameUse, change: Change) -> str | None:
     """How a message names the C++ standard that a use fails under (empty: under any); None where it does not fail."""
     refused_from, needs = standards_of(change.old)
@@ -175,8 +185,8 @@ def _under_standard(view: View, package: Package, use: NameUse, change: Change) 
         return None  # a macro of another package may set it
     if refused_from:
         return f" in C++{have % 100:02d}" if have >= refused_from else None
-    # CMake raises the standard to what the exported targets of rclcpp and others ask for: 17 at most, until GCC 15.
-    raised = view.target.ros == 2 and (needs < 2020 or at_least(view.target.library("gcc") or "", "15"))
-    if have >= needs or raised or not use.targets or use.role != "build" or not view.certain(use.conditions):
+    if max(have, _raised_to(view)) >= needs or not use.targets or use.role != "build":
+        return None
+    if not view.certain(use.conditions):
         return None
     return f" in C++{have % 100:02d}"
