@@ -16,6 +16,7 @@ import msgspec
 
 from .cpp import scan
 from .place import Problem
+from .usage import argument_spans
 
 
 class Declared(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -51,7 +52,6 @@ _PLAIN = re.compile(rf"{_VALUE}\Z|\{{(?:\s*{_VALUE}\s*,?)*\}}\Z")
 _NO_DEFAULT = re.compile(
     r"(?:rclcpp::)?(?:ParameterType::)?PARAMETER_\w+\Z|rcl_interfaces::|(?:\w+_)?desc(?:riptor)?\w*\Z"
 )
-_LONGEST = 3000
 _SHOWN = 60
 
 
@@ -60,7 +60,9 @@ def _in_cpp(data: bytes) -> Iterator[Declared]:
         return
     scanned = scan(data)
     for call in _CALL.finditer(scanned.visible):
-        arguments = list(_arguments(scanned.visible, scanned.text, call.end()))
+        # Where they end is told by the text without literals and comments; they are read as they are written.
+        spans, _ = argument_spans(scanned.visible, call.end() - 1) or ((), 0)
+        arguments = [scanned.text[begins:ends] for begins, ends in spans]
         if call[1].endswith("_parameters"):
             space = _NAME.match(arguments[0]) if arguments else None
             for name, value in _PAIR.findall(arguments[1]) if len(arguments) > 1 else ():
@@ -72,24 +74,6 @@ def _in_cpp(data: bytes) -> Iterator[Declared]:
                 name = whole[1] if whole else f"*.{last[1]}" if last else ""
                 yield Declared(name, _cpp_value(arguments[place + 1]) if place + 1 < len(arguments) else None)
                 break
-
-
-def _arguments(visible: str, text: str, start: int) -> Iterator[str]:
-    """The arguments of a call that begin at a place, as written. visible: the text without literals and comments."""
-    depth, begun = 0, start
-    for at in range(start, min(len(visible), start + _LONGEST)):
-        sign = visible[at]
-        if sign in "([{":
-            depth += 1
-        elif sign in ")]}":
-            depth -= 1
-            if depth < 0:
-                if visible[begun:at].strip():
-                    yield text[begun:at]
-                return
-        elif sign == "," and not depth:
-            yield text[begun:at]
-            begun = at + 1
 
 
 def _cpp_value(text: str) -> str | None:

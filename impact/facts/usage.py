@@ -314,6 +314,12 @@ def declares_next(ahead: str) -> bool:
 
 def arguments_at(text: str, at: int) -> tuple[list[str], int] | None:
     """The arguments of the call whose bracket opens at an offset, and where it ends; None when it does not."""
+    found = argument_spans(text, at)
+    return ([text[begins:ends].strip() for begins, ends in found[0]], found[1]) if found is not None else None
+
+
+def argument_spans(text: str, at: int) -> tuple[list[tuple[int, int]], int] | None:
+    """The same by where each argument begins and ends, blanks around it included."""
     given, depth, begins, last = [], [_CLOSING[text[at]]], at + 1, min(len(text), at + _LONGEST)
     position = at + 1
     while position < last:
@@ -324,9 +330,8 @@ def arguments_at(text: str, at: int) -> tuple[list[str], int] | None:
             if character != depth.pop():
                 return None
             if not depth:
-                final = text[begins:position].strip()
-                if final or given:
-                    given.append(final)
+                if given or text[begins:position].strip():
+                    given.append((begins, position))
                 return given, position + 1
         elif character == "<":
             types = TEMPLATE_ARGUMENTS.match(text, position + 1)
@@ -334,7 +339,7 @@ def arguments_at(text: str, at: int) -> tuple[list[str], int] | None:
                 position = types.end()
                 continue
         elif character == "," and len(depth) == 1:
-            given.append(text[begins:position].strip())
+            given.append((begins, position))
             begins = position + 1
         position += 1
     return None
