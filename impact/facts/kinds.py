@@ -54,10 +54,10 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "flow_script": ("", "", 1),
     "surface_cpp": ("surface_cpp", "HeaderSurface", 2),
     "surface_python": ("surface_python", "ModuleSurface", 1),
-    "parameters_cpp": ("parameters", "ParametersFile", 1),
-    "parameters_python": ("parameters", "ParametersFile", 1),
-    "parameters_cfg": ("parameters", "ParametersFile", 1),
-    "parameters_yaml": ("parameters", "ParametersFile", 1),
+    "parameters_cpp": ("parameters", "ParametersFile", 2),
+    "parameters_python": ("parameters", "ParametersFile", 2),
+    "parameters_cfg": ("parameters", "ParametersFile", 2),
+    "parameters_yaml": ("parameters", "ParametersFile", 2),
 }
 """kind: (module, struct, version). Raise the version with every change of what an extractor says: it is part of the key
 under which facts are stored."""

@@ -3,13 +3,16 @@
 Read are calls of `declare_parameter` and of functions that are called alike, in C++ and Python; the parameter files of
 generate_parameter_library; and `gen.add` in the .cfg files of dynamic_reconfigure. Nothing is run: a name that is put
 together counts by its last part, written `*.name`, and a default that is no plain value is `?`.
+
+Names that are declared in yet another way (from a table, by a function of the package's own) are not found, so that a
+file also tells which names its texts mention at all: what no file mentions, no file declares.
 """
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 import msgspec
@@ -27,17 +30,42 @@ class Declared(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class ParametersFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """parameters: in the order of the file."""
+    """parameters: in the order of the file. mentioned: see mentions(), the last parts of names (`scale` of
+    `PathAlign.scale`), each once; comments count too."""
 
     parameters: tuple[Declared, ...] = ()
     problems: tuple[Problem, ...] = ()
+    mentioned: tuple[str, ...] = ()
 
 
 def extract(data: bytes, kind: str) -> ParametersFile:
     """What a file declares. kind: `parameters_cpp`, `parameters_python`, `parameters_cfg` or `parameters_yaml`. Raises
     nothing that kinds.extract() does not contain."""
     readers = {"cpp": _in_cpp, "python": _in_python, "cfg": _in_cfg, "yaml": _in_yaml}
-    return ParametersFile(tuple(dict.fromkeys(readers[kind.removeprefix("parameters_")](data))))
+    language = kind.removeprefix("parameters_")
+    mentioned = _mentioned(data) if language in ("cpp", "python") else ()
+    return ParametersFile(tuple(dict.fromkeys(readers[language](data))), (), mentioned)
+
+
+_TEXT = re.compile(rb"""["']([A-Za-z_~/.][\w./]{0,80})["']""")
+
+
+def _mentioned(data: bytes) -> tuple[str, ...]:
+    """The last parts of all texts that could be, or end, the name of a parameter."""
+    return tuple(sorted({last_part(text.decode("ascii").rstrip("./")) for text in _TEXT.findall(data)} - {""}))
+
+
+def last_part(name: str) -> str:
+    """The last part of a parameter's name, in either generation of ROS."""
+    return name.replace("/", ".").rpartition(".")[2].lstrip("~")
+
+
+def mentions(mentioned: Collection[str], name: str) -> bool:
+    """Whether one of the texts of ParametersFile.mentioned may be, begin or end a parameter's name."""
+    last = last_part(name)
+    return last in mentioned or any(
+        (one[0] == "_" and last.endswith(one)) or (one[-1] == "_" and last.startswith(one)) for one in mentioned
+    )
 
 
 _DECLARES = re.compile(r"declare\w*_parameters?(?:_\w+)?\Z")

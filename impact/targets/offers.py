@@ -128,6 +128,12 @@ class Offer:
         build = history.build(self.stored) if history is not None else None
         return build or BuildSurface(self.package)
 
+    @cached_property
+    def parameters(self) -> tuple[str, ...]:
+        """The parameters that the stored version declares."""
+        history = self._offers.surfaces.history(self.package)
+        return tuple(name for name, _ in history.parameters(self.stored)) if history is not None else ()
+
     def every(self, side: str) -> Iterator[Offered]:
         """All such names."""
         for name in self.line.events.get(side, ()):

@@ -16,10 +16,12 @@ import msgspec
 
 from ..facts import kinds
 from ..facts.interface import PRIMITIVES, Field, Interface, Section, full_name
+from ..facts.parameters import last_part, mentions
 from ..facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
 from ..model.package import role_of_folder
 from . import surface_build, surface_diff, surface_python
 from .surface_build import BuildSurface
+from .surface_changes import PARAMETER
 from .surface_includes import compiled
 from .surface_python import UNKNOWN, Names, PythonSurface
 
@@ -36,8 +38,9 @@ class Surface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     headers: by the path that dependants write; generated ones are in the build only. interfaces: by `msg/Name`,
     without comments. guessed: the build does not tell which headers are installed, so those of `include/` are taken.
     runs_with: packages that come along when this one is installed. parameters: that its nodes declare, by name, with
-    their default: None for none, `?` where it is no plain value, or not one. The C++ standard, re-exported packages,
-    targets, programs and launch files are in the build.
+    their default: None for none, `?` where it is no plain value, or not one. mentioned: names that its sources mention,
+    as ParametersFile.mentioned, and those of its parameters; None where they are not known, as in what is stored. The
+    C++ standard, re-exported packages, targets, programs and launch files are in the build.
     """
 
     package: str
@@ -49,6 +52,7 @@ class Surface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     guessed: bool = False
     runs_with: tuple[str, ...] = ()
     parameters: tuple[tuple[str, str | None], ...] = ()
+    mentioned: tuple[str, ...] | None = None
 
 
 # -- reading -----------------------------------------------------------------------------------------------------------
@@ -99,7 +103,7 @@ def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, 
             tuple(sorted(dict(_interfaces(package)).items())),
             name in guessed,
             tuple(sorted(name for name, how in package.declared.items() if how & _WITH)),
-            _parameters(declared, declaring[name]),
+            *_parameters(declared, declaring[name]),
         )
     return surfaces
 
@@ -121,14 +125,19 @@ def _declaring(package: Package) -> Iterator[tuple[str, str]]:
             yield from ((path, kind) for path in made.files if "$" not in path)
 
 
-def _parameters(declared: Gathered, files: Iterable[str]) -> tuple[tuple[str, str | None], ...]:
-    """The parameters that some files declare, each with the default that all of them give it."""
+def _parameters(declared: Gathered, files: Iterable[str]) -> tuple[tuple[tuple[str, str | None], ...], tuple[str, ...]]:
+    """The parameters that some files declare, each with the default that all of them give it, and what they mention."""
     found: dict[str, set[str | None]] = defaultdict(set)
+    mentioned: set[str] = set()
     for path in files:
         facts = declared.facts(path) if path in declared.kinds else None
-        for one in facts.facts.parameters if facts is not None and facts.facts is not None else ():
-            found[one.name].add(one.default)
-    return tuple((name, next(iter(each)) if len(each) == 1 else "?") for name, each in sorted(found.items()))
+        if facts is not None and facts.facts is not None:
+            for one in facts.facts.parameters:
+                found[one.name].add(one.default)
+            mentioned.update(facts.facts.mentioned)
+    mentioned.update(last_part(name) for name in found)
+    parameters = tuple((name, next(iter(each)) if len(each) == 1 else "?") for name, each in sorted(found.items()))
+    return parameters, tuple(sorted(mentioned))
 
 
 def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:
@@ -219,6 +228,7 @@ class State:
     def __init__(self, surfaces: Mapping[str, Surface]):
         self.surfaces = surfaces
         self._python: dict[str, Names] = {}
+        self._mentioned: dict[str, frozenset[str] | None] = {}
 
     @cached_property
     def cpp(self) -> dict[str, list[Place]]:
@@ -252,6 +262,23 @@ class State:
             for path, header in surface.headers:
                 found[path] = (surface.package, header)
         return found
+
+    def mentioned(self, package: str) -> frozenset[str] | None:
+        """The names that the sources of a package mention, and those of the packages of this state that come along
+        with it; None where they are not known."""
+        if package not in self._mentioned:
+            found: set[str] | None = set()
+            seen: set[str] = set()
+            todo = [package]
+            while todo and found is not None:
+                surface = self.surfaces.get(name := todo.pop())
+                if surface is None or name in seen:
+                    continue
+                seen.add(name)
+                todo += surface.runs_with
+                found = None if surface.mentioned is None else found.union(surface.mentioned)
+            self._mentioned[package] = None if found is None else frozenset(found)
+        return self._mentioned[package]
 
     def python(self, package: str) -> Names:
         """The Python names of a package."""
@@ -366,7 +393,7 @@ def compare(old: Surface, new: Surface, before: State | None = None, after: Stat
     changes = surface_diff.compare(dict(old.headers), dict(new.headers)) if old.headers != new.headers else ()
     found = [*_headers_changed(old, new, after, changes), *_cpp(old, new, before, after, changes)]
     found += [*_python(old, new, after), *_messages(old, new, after), *_build(old, new, after)]
-    found += _parameters_changed(old, new)
+    found += _parameters_changed(old, new, before, after)
     order = {"message": 0, "c++": 1, "python": 2, "build": 3}
     return tuple(dict.fromkeys(sorted(found, key=lambda c: (order[c.side], c.what != "header", c.name, c.kind, c.old))))
 
@@ -739,20 +766,23 @@ def _build(old: Surface, new: Surface, after: State) -> Iterator[Change]:
         )
 
 
-def _parameters_changed(old: Surface, new: Surface) -> Iterator[Change]:
+def _parameters_changed(old: Surface, new: Surface, before: State, after: State) -> Iterator[Change]:
     had, has = dict(old.parameters), dict(new.parameters)
 
-    def change(kind: str, name: str, before: str | None, now: str | None, breaks: bool) -> Change:
-        return Change(old.package, "build", kind, "parameter of a node", name, before or "", now or "", (), "", "", "",
-                      breaks, OPEN if breaks else 1.0)  # fmt: skip
+    def change(kind: str, name: str, default: str | None, now: str | None, sure: float) -> Change:
+        return Change(old.package, "build", kind, PARAMETER, name, default or "", now or "", (), "", "", "",
+                      kind == "removed", sure)  # fmt: skip
 
+    # A name that is still mentioned, or was before, may be declared in a way that is not read.
+    later, earlier = after.mentioned(old.package), before.mentioned(old.package)
     for name, default in had.items():
-        if name not in has:
-            # Who still sets it is ignored. It may be declared by a name that is put together.
-            yield change("removed", name, default, "", True)
+        if name not in has:  # who still sets it is ignored
+            yield change("removed", name, default, "", OPEN if later is None or mentions(later, name) else 1.0)
         elif has[name] != default and "?" not in (has[name], default):
-            yield change("default", name, default, has[name], False)
-    yield from (change("added", name, "", default, False) for name, default in has.items() if name not in had)
+            yield change("default", name, default, has[name], 1.0)
+    for name, default in has.items():
+        if name not in had:
+            yield change("added", name, "", default, OPEN if earlier is not None and mentions(earlier, name) else 1.0)
 
 
 def _things(what: str, surface: Surface) -> set[str]:

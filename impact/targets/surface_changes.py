@@ -14,6 +14,9 @@ import zstandard
 
 from .version import newest_up_to
 
+PARAMETER = "parameter of a node"
+"""The side, and the sort of thing, of parameters that nodes declare."""
+
 
 class Overload(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One way to call a function or macro of C++. fewest, most: arguments; most is -1 for any number. types: of the

@@ -21,11 +21,12 @@ import msgspec
 import zstandard
 
 from ..facts.interface import Interface
+from ..facts.parameters import last_part
 from ..facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
 from ..facts.surface_python import Bound, ModuleSurface, Taken
 from . import surface_includes
 from .snapshot import DATA, SnapshotError
-from .surface_changes import Line, brief, unpack
+from .surface_changes import PARAMETER, Line, brief, unpack
 from .surface_includes import Included, spans_of, there
 
 if TYPE_CHECKING:
@@ -38,12 +39,14 @@ CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT
   WITHOUT ROWID;
 CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE headers(data BLOB NOT NULL);
+CREATE TABLE parameters(data BLOB NOT NULL);
 CREATE TABLE about(packages INTEGER, versions INTEGER, distros TEXT, date TEXT);
 """
 """about: one row, see About. package: what its versions offer, what changed between them (see surface_changes.py), and
 what their headers include (see surface_includes.py). elsewhere: names that some version of a package lost, and the
 packages, space separated, that have or had one of that name. headers: one row, packed: headers that do not lie in a
-folder that is called like their package, with the packages that have or had them."""
+folder that is called like their package, with the packages that have or had them. parameters: one row, packed: the last
+parts of the names of parameters that came or went for sure, with the packages that declare or declared them."""
 _LEVEL = 19
 _TYPES = CLASSES | {"enum", "alias"}
 # (kind, scope, value as JSON-like data)
@@ -111,8 +114,12 @@ class History:
             tuple(sorted(self._values("interface", version, Interface), key=_name)),
             guessed,
             tuple(runs_with),
-            tuple(sorted(self._values("parameter", version), key=_name)),
+            self.parameters(version),
         )
+
+    def parameters(self, version: str) -> tuple[tuple[str, str | None], ...]:
+        """The parameters that a version declares, with their defaults, as in Surface."""
+        return tuple(sorted(self._values("parameter", version), key=_name))
 
     def build(self, version: str) -> BuildSurface | None:
         """What a version gives to CMake and at run time; None for one that is not stored."""
@@ -464,6 +471,14 @@ class Surfaces:
         return msgspec.msgpack.decode(zstandard.ZstdDecompressor().decompress(data), type=dict[str, tuple[str, ...]])
 
     @cached_property
+    def changing_parameters(self) -> dict[str, frozenset[str]]:
+        """The last parts of names of parameters that some versions of a package surely declare and others surely do
+        not, with those packages."""
+        (data,) = next(self._rows("SELECT data FROM parameters"))
+        plain = zstandard.ZstdDecompressor().decompress(data)
+        return msgspec.msgpack.decode(plain, type=dict[str, frozenset[str]])
+
+    @cached_property
     def about(self) -> About:
         """What the file holds."""
         return About(*next(self._rows("SELECT packages, versions, distros, date FROM about")))
@@ -513,6 +528,7 @@ def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (
         )
         db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_elsewhere(packages).items()))
         db.execute("INSERT INTO headers VALUES(?)", (_headers(packages),))
+        db.execute("INSERT INTO parameters VALUES(?)", (_parameters(packages),))
         db.execute("INSERT INTO about VALUES(?, ?, ?, ?)", about)
         db.commit()
         db.execute("VACUUM")
@@ -543,4 +559,19 @@ def _headers(packages: Mapping[str, Packed]) -> bytes:
         for header in surface_includes.unpack(packed.includes).headers:
             if not header.startswith(f"{package}/"):
                 found.setdefault(header, []).append(package)
+    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(dict(sorted(found.items()))))
+
+
+def _parameters(packages: Mapping[str, Packed]) -> bytes:
+    """The last parts of names of parameters that came or went for sure, with the packages they did so in."""
+    found: dict[str, list[str]] = {}
+    for package, packed in sorted(packages.items()):
+        names = {
+            last_part(name)
+            for line in unpack(packed.changes).values()
+            for name, events in line.events.get(PARAMETER, {}).items()
+            if any(told.kind in ("added", "removed") and told.sure >= 1 for event in events for told in event.told)
+        }
+        for name in names:
+            found.setdefault(name, []).append(package)
     return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(dict(sorted(found.items()))))

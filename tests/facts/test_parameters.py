@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.impact.facts.kinds import FileFacts, decode, encode, extract
+from rosimpact.impact.facts.parameters import mentions
 
 CPP = [
     ('node->declare_parameter("rate", 20.0);', [("rate", "20.0")]),
@@ -71,6 +72,33 @@ def test_what_a_file_declares(kind, text, expected):
     facts = extract(kind, text.encode()).facts
     assert not facts.problems
     assert [(one.name, one.default) for one in facts.parameters] == expected
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "mentioned"),
+    [
+        ("parameters_cpp", 'f("rate"); g("arm.gains.p", \'x\');', ("p", "rate", "x")),
+        (
+            "parameters_cpp",
+            '// "old_rate"\nh(name + "_limit", "turbo/steps", "~frame", "gains.");',
+            ("_limit", "frame", "gains", "old_rate", "steps"),
+        ),
+        ("parameters_cpp", 'log("a sentence", "50", "");', ()),
+        ("parameters_python", "names = ['rate', \"frame\"]", ("frame", "rate")),
+        ("parameters_cfg", "gen.add('rate', double_t, 0, 'x', 1.0)", ()),
+    ],
+)
+def test_what_a_file_mentions(kind, text, mentioned):
+    assert extract(kind, text.encode()).facts.mentioned == mentioned
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("base.rate", True), ("rate", True), ("rates", False), ("speed_limit", True), ("limit", False),
+     ("max_speed", True), ("max", False)],
+)  # fmt: skip
+def test_what_may_be_a_mentioned_name(name, expected):
+    assert mentions(("_limit", "max_", "rate"), name) is expected
 
 
 @pytest.mark.parametrize("kind", ["parameters_python", "parameters_cfg", "parameters_yaml"])

@@ -9,6 +9,7 @@ from rosimpact.impact.gather import kinds
 from rosimpact.impact.targets.clones import Clone, Clones, VersionError
 from rosimpact.impact.targets.distro import DistroTarget
 from rosimpact.impact.targets.surface import State, compare, compare_states, surfaces_of
+from rosimpact.impact.targets.surface_changes import PARAMETER
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
@@ -261,6 +262,38 @@ def test_parameters_of_nodes(told):
         "build removed parameter of a node size",
         "build removed parameter of a node speed",
     ]
+
+
+@pytest.mark.parametrize(
+    ("beside", "sure"),
+    [
+        ("", True),
+        ('for (auto name : {"rate"}) declare_parameter(name, 1);', False),
+        ('// was "rate"', False),
+        ('set("base.rate");', False),
+        ('set("mean_rate");', True),
+        ('set(prefix + "_rate");', True),
+    ],
+)
+def test_a_parameter_is_surely_gone_where_nothing_mentions_it(state, beside, sure):
+    def changed(old, new):
+        before, after = state(old), state(new)
+        changes = compare(before.surfaces["arm"], after.surfaces["arm"], before, after)
+        return [(c.kind, c.name, c.sure == 1) for c in changes if c.what == PARAMETER]
+
+    old = files("arm", also={"src/node.cpp": 'declare_parameter("rate", 1);'})
+    new = files("arm", also={"src/node.cpp": beside})
+    assert changed(old, new) == [("removed", "rate", sure)]
+    # The other way round it is as sure that it was not there.
+    assert changed(new, old) == [("added", "rate", sure)]
+
+
+@pytest.mark.parametrize(("more", "sure"), [("", True), ("<depend>base</depend>", False)])
+def test_what_comes_along_may_declare_a_parameter_too(state, more, sure):
+    before = state(files("arm", also={"src/node.cpp": 'declare_parameter("rate", 1);'}, more=more))
+    after = state(files("arm", more=more), files("base", also={"src/node.cpp": 'set("rate");'}))
+    changes = compare(before.surfaces["arm"], after.surfaces["arm"], before, after)
+    assert [c.sure == 1 for c in changes if c.what == PARAMETER] == [sure]
 
 
 def test_a_message_that_moved_to_another_package(told):

@@ -129,3 +129,22 @@ def test_a_file_that_is_none(tmp_path):
     (tmp_path / "x").write_text("hello, I am no database, however long this text may be")
     with pytest.raises(StoredSurfacesError, match="surface build"):
         Surfaces(tmp_path / "x")
+
+
+def test_which_parameters_surely_came_or_went(tmp_path):
+    def version(number, *names, mentioned=()):
+        one = msgspec.structs.replace(surface(number), parameters=tuple((name, None) for name in names))
+        return msgspec.structs.replace(one, mentioned=(*mentioned, *(name.rpartition(".")[2] for name in names)))
+
+    arm = packed(
+        version("1.0.0", "kept", "*.gone", "hidden"),
+        version("2.0.0", "kept", mentioned=("hidden",)),
+        version("3.0.0", "kept", "base.fresh"),
+    )
+    surfaces = write(tmp_path / "x", {"arm": arm}) and Surfaces(tmp_path / "x")
+    assert surfaces.changing_parameters == {"fresh": {"arm"}, "gone": {"arm"}}
+    assert [name for name, _ in surfaces.history("arm").parameters("1.0.0")] == ["*.gone", "hidden", "kept"]
+    unknown = packed(
+        *(msgspec.structs.replace(surface(v), parameters=p) for v, p in (("1", (("a", None),)), ("2", ())))
+    )
+    assert (write(tmp_path / "y", {"arm": unknown}) and Surfaces(tmp_path / "y")).changing_parameters == {}
