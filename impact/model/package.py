@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .api import Changes
     from .api_python import Changing
     from .members import Interface as Meant
+    from .settings import Setting
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
 ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutorial", "tutorials", "sample", "samples"})
@@ -167,6 +168,19 @@ class CppApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     targets: tuple[str, ...] = ()
 
 
+class SettingUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A parameter that is set for a node or plugin of another package, see settings.py, and that some version of that
+    package does not declare. role: as in ImportUse."""
+
+    name: str
+    package: str
+    plugin: str
+    node: str
+    others: tuple[str, ...]
+    at: At
+    role: str
+
+
 class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """All that rules ask of one package."""
 
@@ -211,6 +225,7 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     python_api: tuple[PythonApiUse, ...] = ()
     # C++ names of packages outside of the workspace that only some versions have, or have so.
     cpp_api: tuple[CppApiUse, ...] = ()
+    settings: tuple[SettingUse, ...] = ()
 
 
 def build_type_of(manifest: Manifest, ros: int) -> str:
@@ -258,6 +273,11 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     fields: Fields | None = None
     surfaces: Any = None
     parameters: list[tuple[str, Pattern]] = []
+
+    @property
+    def changing_parameters(self) -> dict[str, frozenset[str]]:
+        """As Surfaces.changing_parameters."""
+        return self.surfaces.changing_parameters if self.surfaces is not None else {}
 
     @cached_property
     def changing_python(self) -> Changing | None:
@@ -339,6 +359,7 @@ class _Join:
         )
         python: dict[str, PythonFile] = {}
         parameters: list[str] = []
+        launches: list[tuple[str, str]] = []
         references, plugins, registered, setup, interfaces = [], [], [], [], []
         for path in self.files:
             kind = self.kinds.get(path)
@@ -360,6 +381,8 @@ class _Join:
             elif isinstance(facts, PythonFile):
                 python[path] = facts
                 references.extend((path, r) for r in facts.references)
+                if any(item.module.split(".")[0] == "launch_ros" for item in facts.imports):
+                    launches.append((path, "launch_python"))
             elif isinstance(facts, Interface):
                 name = facts.name or posixpath.basename(path).rsplit(".", 1)[0]
                 interfaces.append(InterfaceFile(name, path, facts))
@@ -368,6 +391,8 @@ class _Join:
             else:
                 if path.endswith((".yaml", ".yml")):
                     parameters.append(path)
+                if kind in ("launch_xml", "launch_yaml"):
+                    launches.append((path, kind))
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
         self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined})
@@ -418,6 +443,7 @@ class _Join:
             members=(*self.members(roles), *self.python_members(python)),
             python_api=tuple(self.python_api(python)),
             cpp_api=tuple(self.cpp_api(roles)),
+            settings=tuple(self.settings(parameters, launches)),
         )
 
     # -- which file is compiled by what ------------------------------------------------------------------------------
@@ -569,6 +595,40 @@ class _Join:
         for path in paths:
             data = self.read(path)
             yield from self.alike(path, [row for row in self.watched.parameters if row[1].word.encode() in data])
+
+    def settings(self, parameters: Iterable[str], launches: list[tuple[str, str]]) -> Iterator[SettingUse]:
+        """Parameters of other packages' nodes that files of parameters and launch files set, of those that change."""
+        from .settings import Named, in_launch, in_parameters, mentions_changing, named_in
+
+        changing = self.watched.changing_parameters
+        if not changing:
+            return
+        started: dict[str, list[Named]] = {}
+
+        def named(name: str, packages: Collection[str]) -> Named | None:
+            for path, kind in launches:
+                data = self.read(path)
+                if name.encode() not in data or not any(package.encode() in data for package in packages):
+                    continue
+                if path not in started:
+                    started[path] = list(named_in(data, kind))
+                found = next((one for one in started[path] if one.name == name and one.package in packages), None)
+                if found is not None:
+                    return found
+            return None
+
+        for path in parameters:
+            for found in in_parameters(self.read(path), changing, named):
+                yield self.setting(path, found)
+        for path, kind in launches:
+            data = self.read(path)
+            if mentions_changing(data, changing):
+                for found in in_launch(data, kind, changing):
+                    yield self.setting(path, found)
+
+    def setting(self, path: str, found: Setting) -> SettingUse:
+        at = At(path, found.line)
+        return SettingUse(found.name, found.package, found.plugin, found.node, found.others, at, self.python_role(path))
 
     def alike(self, path: str, rows: Iterable[tuple[str, Pattern]]) -> Iterator[NameUse]:
         """Where a file that no compiler reads has what looks like one of these rows' uses."""

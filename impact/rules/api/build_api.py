@@ -45,7 +45,7 @@ def lacking(view: View, side: str, name: str, packages: Iterable[str]) -> Lackin
             return None
         offer = view.offers.package(package)
         offered = offer.get(side, name) if offer is not None else None
-        if offer is None or offered is None or _guessed(offer, offered):
+        if offer is None or offered is None or guessed(offer, offered):
             continue
         if offered.state not in ("removed", "moved", "absent") or name in there(offer.build):
             return None
@@ -68,7 +68,7 @@ def _alike(offer: Offer, side: str, name: str) -> str:
     return close[0] if close else ""
 
 
-def _guessed(offer: Offer, offered: Offered) -> bool:
+def guessed(offer: Offer, offered: Offered) -> bool:
     """Whether a branch, which may hold something else than the release, or one of two stored versions that differ in
     this is what it rests on."""
     if any(version in offer.line.approximate for version in (offer.stored, offered.last, offered.first)):

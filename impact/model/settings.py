@@ -1,0 +1,138 @@
+"""Parameters that files of parameters and launch files set for nodes and plugins of other packages, as far as some
+versions of those packages declare them and others do not.
+
+Whose a value of a file of ROS 2 parameters is, is told by the `plugin:` beside it, by the `type:` that the controller
+manager has for a node of that name, or by the name of the node, which a launch file or the program's own name explains.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import NamedTuple
+
+from ..facts import flow_launch
+from ..facts.flow_launch import Action, Entry, plain
+from ..facts.launch import CLASS
+from ..facts.parameters import last_part
+
+Changing = Mapping[str, Collection[str]]
+"""Last parts of parameters' names, with the packages of which some versions declare one so called."""
+
+
+class Setting(NamedTuple):
+    """A value that is set. name: below its owner, with dots. package: whose node or plugin it is for; empty where only
+    the node's name is known. plugin: the class as written, empty for what is a node's. node: the program where the
+    package is known and it is no plugin's, else the node's name. others: packages of plugins that the same node loads.
+    """
+
+    name: str
+    package: str
+    plugin: str
+    node: str
+    line: int
+    others: tuple[str, ...] = ()
+
+
+class Named(NamedTuple):
+    """A node that a launch file starts, and the name it goes by."""
+
+    package: str
+    program: str
+    name: str
+
+
+def mentions_changing(data: bytes, changing: Changing) -> bool:
+    """Whether a file has the name of a parameter that changed and of a package that it changed in; quick."""
+    words = {word.decode() for word in _WORD.findall(data)}
+    return any(not words.isdisjoint(changing[word]) for word in words & changing.keys())
+
+
+_WORD = re.compile(rb"[A-Za-z_]\w*")
+
+
+def in_parameters(
+    data: bytes, changing: Changing, named: Callable[[str, Collection[str]], Named | None]
+) -> Iterator[Setting]:
+    """What a file of ROS 2 parameters sets. named: the node of one of some packages that goes by a name, None where no
+    launch file tells."""
+    if b"ros__parameters" not in data:
+        return
+    words = {word.decode() for word in _WORD.findall(data)}
+    if words.isdisjoint(changing):
+        return
+    nodes: dict[tuple[str, ...], list[tuple[list[str], Entry]]] = {}
+    for entry in flow_launch.parameters(data).entries:
+        if "ros__parameters" in entry.path:
+            place = entry.path.index("ros__parameters")
+            key = ".".join(entry.path[place + 1 :]).split(".")
+            nodes.setdefault(entry.path[:place], []).append((key, entry))
+    controllers = {
+        key[0]: entry.value
+        for path, entries in nodes.items() if path and path[-1].endswith("controller_manager")
+        for key, entry in entries if len(key) == 2 and key[1] == "type" and _is_class(entry.value)
+    }  # fmt: skip
+    for path, entries in nodes.items():
+        yield from _of_node(path[-1].rpartition("/")[2] if path else "", entries, controllers, changing, named)
+
+
+def _of_node(
+    node: str,
+    entries: list[tuple[list[str], Entry]],
+    controllers: Mapping[str, str],
+    changing: Changing,
+    named: Callable[[str, Collection[str]], Named | None],
+) -> Iterator[Setting]:
+    plugins = {tuple(key[:-1]): entry.value for key, entry in entries if key[-1] == "plugin" and _is_class(entry.value)}
+    others = tuple(sorted({_package(name) for name in plugins.values()}))
+    for key, entry in entries:
+        losers = changing.get(key[-1])
+        if losers is None or key[-1] == "plugin":
+            continue
+        owner = next((tuple(key[:end]) for end in range(len(key) - 1, -1, -1) if tuple(key[:end]) in plugins), None)
+        class_, name = (plugins[owner], key[len(owner) :]) if owner is not None else (controllers.get(node, ""), key)
+        if class_:
+            if _package(class_) in losers:
+                yield Setting(".".join(name), _package(class_), class_, node, entry.line, others)
+        elif node and "*" not in node:
+            known = named(node, losers)
+            package, program = (known.package, known.program) if known is not None else ("", node)
+            yield Setting(".".join(name), package, "", program, entry.line, others)
+
+
+def _is_class(value: object) -> bool:
+    return isinstance(value, str) and CLASS.match(value) is not None
+
+
+def _package(class_: str) -> str:
+    """The package that a class of a plugin is called after."""
+    return re.split(r"/|::", class_)[0]
+
+
+def in_launch(data: bytes, kind: str, changing: Changing) -> Iterator[Setting]:
+    """What a launch file itself sets for the nodes and components that it starts. kind: as of facts/launch.py, or
+    `launch_python`."""
+    for action in _actions(flow_launch.extract(data, kind).actions):
+        package = plain(action.get("package")) or ""
+        plugin, program = plain(action.get("plugin")) or "", plain(action.get("executable")) or ""
+        if not package or not (plugin or program):
+            continue
+        for child in action.children:
+            name = (plain(child.get("name")) or "").lstrip("~/") if child.kind == "parameter" else ""
+            if package in changing.get(last_part(name), ()):
+                yield Setting(name.replace("/", "."), package, plugin, "" if plugin else program, child.line)
+
+
+def named_in(data: bytes, kind: str) -> Iterator[Named]:
+    """The nodes that a launch file starts, as far as they are told plainly; one that it gives no name goes by that of
+    its program."""
+    for action in _actions(flow_launch.extract(data, kind).actions):
+        package, program = plain(action.get("package")), plain(action.get("executable"))
+        if package and program:
+            yield Named(package, program, plain(action.get("name")) or program)
+
+
+def _actions(actions: Collection[Action]) -> Iterator[Action]:
+    for action in actions:
+        yield action
+        yield from _actions(action.children)

@@ -1,0 +1,50 @@
+"""Parameters of nodes that got another name.
+
+Which parameters a version declares is told by the surfaces; that one came for another is what a person found in the
+sources. The facts are in `data/parameters.json`, each with the address that says so.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import msgspec
+
+from .snapshot import DATA, SnapshotError
+
+_FILE = DATA / "parameters.json"
+
+
+class Renamed(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Parameters that got other names in a version of these packages, since. names: old to new, by their last parts.
+    source: an address."""
+
+    packages: tuple[str, ...]
+    since: str
+    source: str
+    names: dict[str, str]
+
+
+class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    renamed: list[Renamed]
+
+
+@cache
+def renamed_parameters(package: str) -> dict[str, tuple[str, ...]]:
+    """The other names, old or new, of a package's parameters, all by their last parts. Raises SnapshotError when the
+    data file cannot be read."""
+    found: dict[str, tuple[str, ...]] = {}
+    for row in all_renamed():
+        for old, new in row.names.items() if package in row.packages else ():
+            found[old] = (*found.get(old, ()), new)
+            found[new] = (*found.get(new, ()), old)
+    return found
+
+
+@cache
+def all_renamed() -> list[Renamed]:
+    """Every row. Raises SnapshotError."""
+    try:
+        return msgspec.json.decode(_FILE.read_bytes(), type=_File).renamed
+    except (OSError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{_FILE}: {error}; install rosimpact again") from None
