@@ -100,8 +100,6 @@ _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _UNCONFIGURED = Config()
 # What may be known by its identity as long as it is kept, since it does not change.
 _LASTING = (frozenset, MappingProxyType)
-# The variable that tells whether CMake found a package.
-_FOUND = re.compile(r"(\w+)_FOUND")
 
 
 class View:
@@ -183,9 +181,16 @@ class View:
             python=(2, 7) if target.python_major == 2 else (3, target.python) if target.python else None,
             codename=target.platform.split(" ")[-1],
             versions=version,
+            packages=lambda name: self._has_package(name, target),
             headers=self._has_header,
             testing=True,
         )
+
+    def _has_package(self, name: str, target: Target) -> bool | None:
+        """Whether a package is there, on a target or in the workspace; None for names that no package ever had."""
+        if name in self.workspace.packages or target.version(name) is not None:
+            return True
+        return False if target.ever_released(name) else None
 
     def _has_header(self, path: str) -> bool | None:
         """Whether the compiler finds a header on the target, for __has_include; None when that is not known."""
@@ -211,16 +216,6 @@ class View:
         """True only when a statement under these conditions surely counts on the target."""
         conditions = tuple(conditions)
         return not conditions or self._hold(conditions) is True
-
-    def certain_with(self, package: Package, conditions: Iterable[Condition]) -> bool:
-        """The same for a statement of a package where what it declares is installed: CMake then finds that."""
-        return self.certain(c for c in conditions if not self._finds(package, c))
-
-    def _finds(self, package: Package, condition: Condition) -> bool:
-        asked = _FOUND.fullmatch(condition.text) if condition.language == "cmake" and not condition.negated else None
-        if asked is None or asked.group(1) not in self.declared(package):
-            return False
-        return asked.group(1) in self.workspace.packages or self.target.version(asked.group(1)) is not None
 
     def _hold(self, conditions: tuple[Condition, ...]) -> bool | None:
         if conditions not in self._held:
@@ -692,7 +687,8 @@ class View:
 
         return Environment(
             ros_distro=newest.distro, ros_version=str(newest.ros), python=(3, newest.python) if newest.python else None,
-            codename=newest.platform.split(" ")[-1], versions=version, testing=True,
+            codename=newest.platform.split(" ")[-1], versions=version,
+            packages=lambda name: self._has_package(name, newest), testing=True,
         )  # fmt: skip
 
     @property

@@ -119,6 +119,35 @@ def test_found_under_which_condition(source, expected):
     assert found(source, **declared) == expected
 
 
+GATE = "if(NOT A_FOUND)\nament_package()\nreturn()\nendif()\n"
+
+
+@pytest.mark.parametrize(
+    ("source", "gates"),
+    [
+        (GATE, True),
+        (GATE.replace("NOT A_FOUND", "NOT (A_FOUND AND B_FOUND)"), True),
+        ("if(A_FOUND)\nfind_package(C)\nelse()\nreturn()\nendif()\n", True),
+        (GATE.replace("NOT A_FOUND", "NOT BUILD_ARM"), False),
+        (GATE.replace("NOT A_FOUND", "NOT A_FOUND OR SKIP"), False),
+        (GATE.replace("ament_package()", "add_library(empty empty.cpp)"), False),
+        ("add_library(core core.cpp)\n" + GATE, False),
+        ("install(FILES a.yaml DESTINATION share)\n" + GATE, False),
+        (f"if(X)\n{GATE}endif()\n", False),
+        (f"function(f)\n{GATE}endfunction()\nf()\n", False),
+    ],
+)
+def test_what_nothing_of_a_package_is_built_without(source, gates):
+    (target,) = (t for t in build(source + "add_library(arm arm.cpp)").targets if t.name == "arm")
+    assert any(condition.gate for condition in target.conditions) is gates
+
+
+def test_a_test_knows_which_of_its_packages_are_declared():
+    options = dict(dependencies=("A", "B"), test_dependencies=("C",), exported_dependencies=("D",))
+    source = "if(A_FOUND AND X_FOUND OR D_FOUND)\nfind_package(F)\nendif()\nif(E)\nfind_package(G)\nendif()"
+    assert [c.declared for f in build(source, **options).found for c in f.conditions] == [("A", "D"), ()]
+
+
 SIGNATURES = [
     ("find_package(X 1.2 EXACT QUIET)", dict(version="1.2", exact=True, quiet=True, required=False)),
     ("find_package(X 1.2...<2 REQUIRED)", dict(version="1.2...<2", required=True)),

@@ -1,5 +1,6 @@
 """Conditions as written in files, against machines: true, false, or unknown."""
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -232,6 +233,43 @@ def test_on_humble(language, text, expected):
 )
 def test_on_melodic(language, text, expected):
     assert holds(Condition(language, text), MELODIC) is expected
+
+
+INSTALLED = {"rclcpp": True, "arm_msgs": True, "gripper_msgs": False}
+WITH_PACKAGES = Environment(ros_version="2", versions=VERSIONS.get, packages=INSTALLED.get)
+
+
+@pytest.mark.parametrize(
+    ("text", "declared", "expected"),
+    [
+        ("arm_msgs_FOUND", ("arm_msgs",), True),
+        ("arm_msgs_FOUND", (), None),  # it may be installed, or not
+        ("gripper_msgs_FOUND", ("gripper_msgs",), None),  # it may be built from its sources
+        ("NOT arm_msgs_FOUND", ("arm_msgs",), False),
+        ("arm_msgs_FOUND AND CUDA_FOUND", ("arm_msgs",), None),
+        ("arm_msgs_FOUND OR CUDA_FOUND", ("arm_msgs",), True),
+        ("catkin_FOUND", ("catkin",), False),
+    ],
+)
+def test_what_a_package_declares_is_found_where_it_is_there(text, declared, expected):
+    assert holds(Condition("cmake", text, declared=declared), WITH_PACKAGES) is expected
+
+
+@pytest.mark.parametrize(
+    ("text", "negated", "expected"),
+    [
+        ("NOT CUDA_FOUND", True, True),
+        ("CUDA_FOUND", False, True),
+        ("NOT CUDA_FOUND OR NOT arm_msgs_FOUND", True, True),
+        ("NOT gripper_msgs_FOUND", True, None),  # without it nothing is built here, so that nothing breaks
+        ("NOT catkin_FOUND", True, False),
+        ("NOT rclcpp_FOUND", True, True),
+    ],
+)
+def test_what_stands_behind_a_gate_holds_wherever_the_package_is_built(text, negated, expected):
+    gate = Condition("cmake", text, negated, gate=True)
+    assert holds(gate, WITH_PACKAGES) is expected
+    assert holds(msgspec.structs.replace(gate, gate=False), WITH_PACKAGES) is (None if "CUDA" in text else expected)
 
 
 @pytest.mark.parametrize(

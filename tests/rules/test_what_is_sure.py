@@ -144,3 +144,22 @@ def test_a_package_of_data_that_installs_none_of_it(opened, expected, tmp_path):
     launch = f'<launch><include file="$(find {opened})/launch/drive.launch" /></launch>\n'
     told = severities(tmp_path, "missing-install", "install", "noetic", launch__sled_DOT_launch=launch)
     assert told == expected
+
+
+@pytest.mark.parametrize(
+    ("test", "expected"),
+    [
+        ("NOT glasses_FOUND", {"error"}),  # where they are not found nothing is built, and nothing breaks
+        ("NOT cv_bridge_FOUND", {"error"}),
+        ("NOT BUILD_SLED", {"note"}),
+        ("NOT turtlebot_teleop_FOUND", {"note"}),  # which the target does not have
+        ("NOT rclcpp_FOUND", set()),  # which is of ROS 2
+    ],
+)
+def test_what_is_only_built_behind_a_gate(test, expected, tmp_path):
+    told = severities(
+        tmp_path, "removed-header", "opencv/cv.h", "noetic", depend="cv_bridge",
+        cmake=f"if({test})\n  return()\nendif()\nadd_executable(sled sled.cpp)\n",
+        sled_DOT_cpp="#include <opencv/cv.h>\n",
+    )  # fmt: skip
+    assert told == expected

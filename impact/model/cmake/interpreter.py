@@ -14,6 +14,7 @@ from msgspec import structs
 from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
 from ..build import At, Build, Declared, Defined, Exported, Found, GeneratedInterfaces, Install, Use
+from ..conditions.cmake import asks_only_for_packages, packages_asked
 from . import conditions as tests
 from .blocks import Block, Call, blocks
 from .drafts import TargetDraft, Targets
@@ -332,7 +333,7 @@ class Interpreter:
                 continue
             if value is True and not before:  # the only branch that can be taken
                 return self.run_body(body)
-            own = before if value is True else (*before, Condition("cmake", text))
+            own = before if value is True else (*before, self.test(text))
             signal, changes = self.run_branch(body, merge(outer, own))
             if signal in (RETURN, FATAL):
                 signals.add(signal)
@@ -347,16 +348,28 @@ class Interpreter:
             if value is True:
                 exhaustive = True
                 break
-            before = (*before, Condition("cmake", text, True))
+            before = (*before, self.test(text, negated=True))
         if not exhaustive:
             outcomes.insert(0, {})
         if not outcomes:
             return RETURN if RETURN in signals else FATAL
         self.merge_outcomes(outcomes)
         for own in returned if len(self.conditions) < MAX_CONDITIONS else ():
-            rest = Condition(own[0].language, own[0].text, not own[0].negated)
+            rest = structs.replace(own[0], negated=not own[0].negated, gate=self.at_gate(own[0]))
             self.conditions = merge(self.conditions, (rest,))
         return NORMAL
+
+    def test(self, text: str, *, negated: bool = False) -> Condition:
+        """A test of this package that is not decided."""
+        known = {*self.declared.build, *self.declared.test, *self.declared.exported} if "_FOUND" in text else ()
+        declared = tuple(name for name in packages_asked(text) if name in known) if known else ()
+        return Condition("cmake", text, negated, declared)
+
+    def at_gate(self, test: Condition) -> bool:
+        """Whether configuring the package, left on a test of what was found, has built nothing so far."""
+        top = not self.recording and len(self.including) == 1 and len(self.scopes) == 1 and not self.overlay
+        built = self.targets.finish() or self.installs or self.generated or self.message_files
+        return top and not built and asks_only_for_packages(test.text)
 
     def run_branch(self, body, conditions):
         """Runs one branch on trial: returns how it ended and what it wrote, with the writes taken back."""
@@ -540,7 +553,7 @@ class Interpreter:
             if value is False:
                 return NORMAL
             if value is None:
-                signal, changes = self.run_branch(block.body, merge(self.conditions, (Condition("cmake", text),)))
+                signal, changes = self.run_branch(block.body, merge(self.conditions, (self.test(text),)))
                 self.merge_outcomes([{}, changes])
                 return NORMAL
             self.maybe_break = False

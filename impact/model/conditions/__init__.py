@@ -16,7 +16,6 @@ from .environment import Environment
 __all__ = ["Environment", "all_hold", "holds"]
 
 _LANGUAGES = {
-    "cmake": cmake.evaluate,
     "cpp": preprocessor.evaluate,
     "macro": cmake.evaluate,
     "manifest": manifest.evaluate,
@@ -27,13 +26,17 @@ _LANGUAGES = {
 def holds(condition: Condition, environment: Environment) -> bool | None:
     """Whether a condition holds on a machine; None when it cannot be told."""
     evaluate = _LANGUAGES.get(condition.language)
-    if evaluate is None:
-        return None
     try:
-        value = evaluate(condition.text, environment)
+        if condition.language == "cmake":
+            value = cmake.evaluate(condition.text, environment, condition.declared)
+        else:
+            value = evaluate(condition.text, environment) if evaluate is not None else None
     except (RecursionError, MemoryError, ValueError, TypeError, ArithmeticError, LookupError, re.error):
         value = None
-    return (not value) if condition.negated and value is not None else value
+    if value is None:
+        # What stands behind a gate holds for everybody who builds the package at all.
+        return True if condition.gate and not cmake.lacks(condition.text, environment) else None
+    return (not value) if condition.negated else value
 
 
 def all_hold(conditions: Iterable[Condition], environment: Environment) -> bool | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import lru_cache
 from typing import Any
 
@@ -59,9 +59,10 @@ def _cmake_tokens(text: str) -> tuple[tuple[str, bool], ...]:
 class _CMake:
     """if() after cmake-commands(7): parentheses, tests, NOT, then AND and OR from left to right."""
 
-    def __init__(self, text: str, environment: Environment) -> None:
+    def __init__(self, text: str, environment: Environment, declared: Collection[str]) -> None:
         self.tokens = _cmake_tokens(text)
         self.environment = environment
+        self.declared = declared
         self.at = 0
 
     def word(self, offset: int = 0) -> str:
@@ -141,10 +142,11 @@ class _CMake:
         return None if value is None else value.upper() not in _FALSE
 
     def found(self, package: str) -> bool | None:
-        """Only packages that exist in one generation of ROS: what else is installed is not known."""
+        """Packages that exist in one generation of ROS alone, and what is declared and there: what else is installed is
+        not known."""
         if self.environment.ros_version and package in _ROS1_ONLY | _ROS2_ONLY:
             return (package in _ROS1_ONLY) == (self.environment.ros_version == "1")
-        return None
+        return True if package in self.declared and self.environment.packages(package) else None
 
     def presence(self, kind: str, argument: str) -> bool | None:
         if kind == "DEFINED":
@@ -230,5 +232,26 @@ class _CMake:
         return _CMAKE_COMPARISONS[kind](float(known), float(wanted))
 
 
-def evaluate(text: str, environment: Environment) -> bool | None:
-    return _CMake(text, environment).whole()
+def evaluate(text: str, environment: Environment, declared: Collection[str] = ()) -> bool | None:
+    """The value of a test; None where it cannot be told. declared: as in Condition. Raises ValueError for what is no
+    test."""
+    return _CMake(text, environment, declared).whole()
+
+
+_FOUND = re.compile(r"(?<![\w}])(\w+)_FOUND\b")
+
+
+def packages_asked(text: str) -> tuple[str, ...]:
+    """The packages whose `X_FOUND` a test reads."""
+    return tuple(dict.fromkeys(_FOUND.findall(text)))
+
+
+def asks_only_for_packages(text: str) -> bool:
+    """Whether a test is of nothing but what was found."""
+    words = text.replace("(", " ").replace(")", " ").split()
+    return bool(words) and all(word in ("NOT", "AND", "OR") or _FOUND.fullmatch(word) for word in words)
+
+
+def lacks(text: str, environment: Environment) -> bool:
+    """Whether a package that a test asks for is one that the machine does not have."""
+    return any(environment.packages(name) is False for name in packages_asked(text))

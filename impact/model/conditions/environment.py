@@ -28,8 +28,9 @@ class Environment:
     """What is known of one machine.
 
     ros_distro: `humble`; ros_version: `1` or `2`; python: (3, minor) or (2, 7); codename of the platform (`jammy`).
-    versions: the version of a package or library by name (`rclcpp`, `opencv`, `gcc`), None when unknown. headers:
-    whether the compiler finds a header, None when unknown. testing: whether tests are built, None when both must be
+    versions: the version of a package or library by name (`rclcpp`, `opencv`, `gcc`), None when unknown. packages:
+    whether a ROS package is there, None for names that are none's. headers: whether the compiler finds a header, None
+    when unknown. testing: whether tests are built, None when both must be
     considered. An empty string stands for unknown.
     """
 
@@ -38,6 +39,7 @@ class Environment:
     python: tuple[int, int] | None = None
     codename: str = ""
     versions: Callable[[str], str | None] = _nothing_known
+    packages: Callable[[str], bool | None] = _nothing_known
     headers: Callable[[str], bool | None] = _nothing_known
     testing: bool | None = None
 

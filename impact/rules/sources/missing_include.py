@@ -78,7 +78,7 @@ def missing_include(view: View):
                 and now
                 and lost.sure
                 and need.role == "build"
-                and view.certain_with(package, need.conditions)
+                and view.certain(need.conditions)
             )
             where = "" if now else f" of {view.horizon}"
             how = (
