@@ -13,6 +13,7 @@ from ..targets.behaviour import all_behaviour
 from ..targets.changes import all_rows, transitive_includes
 from ..targets.fields import default_fields
 from ..targets.includes import offered
+from ..targets.library import OPENCV_FUNCTIONS
 from ..targets.standard import DEFINED_IN
 from ..targets.surface_store import shipped
 from ..targets.uses import all_uses, stamp
@@ -26,7 +27,7 @@ _DOTTED = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\Z")
 @cache
 def watched() -> Watched:
     """All names that some known change is about, with a version that changes when the tables do."""
-    words, qualified, python, headers = set(), set(), set(), {}
+    words, qualified, python, headers = set(), set(OPENCV_FUNCTIONS), set(), {}
     for row in all_rows():
         if row.kind not in _KINDS or not row.old:
             continue

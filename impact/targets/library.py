@@ -75,6 +75,30 @@ def compiled_component(header: str, version: str) -> str | None:
     return None
 
 
+# Functions of OpenCV, by the library they are compiled into, of those libraries that cv_bridge does not hand on since
+# Kinetic (it does core, imgproc and imgcodecs). The same in OpenCV 3 and 4. Sources: OpenCV's headers; cv_bridge's
+# CMakeLists.txt at its tags.
+OPENCV_FUNCTIONS = {
+    f"cv::{name}": library
+    for library, names in (
+        (
+            "calib3d",
+            "Rodrigues solvePnP solvePnPRansac calibrateCamera stereoCalibrate stereoRectify findChessboardCorners "
+            "drawChessboardCorners projectPoints findHomography findFundamentalMat findEssentialMat recoverPose "
+            "triangulatePoints reprojectImageTo3D decomposeProjectionMatrix",
+        ),
+        (
+            "highgui",
+            "imshow namedWindow waitKey destroyWindow destroyAllWindows setMouseCallback createTrackbar resizeWindow "
+            "moveWindow startWindowThread",
+        ),
+        ("features2d", "drawKeypoints drawMatches"),
+        ("video", "calcOpticalFlowPyrLK calcOpticalFlowFarneback buildOpticalFlowPyramid"),
+    )
+    for name in names.split()
+}
+
+
 class Gone(NamedTuple):
     """A component that a library's version lacks, and what to do."""
 

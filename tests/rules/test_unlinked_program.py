@@ -83,3 +83,41 @@ def test_what_may_be_the_library_is_taken_for_it(link, tmp_path):
 def test_headers_that_need_no_library_say_nothing(tmp_path):
     cmake = f"find_package(catkin REQUIRED COMPONENTS roscpp)\n{LINKED}"
     assert told(tmp_path, cmake, plough_DOT_cpp="#include <tf/transform_datatypes.h>\nint main() {}\n") == []
+
+
+SHOWS = "#include <opencv2/highgui/highgui.hpp>\nint main() { cv::imshow(name, image); }\n"
+
+
+@pytest.mark.parametrize(
+    ("target", "components", "link", "expected"),
+    [
+        ("kinetic", "roscpp cv_bridge", "", {"error"}),
+        ("noetic", "roscpp cv_bridge", "", {"error"}),
+        ("noetic", "roscpp", "", {"error"}),
+        ("indigo", "roscpp cv_bridge", "", set()),  # whose cv_bridge hands on all of OpenCV
+        ("noetic", "roscpp cv_bridge image_geometry", "", set()),  # which does so to this day
+        ("noetic", "roscpp cv_bridge plough_tools", "", set()),
+        ("noetic", "roscpp cv_bridge", "${OpenCV_LIBRARIES}", set()),
+        ("noetic", "roscpp cv_bridge", "opencv_highgui", set()),
+        ("noetic", "roscpp cv_bridge", "${rtabmap_LIBRARIES}", set()),  # which may have it along
+    ],
+)
+def test_functions_of_opencv_that_cv_bridge_does_not_hand_on(target, components, link, expected, tmp_path):
+    cmake = (
+        f"find_package(catkin REQUIRED COMPONENTS {components})\nfind_package(OpenCV REQUIRED)\n"
+        f"find_package(RTABMap)\nadd_executable(plough plough.cpp)\n"
+        f"target_link_libraries(plough ${{catkin_LIBRARIES}} {link})\n"
+    )
+    assert opencv(tmp_path, cmake, target, SHOWS) == expected
+
+
+@pytest.mark.parametrize("call", ["cv::imwrite(name, image)", "cv::cvtColor(image, grey, code)", "my::imshow(image)"])
+def test_functions_that_cv_bridge_hands_on(call, tmp_path):
+    cmake = f"find_package(catkin REQUIRED COMPONENTS roscpp cv_bridge)\n{LINKED}"
+    assert opencv(tmp_path, cmake, "noetic", SHOWS.replace("cv::imshow(name, image)", call)) == set()
+
+
+def opencv(folder: Path, cmake: str, target: str, source: str) -> set[str]:
+    told(folder, cmake, target, "DEPENDS OpenCV", plough_DOT_cpp=source)
+    options = Options(targets=(target,), select=("library-component",), cache=folder / "cache", jobs=1)
+    return {f.severity for f in check(folder, options).findings if f.subject == "OpenCV"}

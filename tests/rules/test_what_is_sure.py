@@ -161,5 +161,20 @@ def test_what_is_only_built_behind_a_gate(test, expected, tmp_path):
         tmp_path, "removed-header", "opencv/cv.h", "noetic", depend="cv_bridge",
         cmake=f"if({test})\n  return()\nendif()\nadd_executable(sled sled.cpp)\n",
         sled_DOT_cpp="#include <opencv/cv.h>\n",
+
+
+    ("cmake", "include", "expected"),
+    [
+        ("find_package(Eigen REQUIRED)", "<vector>", {"error"}),
+        ("find_package(Eigen)", "<Eigen/Core>", {"warning"}),
+        ("find_package(Eigen)", "<vector>", {"note"}),
+        ("find_package(Eigen)\nfind_package(PCL REQUIRED)", "<Eigen/Core>", {"note"}),  # brings its folder
+        ("find_package(cmake_modules)\nfind_package(Eigen)", "<Eigen/Core>", set()),
+    ],
+)
+def test_a_find_module_of_cmake_modules(cmake, include, expected, tmp_path):
+    told = severities(
+        tmp_path, "missing-find-package", "cmake_modules", "indigo",
+        cmake=f"{cmake}\nadd_library(sled sled.cpp)\n", sled_DOT_cpp=f"#include {include}\n",
     )  # fmt: skip
     assert told == expected

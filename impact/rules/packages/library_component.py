@@ -4,7 +4,8 @@ What it does
     Compares the components given to find_package(Boost|Qt5|Qt6|VTK|OpenCV|PCL ... COMPONENTS) with what the target's
     version of the library has, and with the imported targets (`Boost::thread`, `Qt5::Widgets`) and headers that need a
     compiled component. Also programs that include a header of a compiled library, such as yaml-cpp, and are not linked
-    to it, where another target of the package is.
+    to it, where another target of the package is; and programs that call functions of OpenCV which lie in other
+    libraries than those that cv_bridge hands on, and get OpenCV from nobody else (ROS 1).
 
 Why it breaks
     CMake stops at a component that is gone (`signals` since Boost 1.69), or the linker at symbols of one never linked.
@@ -13,7 +14,7 @@ Severity
     error when a component that is surely required is gone on the target; warning when only the newest distro lacks it,
     and when `Boost::x` is linked and not asked for. For a header of a compiled component in a target that is not linked
     to it: error in an executable, warning in a library and where a dependency may bring the component, note in tests
-    and, in ROS 1, in libraries.
+    and, in ROS 1, in libraries. error for functions of OpenCV.
 
 Example
     find_package(Boost REQUIRED COMPONENTS signals)
@@ -30,6 +31,7 @@ from ...model.view import View
 from ...targets.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP, compiled_component, gone_component
 from ...targets.version import at_least
 from ..rule import Hit, rule
+from .unlinked import unlinked_opencv
 
 
 @rule(severity="error")
@@ -71,6 +73,7 @@ def library_component(view: View):
         yield from _linked(view, package, asked)
         yield from _included(view, package, asked)
         yield from _linked_elsewhere(view, package)
+        yield from unlinked_opencv(view, package)
 
 
 def _old_qt(view: View, package):

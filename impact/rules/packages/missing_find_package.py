@@ -137,14 +137,29 @@ def _find_modules(view: View, package):
         if "cmake_modules" in names or view.providers.cmake_platforms(found.name) or not view.active(found.conditions):
             continue
         sure = found.required and view.certain(found.conditions)
+        needed = found.required or (found.name == "Eigen" and _lacks_eigen(view, package))
         yield Hit(
             found.at,
             "cmake_modules",
             f"`Find{found.name}.cmake` comes with `cmake_modules`, which CMake never looks for",
             "add `cmake_modules` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml",
             package.name,
-            severity="error" if sure else "warning" if found.required else "note",
+            severity="error" if sure else "warning" if needed else "note",
         )
+
+
+def _lacks_eigen(view: View, package) -> bool:
+    """True when code that is built here includes Eigen, whose headers lie in a folder of their own, and nothing that is
+    found brings it."""
+    found = {f.name for f in package.build.found} - {"Eigen"}
+    if any("$" in name for name in found):
+        return False
+    reached = view.spread({*found, *(p.name for name in found for p in view.cmake(name)[:1])})
+    return any(
+        need.how == "include" and need.subject.startswith(("Eigen/", "unsupported/Eigen/"))
+        and need.role == "build" and need.certain and not view.answered(need.providers, reached)
+        for need in view.needs(package)
+    )  # fmt: skip
 
 
 def _weight_of(view: View, need, counts: bool) -> str:

@@ -1,4 +1,4 @@
-"""Programs of catkin packages that compile the headers of a library in ROS, and are linked to nothing that brings it.
+"""Programs of catkin packages that use a library, and are linked to nothing that brings it.
 
 What `catkin_LIBRARIES` holds is told by what the components asked for export, themselves and through CATKIN_DEPENDS:
 by the build of those in the workspace, and by the stored surfaces of those that are released.
@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from ...model.build import BuildTarget, for_tests
 from ...model.package import IncludeUse
 from ...model.view import View
+from ...targets.library import OPENCV_FUNCTIONS
 from ..rule import Hit
 
 
@@ -110,6 +111,61 @@ _COMPILED = (
 )
 
 
+def unlinked_opencv(view: View, package) -> Iterator[Hit]:
+    """Programs that call functions of OpenCV which lie in libraries that nothing they are linked to hands on."""
+    build = package.build
+    if package.build_type != "catkin" or view.target.ros != 1 or build.unresolved:
+        return
+    calls = [
+        use
+        for use in package.digest.names
+        if use.text in OPENCV_FUNCTIONS and use.role == "build" and view.certain(use.conditions)
+    ]
+    if not calls or any("$" in f.name for f in build.found):
+        return
+    exported = _Exported(view)
+    targets = {t.name: t for t in build.targets}
+    for target in build.targets:
+        if target.kind != "executable" or for_tests(target.conditions) or not view.certain(target.conditions):
+            continue
+        linked = _linked(package, targets, target)
+        if linked is None or any("opencv" in item.lower() for item in linked[0]):
+            continue
+        if not all(_stem(item) in _WITHOUT_OPENCV or view.is_package(_stem(item)) for item in linked[0] if "$" in item):
+            continue
+        call = next((use for use in calls if any(part in use.targets for part in linked[1])), None)
+        brought = exported.closure(_packages(view, package, linked[0])) if call is not None else None
+        if call is None or brought is None:
+            continue
+        bringing = {
+            name for name in brought if name != "OpenCV" and exported.may_bring_opencv(name)
+        }  # but who gives it
+        if not bringing <= {"cv_bridge"} or (bringing and view.target.distro in _WITH_ALL_OF_OPENCV):
+            continue
+        library = OPENCV_FUNCTIONS[call.text]
+        yield Hit(
+            call.at,
+            "OpenCV",
+            f"`{call.text}` is compiled into opencv_{library}, which nothing brings that `{target.name}` is linked to",
+            f"find_package(OpenCV REQUIRED) and target_link_libraries({target.name} ${{OpenCV_LIBRARIES}})",
+            package.name,
+            severity="error",
+        )
+        return
+
+
+# What is linked or exported beside packages of ROS, and has no part of OpenCV in it.
+_WITHOUT_OPENCV = frozenset(
+    [
+        "catkin", "Boost", "Eigen", "Eigen3", "EIGEN", "EIGEN3", "orocos_kdl", "console_bridge", "urdfdom",
+        "urdfdom_headers", "TinyXML", "TinyXML2", "tinyxml", "tinyxml2", "Poco", "log4cxx", "LOG4CXX", "Bullet",
+        "BULLET", "bullet", "YAML_CPP", "yaml-cpp", "BZip2", "lz4", "UUID", "CURL", "OpenSSL", "Threads", "PythonLibs",
+    ]
+)  # fmt: skip
+# Distros whose cv_bridge hands on every library of OpenCV.
+_WITH_ALL_OF_OPENCV = frozenset({"groovy", "hydro", "indigo", "jade"})
+
+
 class _Exported:
     """What catkin packages hand on to whoever links them."""
 
@@ -123,6 +179,18 @@ class _Exported:
             return tuple(e.item for e in package.build.exports if e.how == "libraries" and "$" not in e.item)
         offer = self._view.offers.package(name)
         return tuple(lib for lib in offer.build.libraries if "$" not in lib) if offer is not None else ()
+
+    def may_bring_opencv(self, name: str) -> bool:
+        """Whether libraries of OpenCV may be among what a package itself hands on."""
+        package = self._view.workspace.packages.get(name)
+        if package is not None:
+            given = [e.item for e in package.build.exports if e.how in ("system_depends", "libraries")]
+            return any("$" in item or "opencv" in item.lower() for item in given)
+        offer = self._view.offers.package(name)
+        if offer is None:
+            return name not in _WITHOUT_OPENCV and not _INTERFACES.search(name) and name not in _BARE
+        given = (*offer.build.system, *offer.build.libraries, *(why for _, why in offer.build.unknown))
+        return any("opencv" in item.lower() for item in given)
 
     def closure(self, names: Iterable[str]) -> frozenset[str] | None:
         """These packages and all that they bring; None where that of one is not known."""
@@ -153,6 +221,8 @@ class _Exported:
 
 
 _INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
+# What packages of interfaces export.
+_BARE = frozenset({"message_runtime", "message_generation"})
 
 
 def _linked(package, targets: dict[str, BuildTarget], program: BuildTarget) -> tuple[set[str], list[str]] | None:
@@ -184,13 +254,16 @@ _VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TA
 
 def _packages(view: View, package, items: Iterable[str]) -> set[str]:
     """The packages that link items stand for."""
-    names: set[str] = set()
-    for item in items:
-        match = _VARIABLE.fullmatch(item)
-        names.add(match.group(1) if match else item)
+    names = {_stem(item) for item in items}
     if "catkin" in names:
         names.update(f.name for f in package.build.found if f.how == "catkin")
     return {name for name in names if view.is_package(name)} - {package.name, "catkin"}
+
+
+def _stem(item: str) -> str:
+    """`tf` of `${tf_LIBRARIES}`; any other item itself."""
+    match = _VARIABLE.fullmatch(item)
+    return match.group(1) if match else item
 
 
 def _plain(name: str) -> str:
