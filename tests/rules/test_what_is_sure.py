@@ -161,8 +161,11 @@ def test_what_is_only_built_behind_a_gate(test, expected, tmp_path):
         tmp_path, "removed-header", "opencv/cv.h", "noetic", depend="cv_bridge",
         cmake=f"if({test})\n  return()\nendif()\nadd_executable(sled sled.cpp)\n",
         sled_DOT_cpp="#include <opencv/cv.h>\n",
+    )  # fmt: skip
+    assert told == expected
 
 
+@pytest.mark.parametrize(
     ("cmake", "include", "expected"),
     [
         ("find_package(Eigen REQUIRED)", "<vector>", {"error"}),
