@@ -14,6 +14,8 @@ from typing import Any, NamedTuple
 
 from ..config import Config
 from ..facts.condition import Condition
+from ..facts.interface import Interface
+from ..targets import message_headers
 from ..targets.changes import DISTROS
 from ..targets.distro import known_distros
 from ..targets.evidence import Evidence
@@ -24,6 +26,7 @@ from ..targets.offers import Offers
 from ..targets.offers_python import PythonOffers
 from ..targets.stdlib import ever_stdlib, stdlib
 from ..targets.target import Change, Provider, Target
+from ..targets.version import at_least
 from .api_python import python_packages
 from .build import At, Found, for_tests
 from .conditions import Environment, all_hold
@@ -141,6 +144,7 @@ class View:
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._standard: dict[str, bool] = {}
         self._outward_of: dict[tuple[str, ...], tuple[frozenset[str], frozenset[str]]] = {}
+        self._interfaces: dict[str, dict[str, Interface]] = {}
         self._lost: dict[str, Misnamed | None] = {}
         # What rules worked out for each package and several of them ask for.
         self.worked_out: dict[tuple[str, str], Any] = {}
@@ -296,7 +300,8 @@ class View:
         return tuple(machine_of(name, self.target.ros) for name in reversed(earlier))
 
     def outward(self, paths: tuple[str, ...]) -> tuple[frozenset[str], frozenset[str]]:
-        """What these include paths bring along in the workspace: paths of other places, and of its own headers."""
+        """What these include paths bring along in the workspace: paths of other places, and of its own headers; those
+        that it generates from interfaces are among both."""
         known = self._outward_of.get(paths)
         if known is None:
             found, own, stack = set(), set(), list(paths)
@@ -306,12 +311,42 @@ class View:
                     continue
                 files = self._files_of(path)
                 (own if files else found).add(path)
+                inner = () if files else self._made_of(path)
+                if inner:
+                    own.add(path)
+                    stack.extend(inner)
                 for file in files:
                     own.add(f"/{file}".rpartition("/include/")[2])
                     stack.extend(self._outward.get(file, ()))
                     stack.extend(self._inner.get(file, ()))
             known = self._outward_of[paths] = frozenset(found), frozenset(own)
         return known
+
+    def _made_of(self, path: str) -> tuple[str, ...]:
+        """The generated headers that one which the workspace generates includes, itself first; none for others."""
+        package = message_headers.package_of(path, self.target.ros)
+        if package is None or package not in self.workspace.packages:
+            return ()
+        interfaces = self._own_interfaces(package)
+        inner = message_headers.included_by(path, self.target.ros, interfaces, self._parts_apart)
+        return () if inner is None else (path, *inner)
+
+    def _own_interfaces(self, package: str) -> dict[str, Interface]:
+        """The interfaces of a package of the workspace, by `msg/Name`."""
+        known = self._interfaces.get(package)
+        if known is None:
+            known = self._interfaces[package] = {}
+            for file in self.workspace.packages[package].digest.interfaces:
+                kind = file.definition.kind
+                known[f"{file.definition.module.rpartition('/')[2] if kind == 'idl' else kind}/{file.name}"] = (
+                    file.definition
+                )
+        return known
+
+    @cached_property
+    def _parts_apart(self) -> bool:
+        """Whether the parts of a generated header lie in a folder of their own."""
+        return at_least(self.target.version("rosidl_generator_cpp") or "0.9.0", "0.9.0")
 
     def has_header(self, path: str) -> bool:
         """True when a header of the workspace answers an include path."""

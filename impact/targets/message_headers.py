@@ -58,13 +58,6 @@ def _defining(parts: list[str]) -> tuple[str, ...]:
     return f"{folder}{stem}.hpp", f"{folder}detail/{stem}__struct.hpp", f"{folder}{stem}__struct.hpp"
 
 
-def headers_of(definition: Interface, package: str, ros: int) -> tuple[str, ...]:
-    """The generated headers of the interfaces that are types of fields of one of a package."""
-    if ros == 1:
-        return tuple(f"{other}/{type_}.h" for other, type_ in _nested(definition, package))
-    return tuple(f"{other}/msg/{snake(type_)}.hpp" for other, type_ in _nested(definition, package))
-
-
 def included_by(header: str, ros: int, interfaces: Mapping[str, Interface], apart: bool) -> tuple[str, ...] | None:
     """The generated headers that such a header includes; None when its package has no such interface. interfaces: those
     of its package, by `msg/Name`. apart: the parts of a header lie in a folder of their own."""

@@ -609,6 +609,24 @@ SILENT = {
         ),
         ("sled.cpp", "pose_stamped", "vector3_stamped"),
     ),
+    "a message that comes along with one of the workspace": Silent(
+        "missing-include",
+        ("jazzy",),
+        ament(
+            "find_package(rosidl_default_generators REQUIRED)\nfind_package(geometry_msgs REQUIRED)\n"
+            "rosidl_generate_interfaces(sled msg/Tracks.msg DEPENDENCIES geometry_msgs)\n"
+            "add_library(sledding sled.cpp)\nament_target_dependencies(sledding geometry_msgs)\n"
+            'rosidl_get_typesupport_target(cpp sled "rosidl_typesupport_cpp")\ntarget_link_libraries(sledding ${cpp})\n'
+            "install(TARGETS sledding DESTINATION lib)",
+            "buildtool_depend:rosidl_default_generators",
+            "depend:geometry_msgs",
+            "exec_depend:rosidl_default_runtime",
+            "member_of_group:rosidl_interface_packages",
+            msg__Tracks_msg="geometry_msgs/Pose[] poses\n",
+            sled_cpp="#include <sled/msg/tracks.hpp>\ngeometry_msgs::msg::Pose here();\n",
+        ),
+        ("msg/Tracks.msg", "geometry_msgs/Pose[] poses", "float64 length"),
+    ),
     "a header that comes through the package's own": Silent(
         "missing-include",
         ("jazzy",),

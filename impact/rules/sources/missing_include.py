@@ -37,7 +37,7 @@ from ...model.build import for_tests
 from ...model.package import NeededHeader
 from ...model.view import View
 from ...targets.includes import Machine, announced, offered
-from ...targets.message_headers import headers_of, package_of, type_in
+from ...targets.message_headers import type_in
 from ...targets.standard import DEFINED_IN
 from ..cure import Insert
 from ..rule import Hit, rule
@@ -130,7 +130,8 @@ def _lost(
         if bits & machine.mask(reach) or not wanted.isdisjoint(own):
             continue
         outside = _outside(view, need.name, reach, machine)
-        if outside is None or (made is not None and not _all_told(view, bits, reach, machine)):
+        # Of what the workspace generates itself, all that it brings along reaches the file too.
+        if outside is None or (made is not None and not machine.tells_all(reach - own)):
             continue
         dropped = _dropped(view, wanted, reach, machine, earlier)
         # Whose headers a platform library's bring, no table tells.
@@ -153,18 +154,6 @@ def _offering(view: View, name: str) -> tuple[str, ...]:
         return DEFINED_IN.get(name) or offered().get(name) or ()
     known = made.ros == view.target.ros and made.package not in view.workspace.packages
     return made.headers if known and view.machine.tells(made.headers[0]) else ()
-
-
-def _all_told(view: View, bits: int, reach: frozenset[str], machine: Machine) -> bool:
-    """Whether all interfaces are known whose headers reach a file, and none that is the workspace's own, which the
-    machine may know of another version, brings what is wanted."""
-    ros = view.target.ros
-    owners = {package_of(header, ros) for header in reach}
-    for package in view.workspace:
-        for file in package.digest.interfaces if package.name in owners else ():
-            if bits & machine.mask(frozenset(headers_of(file.definition, package.name, ros))):
-                return False
-    return machine.tells_all(reach)
 
 
 def _never(name: str, offering: tuple[str, ...], reach: frozenset[str], machine: Machine) -> tuple[str, str] | None:
