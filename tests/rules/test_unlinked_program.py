@@ -121,3 +121,28 @@ def opencv(folder: Path, cmake: str, target: str, source: str) -> set[str]:
     told(folder, cmake, target, "DEPENDS OpenCV", plough_DOT_cpp=source)
     options = Options(targets=(target,), select=("library-component",), cache=folder / "cache", jobs=1)
     return {f.severity for f in check(folder, options).findings if f.subject == "OpenCV"}
+
+
+OPTIONS = "#include <boost/program_options.hpp>\n#include <ros/ros.h>\nint main() {}\n"
+
+
+@pytest.mark.parametrize(
+    ("components", "boost", "expected"),
+    [
+        ("roscpp tf", "", {"error"}),  # hand on what they find of Boost themselves
+        ("roscpp tf", "find_package(Boost REQUIRED COMPONENTS thread)", {"error"}),
+        ("roscpp tf", "find_package(Boost REQUIRED COMPONENTS program_options)", set()),
+        ("roscpp rosbag_storage", "", set()),  # which finds this part
+        ("roscpp plough_tools", "", set()),  # which may have found anything
+        ("roscpp", "find_package(PCL REQUIRED)", set()),
+    ],
+)
+def test_a_part_of_boost_that_no_component_hands_on(components, boost, expected, tmp_path):
+    cmake = (
+        f"find_package(catkin REQUIRED COMPONENTS {components})\n{boost}\nadd_executable(plough plough.cpp)\n"
+        "target_link_libraries(plough ${catkin_LIBRARIES} ${Boost_LIBRARIES})\n"
+    )
+    told(tmp_path, cmake, tools="DEPENDS Boost", plough_DOT_cpp=OPTIONS)
+    options = Options(targets=("noetic",), select=("library-component",), cache=tmp_path / "cache", jobs=1)
+    said = check(tmp_path, options).findings
+    assert {f.severity for f in said if f.subject == "Boost::program_options"} == expected

@@ -14,7 +14,7 @@ Severity
     error when a component that is surely required is gone on the target; warning when only the newest distro lacks it,
     and when `Boost::x` is linked and not asked for. For a header of a compiled component in a target that is not linked
     to it: error in an executable, warning in a library and where a dependency may bring the component, note in tests
-    and, in ROS 1, in libraries. error for functions of OpenCV.
+    and, in ROS 1, in libraries. error for functions of OpenCV, and for a component that no exported Boost of ROS 1 has.
 
 Example
     find_package(Boost REQUIRED COMPONENTS signals)
@@ -31,7 +31,7 @@ from ...model.view import View
 from ...targets.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP, compiled_component, gone_component
 from ...targets.version import at_least
 from ..rule import Hit, rule
-from .unlinked import unlinked_opencv
+from .unlinked import lacks_boost, unlinked_opencv
 
 
 @rule(severity="error")
@@ -138,7 +138,10 @@ def _included(view: View, package, asked):
             if name not in given:
                 given[name] = _given(view, package, targets, name, asked)
             known = given[name]
-            if known is None or component in known.components:
+            if known is None or component in known.linked:
+                continue
+            lacking = include.role == "build" and lacks_boost(view, package, targets[name], component)
+            if component in known.components and not lacking:
                 continue
             told.add(component)
             asked_for = component in asked.get("Boost", ())
@@ -150,15 +153,17 @@ def _included(view: View, package, asked):
                 if asked_for
                 else f"find_package(Boost REQUIRED COMPONENTS {component}) and link it",
                 package.name,
-                severity=_how_sure(view, include, targets[name], known),
+                severity="error" if lacking else _how_sure(view, include, targets[name], known),
             )
             break
 
 
 class _Given(NamedTuple):
-    """What a target is linked to: Boost components, and whether a dependency may bring more of them."""
+    """What a target is linked to: Boost components, those that it names itself, and whether a dependency may bring
+    more of them."""
 
     components: frozenset[str]
+    linked: frozenset[str]
     more: bool
 
 
@@ -191,6 +196,7 @@ def _given(view: View, package, targets, name: str, asked) -> _Given | None:
             return None
         else:
             packages.add(item.partition("::")[0])
+    linked = components.union(*(BOOST_BROUGHT.get(c, ()) for c in components))
     if "catkin" in packages:
         packages |= {f.name for f in package.build.found if f.how == "catkin"}
     if any(found.name in _BRING_BOOST for found in package.build.found):
@@ -203,7 +209,7 @@ def _given(view: View, package, targets, name: str, asked) -> _Given | None:
     more = not brought.isdisjoint(("boost", "libboost-all-dev", "libpcl-all-dev", "libpcl-all", "libpcl-dev"))
     for extra in list(components):
         components |= BOOST_BROUGHT.get(extra, set())
-    return _Given(frozenset(components), more)
+    return _Given(frozenset(components), frozenset(linked), more)
 
 
 def _links(package, targets, name: str) -> set[str] | None:

@@ -131,14 +131,14 @@ def unlinked_opencv(view: View, package) -> Iterator[Hit]:
         linked = _linked(package, targets, target)
         if linked is None or any("opencv" in item.lower() for item in linked[0]):
             continue
-        if not all(_stem(item) in _WITHOUT_OPENCV or view.is_package(_stem(item)) for item in linked[0] if "$" in item):
+        if not all(_stem(item) in _OF_THEIR_OWN or view.is_package(_stem(item)) for item in linked[0] if "$" in item):
             continue
         call = next((use for use in calls if any(part in use.targets for part in linked[1])), None)
         brought = exported.closure(_packages(view, package, linked[0])) if call is not None else None
         if call is None or brought is None:
             continue
         bringing = {
-            name for name in brought if name != "OpenCV" and exported.may_bring_opencv(name)
+            name for name in brought if name != "OpenCV" and exported.may_bring(name, "opencv")
         }  # but who gives it
         if not bringing <= {"cv_bridge"} or (bringing and view.target.distro in _WITH_ALL_OF_OPENCV):
             continue
@@ -154,8 +154,36 @@ def unlinked_opencv(view: View, package) -> Iterator[Hit]:
         return
 
 
-# What is linked or exported beside packages of ROS, and has no part of OpenCV in it.
-_WITHOUT_OPENCV = frozenset(
+def lacks_boost(view: View, package, target: BuildTarget, component: str) -> bool:
+    """True for a program of a catkin package to which nothing it is linked to can bring a component of Boost: of all
+    packages that export some of Boost only those of ROS's core are among it, whose components are known."""
+    catkin = package.build_type == "catkin" and view.target.ros == 1
+    if not catkin or component not in _NOT_OF_THE_CORE or target.kind != "executable" or package.build.unresolved:
+        return False
+    linked = _linked(package, {t.name: t for t in package.build.targets}, target)
+    if linked is None or any("$" in f.name for f in package.build.found):
+        return False
+    items = linked[0]
+    if not all(_stem(item) in _OF_THEIR_OWN or view.is_package(_stem(item)) for item in items if "$" in item):
+        return False
+    exported = _Exported(view)
+    brought = exported.closure(_packages(view, package, items))
+    return brought is not None and all(
+        name in _WITH_BOOST_OF_THE_CORE or not exported.may_bring(name, "boost") for name in brought
+    )
+
+
+# Components of Boost that no package of ROS's core finds, and the packages of it that export what they find. Source:
+# find_package(Boost) and catkin_package(DEPENDS) in their CMakeLists.txt, Groovy to Noetic.
+_NOT_OF_THE_CORE = frozenset({"program_options", "serialization", "iostreams", "log", "timer", "locale"})
+_WITH_BOOST_OF_THE_CORE = frozenset(
+    [
+        "Boost", "actionlib", "bondcpp", "class_loader", "cpp_common", "message_filters", "nodelet", "pluginlib",
+        "rosconsole", "roscpp", "roscpp_serialization", "rostime", "tf", "tf2", "tf2_ros", "xmlrpcpp",
+    ]
+)  # fmt: skip
+# What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along.
+_OF_THEIR_OWN = frozenset(
     [
         "catkin", "Boost", "Eigen", "Eigen3", "EIGEN", "EIGEN3", "orocos_kdl", "console_bridge", "urdfdom",
         "urdfdom_headers", "TinyXML", "TinyXML2", "tinyxml", "tinyxml2", "Poco", "log4cxx", "LOG4CXX", "Bullet",
@@ -180,17 +208,17 @@ class _Exported:
         offer = self._view.offers.package(name)
         return tuple(lib for lib in offer.build.libraries if "$" not in lib) if offer is not None else ()
 
-    def may_bring_opencv(self, name: str) -> bool:
-        """Whether libraries of OpenCV may be among what a package itself hands on."""
+    def may_bring(self, name: str, library: str) -> bool:
+        """Whether a part of a library, in lower case, may be among what a package itself hands on."""
         package = self._view.workspace.packages.get(name)
         if package is not None:
             given = [e.item for e in package.build.exports if e.how in ("system_depends", "libraries")]
-            return any("$" in item or "opencv" in item.lower() for item in given)
+            return any("$" in item or library in item.lower() for item in given)
         offer = self._view.offers.package(name)
         if offer is None:
-            return name not in _WITHOUT_OPENCV and not _INTERFACES.search(name) and name not in _BARE
+            return name not in _OF_THEIR_OWN and not _INTERFACES.search(name) and name not in _BARE
         given = (*offer.build.system, *offer.build.libraries, *(why for _, why in offer.build.unknown))
-        return any("opencv" in item.lower() for item in given)
+        return any(library in item.lower() for item in given)
 
     def closure(self, names: Iterable[str]) -> frozenset[str] | None:
         """These packages and all that they bring; None where that of one is not known."""
