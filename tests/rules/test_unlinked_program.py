@@ -52,6 +52,11 @@ def test_a_program_gets_what_its_components_export(components, tools, expected, 
     assert told(tmp_path, cmake, tools=tools, plough_DOT_cpp=LISTENS) == expected
 
 
+def test_a_component_that_the_target_has_not_got_may_export_anything(tmp_path):
+    cmake = f"find_package(catkin REQUIRED COMPONENTS roscpp moveit_core)\n{LINKED}"
+    assert told(tmp_path, cmake, "kinetic@2016-06-28", plough_DOT_cpp=LISTENS) == []
+
+
 @pytest.mark.parametrize("target", ["indigo", "kinetic", "noetic"])
 def test_a_library_of_the_package_needs_it_where_a_program_is_linked_to_it(target, tmp_path):
     cmake = (

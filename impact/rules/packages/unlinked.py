@@ -242,8 +242,8 @@ class _Exported:
             return None if package.build.unresolved or any("$" in item for item in given) else given
         offer = self._view.offers.package(name)
         if offer is None:
-            target = self._view.target
-            plain = target.version(name) is None or target.known_build_types(name) <= {"cmake"}
+            # What is no package of ROS, or one that only CMake builds, hands on no package of ROS.
+            plain = not self._view.is_package(name) or self._view.target.known_build_types(name) - {""} == {"cmake"}
             return () if plain or _INTERFACES.search(name) else None
         return (*offer.build.dependencies, *offer.build.system)
 
