@@ -106,7 +106,7 @@ def _file() -> _File:
     transitive: list[_TransitiveGroup] = []
     # What was read from packages comes last, since nobody reviewed it; before it the general table, since the others
     # were compared with headers and tags.
-    last = ("changes.json", "changes_debian.json")
+    last = ("changes.json", "changes_debian.json", "changes_library_tags.json")
     for path in sorted(DATA.glob("changes*.json"), key=lambda path: (path.name in last, path.name)):
         try:
             file = msgspec.json.decode(path.read_bytes(), type=_File)

@@ -122,6 +122,51 @@ def test_a_name_that_only_a_later_version_lost_is_told_of_that_one(archive, tmp_
     ]
 
 
+def tagged(folder, tags):
+    """A clone whose tags have these headers."""
+    import pygit2
+
+    repository = pygit2.init_repository(folder / "jbeder+yaml-cpp", bare=True)
+    signature = pygit2.Signature("Robots", "robots@example.org", 1, 0)
+    for tag, files in tags.items():
+        index = pygit2.Index()
+        for path, text in files.items():
+            index.add(pygit2.IndexEntry(path, repository.create_blob(text.encode()), pygit2.enums.FileMode.BLOB))
+        commit = repository.create_commit(None, signature, signature, tag, index.write_tree(repository), [])
+        repository.references.create(f"refs/tags/{tag}", commit)
+    return folder
+
+
+def test_versions_before_the_first_packaged_one_are_read_at_their_tags(archive, tmp_path, monkeypatch):
+    monkeypatch.setattr(debian, "platform_versions", lambda name: frozenset({"1.0.1", "1.3.1"}))
+    early = {
+        "include/yaml-cpp/all.h": OLD + "namespace YAML { class Ancient {}; class Holder {}; }",
+        "include/yaml-cpp/lost.h": "",
+        "test/include/yaml-cpp/check.h": "namespace YAML { class Checker {}; }",  # which nobody installs
+    }
+    clones = tagged(
+        tmp_path / "clones",
+        {
+            "release-0.9.0": {"include/yaml-cpp/all.h": "namespace YAML { class Oldest {}; }"},  # no platform has it
+            "yaml-cpp-1.0.1": early,
+            "yaml-cpp-1.2.0-rc1": {},
+            "yaml-cpp-1.2.0": {"include/yaml-cpp/all.h": OLD},
+            "1.3.1": {"include/yaml-cpp/all.h": OLD},
+            "v2.0.0": {"include/yaml-cpp/all.h": NEW},  # the packages tell of it
+        },
+    )
+    debian.main([str(archive), "--clones", str(clones), "--output", str(tmp_path), "--jobs", "1"])
+    rows = json.loads((tmp_path / "changes_library_tags.json").read_text())["changes"]
+    # `Holder` is there in a package later on.
+    assert [(row["last_in"], row["removed_in"], row["names"]) for row in rows] == [
+        ("1.0.1", "1.2.0", {"yaml-cpp/lost.h": ""}),
+        ("1.0.1", "1.2.0", {"YAML::Ancient": ""}),
+    ]
+    assert json.loads((tmp_path / "uses_library_tags.json").read_text()) == {"uses": []}
+    packaged = json.loads((tmp_path / "changes_debian.json").read_text())["changes"]
+    assert packaged and all("Debian" in row["source"] for row in packaged)
+
+
 def test_a_folder_without_packages_is_refused(tmp_path, capsys):
     with pytest.raises(SystemExit):
         debian.main([str(tmp_path)])

@@ -1,10 +1,12 @@
 """Builds data/changes_debian.json and uses_debian.json: what versions of platform libraries no longer have, or take.
 
-    python -m rosimpact.impact.targets.build.debian FOLDER --output DATA
+    python -m rosimpact.impact.targets.build.debian FOLDER --clones CLONES --output DATA
 
 FOLDER holds a folder for each Debian release, with the development packages of the libraries as `apt-get download
 PACKAGE=VERSION` gives them. Their headers are read as `surface diff` reads those of an installed package, and those of
-consecutive versions compared. Only names and versions are kept.
+consecutive versions compared. CLONES holds git clones (`OWNER+NAME`); versions before the first packaged one are read
+at their release tags there, into changes_library_tags.json and uses_library_tags.json. Only names and versions are
+kept.
 
 A header is gone when no package of that release, or of a later one, has it. A name is gone when its last part is not
 even a word in any header of its library in that version or a later one: then no macro, alias, specialisation or
@@ -21,6 +23,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from itertools import pairwise
+from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
@@ -32,7 +35,9 @@ from ..snapshot import DATA
 from ..surface_store import shipped
 from ..unpacked_deb import members
 from ..uses import all_uses
-from ..version import parts
+from ..version import at_least, parts
+from . import library_tags
+from .includes import platform_versions
 
 
 class Library(NamedTuple):
@@ -105,6 +110,13 @@ LIBRARIES = (
     _library("poco", "libpoco-dev", rf"(?P<path>Poco/.+{_ENDING})", r"Poco::.+"),
     _library("ogre", r"libogre-1\.\d+-dev", rf"OGRE/(?P<path>.+{_ENDING})", r"Ogre::.+"),
 )
+_LIBAV = _library(
+    "libav",
+    "",
+    "",
+    r"av(?:codec|format|device|io|filter)?_\w+|AV_[A-Z]\w+|AVCodec\w+|AVFormat\w+|AVPicture\w*|AVFrame\w+|sws_\w+",
+)
+"""What no Debian release of today packages."""
 # What nobody outside of a library is meant to include or to call; and libraries of Boost that are made for others.
 _PARTS = (
     r"_?details?|internals?|_?impl|_?private|priv|aux_?|preprocessed|hal|cuda|gpu|3rdparty|third_party|src|arch|compiler"
@@ -128,8 +140,8 @@ _SHORTEST = 6
 
 
 class Version(NamedTuple):
-    """A library in one Debian release. number: as upstream has it. headers: by the path that is included. words: in any
-    of them, comments left out."""
+    """A library in one Debian release, or at its tags (release empty). number: as upstream has it. headers: by the path
+    that is included. words: in any of them, comments left out."""
 
     release: str
     number: str
@@ -185,31 +197,59 @@ class Lost(NamedTuple):
     calls: Mapping[str, tuple[int, ...]]
 
 
-def lost(library: Library, versions: Sequence[Version]) -> Iterator[Lost]:
-    """What went from each version to the next one for good. versions: oldest first."""
-    for place, (before, now) in enumerate(pairwise(versions)):
+class _Rest(NamedTuple):
+    """What some version from one on has. headers: paths. words: in any header. declared: last parts of names. others:
+    names of what is no function. simple: last parts of those of macros and `using`."""
+
+    headers: frozenset[str] = frozenset()
+    words: frozenset[str] = frozenset()
+    declared: frozenset[str] = frozenset()
+    others: frozenset[str] = frozenset()
+    simple: frozenset[str] = frozenset()
+
+
+def _rests(versions: Sequence[Version]) -> list[_Rest]:
+    found: list[_Rest] = []
+    last = _Rest()
+    for version in reversed(versions):
+        there = [(e.name, e.name.rpartition("::")[2], e.kind) for e in offered(version.headers.values())]
+        last = _Rest(
+            last.headers.union(version.headers),
+            last.words | version.words,
+            last.declared.union(short for _, short, _ in there),
+            last.others.union(name for name, _, kind in there if kind != "function"),
+            last.simple.union(short for _, short, kind in there if kind in ("macro", "using")),
+        )
+        found.append(last)
+    return found[::-1]
+
+
+def lost(library: Library, versions: Sequence[Version], steps: int | None = None) -> Iterator[Lost]:
+    """What went from each version to the next one for good. versions: oldest first. steps: to how many of them that is
+    told, by default to all; the others say what came back."""
+    rests = _rests(versions)
+    functions = [_functions(library, version) for version in versions]
+    for place, (before, now) in enumerate(pairwise(versions[: None if steps is None else steps + 1])):
         if parts(before.number) == parts(now.number):
             continue
-        rest = versions[place + 1 :]
-        words = frozenset().union(*(version.words for version in rest))
+        rest = rests[place + 1]
         there = {e.name for e in offered(now.headers.values())}
-        declared = {e.name.rpartition("::")[2] for version in rest for e in offered(version.headers.values())}
         headers = {
             path: _new_place(before, now, path)
             for path in before.headers
-            if not _INNER.search(path) and not any(path in version.headers for version in rest)
+            if not _INNER.search(path) and path not in rest.headers
         }
         names = {
             one.name: _successor(one, there)
             for one in offered(before.headers.values())
             if _told(library, one)
             and (last := one.name.rpartition("::")[2]) in before.words
-            and last not in words
-            and last not in declared  # a macro may put names together
+            and last not in rest.words
+            and last not in rest.declared  # a macro may put names together
         }
         # Members of what went as a whole are no more than it.
         names = {name: new for name, new in names.items() if name.rpartition("::")[0] not in names}
-        yield Lost(before, now, headers, names, _calls(library, before, rest))
+        yield Lost(before, now, headers, names, _calls(functions[place], functions[place + 1 :], rest))
 
 
 def _told(library: Library, one: Entity) -> bool:
@@ -266,16 +306,14 @@ def _takes(one: Sequence[Entity], count: int) -> bool:
     return any(low <= count <= high for low, high in map(_accepted, one))
 
 
-def _calls(library: Library, before: Version, rest: Sequence[Version]) -> dict[str, tuple[int, ...]]:
+def _calls(
+    old: Mapping[str, Sequence[Entity]], later: Sequence[Mapping[str, Sequence[Entity]]], rest: _Rest
+) -> dict[str, tuple[int, ...]]:
     """Functions of namespaces that are there still, to the numbers of arguments that no version from then on takes."""
-    old, later = _functions(library, before), [_functions(library, version) for version in rest]
-    # What a macro, an alias or anything but a function may be called by a later version is not told.
-    others = {e.name for version in rest for e in offered(version.headers.values()) if e.kind != "function"}
-    simple = {e.name.rpartition("::")[2] for version in rest for e in offered(version.headers.values())
-              if e.kind in ("macro", "using")}  # fmt: skip
     found: dict[str, tuple[int, ...]] = {}
     for name, forms in old.items():
-        if name in others or name.rpartition("::")[2] in simple or not all(name in known for known in later):
+        # What a macro, an alias or anything but a function may be called by a later version is not told.
+        if name in rest.others or name.rpartition("::")[2] in rest.simple or not all(name in known for known in later):
             continue
         counts = {n for one in forms if (ends := _accepted(one))[1] < 12 for n in range(ends[0], int(ends[1]) + 1)}
         gone = tuple(sorted(n for n in counts if n and not any(_takes(known[name], n) for known in later)))
@@ -305,15 +343,20 @@ def _tails(name: str) -> Iterator[str]:
 
 
 def groups(
-    library: Library, versions: Sequence[Version], known: Callable[[str, str], bool]
+    library: Library, versions: Sequence[Version], known: Callable[[str, str], bool], steps: int | None = None
 ) -> Iterator[tuple[str, dict]]:
     """Groups of rows as in data/changes.json and data/uses_libraries.json, with which of both it is. known: whether a
-    kind and name are told elsewhere already."""
-    for step in lost(library, versions):
+    kind and name are told elsewhere already. steps: as lost() has it."""
+    for step in lost(library, versions, steps):
         old, new = step.before, step.now
+        where = (
+            f"Debian's packages: {old.number} in {old.release} and {new.number} in {new.release} compared"
+            if old.release
+            else f"release tags of {old.number} and {new.number} compared"
+        )
         shared = {
             "package": library.name,
-            "source": f"Debian's packages: {old.number} in {old.release} and {new.number} in {new.release} compared",
+            "source": where,
             "library": True,
             "last_in": old.number,
             "removed_in": new.number,
@@ -363,10 +406,32 @@ def _of_ros_packages() -> frozenset[str]:
     return frozenset(found)
 
 
-def _one(folder: Path, library: Library) -> list[Version]:
+def _packaged(folder: Path, library: Library) -> list[Version]:
     read = (read_library(library, release) for release in sorted(folder.iterdir()) if release.is_dir())
     known = [version for version in read if version is not None]
     return sorted(known, key=lambda version: (parts(version.number), _ORDER.get(version.release, len(_ORDER))))
+
+
+def _tagged(clones: Path, library: Library, packaged: Sequence[Version]) -> tuple[list[Version], int]:
+    """The versions at release tags, then the packaged ones; and how many steps lead to the first packaged one, or where
+    there is none, to the last one that a platform has."""
+    platforms = platform_versions(library.name)
+    tagged = [Version("", *one) for one in library_tags.read(clones, library.name, platforms, _INNER)]
+    if not tagged:
+        return [], 0
+    last = packaged[0].number if packaged else max(platforms, key=parts)
+    steps = sum(1 for version in tagged[1:] if at_least(last, version.number))
+    return [*tagged, *packaged], steps
+
+
+_Groups = list[tuple[str, dict]]
+
+
+def _one(folder: Path, clones: Path | None, known: Callable[[str, str], bool], library: Library) -> list[_Groups]:
+    """Groups by Debian's packages, and those by tags."""
+    packaged = _packaged(folder, library)
+    versions, steps = _tagged(clones, library, packaged) if clones is not None else ([], 0)
+    return [list(groups(library, packaged, known)), list(groups(library, versions, known, steps)) if steps else []]
 
 
 def write(file: Path, key: str, rows: Iterable[dict]) -> None:
@@ -380,19 +445,31 @@ def main(arguments: list[str] | None = None) -> None:
     """Writes both tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("folder", type=Path)
+    parser.add_argument("--clones", type=Path, help="read older versions at the tags of the git clones in this folder")
     parser.add_argument("--output", type=Path, default=DATA)
     parser.add_argument("--jobs", type=int, default=2)
     asked = parser.parse_args(arguments)
     if not any(asked.folder.glob("*/*.deb")):
         parser.error(f"{asked.folder} has no folder with Debian packages; `apt-get download PACKAGE=VERSION` into one")
-    tables: dict[str, list[dict]] = {"changes": [], "uses": []}
     known = told_elsewhere()
-    with ProcessPoolExecutor(asked.jobs) as pool:
-        for library, versions in zip(LIBRARIES, pool.map(partial(_one, asked.folder), LIBRARIES), strict=True):
-            for key, group in groups(library, versions, known):
-                tables[key].append(group)
-    for key, rows in tables.items():
-        write(asked.output / f"{key}_debian.json", key, rows)
+    libraries = LIBRARIES if asked.clones is None else (*LIBRARIES, _LIBAV)
+    with ProcessPoolExecutor(asked.jobs, mp_context=get_context("fork"), initializer=_keep, initargs=(known,)) as pool:
+        found = list(pool.map(partial(_work, asked.folder, asked.clones), libraries))
+    for place, name in enumerate(("debian", "library_tags")[: 1 if asked.clones is None else 2]):
+        for key in ("changes", "uses"):
+            rows = [group for one in found for kind, group in one[place] if kind == key]
+            write(asked.output / f"{key}_{name}.json", key, rows)
+
+
+_KNOWN: list[Callable[[str, str], bool]] = []
+
+
+def _keep(known: Callable[[str, str], bool]) -> None:
+    _KNOWN[:] = [known]
+
+
+def _work(folder: Path, clones: Path | None, library: Library) -> list[_Groups]:
+    return _one(folder, clones, _KNOWN[0], library)
 
 
 if __name__ == "__main__":

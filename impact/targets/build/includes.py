@@ -59,11 +59,11 @@ _LIBRARIES = {
 """Clones of platform libraries, by their names in platform_versions.yaml; all others but Boost's hold ROS packages."""
 _BOOST = "boostorg+"
 """How clones of Boost's libraries begin."""
-# Headers of libav and FFmpeg that programs include, or that those include.
-_AV = re.compile(
+AV_HEADERS = re.compile(
     r"lib(?:avutil/\w+|avcodec/(?:avcodec|codec\w*|packet|defs|bsf|version\w*|old_codec_ids)"
     r"|avformat/(?:avformat|avio|version\w*)|avdevice/(?:avdevice|version\w*)|swscale/(?:swscale|version\w*))\.h"
 )
+"""Headers of libav and FFmpeg that programs include, or that those include."""
 # Headers that a library's build makes, and that include nothing.
 _MADE = {"libav": ("libavutil/avconfig.h",)}
 # Interfaces of rclcpp's nodes, for which its build makes headers from templates.
@@ -210,7 +210,7 @@ class Clone:
             found, rest, head = "x", path.removeprefix("src/"), ""
         if self.library == "orocos-kdl" and path.startswith("orocos_kdl/src/"):
             found, rest, head = "x", "kdl/" + path.removeprefix("orocos_kdl/src/"), ""
-        if self.library == "libav" and _AV.fullmatch(path):
+        if self.library == "libav" and AV_HEADERS.fullmatch(path):
             found, rest, head = "x", path, ""
         if package.startswith("rosidl_generator_cpp") or package == "gencpp":
             return
@@ -431,7 +431,7 @@ def _main() -> None:
             lambda h: (
                 (h.count("/") == 1 and not h.startswith("lib"))
                 or h in used
-                or _AV.fullmatch(h) is not None
+                or AV_HEADERS.fullmatch(h) is not None
                 or (_MEANT.match(h) is not None and not _INNER.search(h))
             ),
         )
