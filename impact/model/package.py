@@ -851,9 +851,13 @@ class _Join:
     def declares(self, path: str, name: str) -> bool:
         """True when the file, or one of the package that it includes, announces or defines a type of this name."""
         space, _, word = name.rpartition("::")
-        if space.partition("::")[0] in ("", "std"):
+        head = space.partition("::")[0]
+        if head in ("", "std"):
             return False
-        return any(_declares_type(self.read(at), word.encode()) for at in self.reached(path))
+        files = (self.read(at) for at in self.reached(path))
+        if type_in(name) is not None:  # tf2 has a Quaternion too
+            files = (data for data in files if re.search(rb"\bnamespace\s+" + head.encode() + rb"\b", data))
+        return any(_declares_type(data, word.encode()) for data in files)
 
     # -- what Python files need ------------------------------------------------------------------------------------
 

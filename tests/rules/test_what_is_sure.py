@@ -117,6 +117,7 @@ def test_a_path_through_the_folder_of_a_library_is_told_loudly_once(tmp_path):
             "namespace nav_msgs {\nROS_DECLARE_MESSAGE(Path)\n}\nnav_msgs::PathConstPtr path;",
             set(),
         ),
+        ("geometry_msgs/Pose.h", "namespace sled { class Path; }\nnav_msgs::PathConstPtr path;", {"error"}),
         ("sensor_msgs/PointCloud2.h", "sensor_msgs::PointCloud2Modifier fields(cloud);", set()),  # is no message
     ],
 )
