@@ -606,16 +606,18 @@ class _Join:
         started: dict[str, list[Named]] = {}
 
         def named(name: str, packages: Collection[str]) -> Named | None:
+            other = None
             for path, kind in launches:
                 data = self.read(path)
-                if name.encode() not in data or not any(package.encode() in data for package in packages):
+                if name.encode() not in data:
                     continue
                 if path not in started:
                     started[path] = list(named_in(data, kind))
-                found = next((one for one in started[path] if one.name == name and one.package in packages), None)
-                if found is not None:
-                    return found
-            return None
+                for one in started[path]:
+                    if one.name == name and one.package in packages:
+                        return one
+                    other = one if one.name == name else other
+            return other
 
         for path in parameters:
             for found in in_parameters(self.read(path), changing, named):

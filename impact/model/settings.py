@@ -54,8 +54,8 @@ _WORD = re.compile(rb"[A-Za-z_]\w*")
 def in_parameters(
     data: bytes, changing: Changing, named: Callable[[str, Collection[str]], Named | None]
 ) -> Iterator[Setting]:
-    """What a file of ROS 2 parameters sets. named: the node of one of some packages that goes by a name, None where no
-    launch file tells."""
+    """What a file of ROS 2 parameters sets. named: the node that goes by a name, one of some packages first, None where
+    no launch file tells."""
     if b"ros__parameters" not in data:
         return
     words = {word.decode() for word in _WORD.findall(data)}
@@ -96,6 +96,8 @@ def _of_node(
                 yield Setting(".".join(name), _package(class_), class_, node, entry.line, others)
         elif node and "*" not in node:
             known = named(node, losers)
+            if known is not None and known.package not in losers:
+                continue  # another node of that name
             package, program = (known.package, known.program) if known is not None else ("", node)
             yield Setting(".".join(name), package, "", program, entry.line, others)
 

@@ -76,6 +76,11 @@ def test_a_launch_file_tells_whose_name_a_node_has():
     assert list(in_parameters(text, CHANGING, named)) == [Setting("old_rate", "base_driver", "", "driver", 3)]
 
 
+def test_a_name_that_another_package_has_is_not_guessed():
+    text = b"base:\n  ros__parameters:\n    old_rate: 1.0\n"
+    assert list(in_parameters(text, CHANGING, lambda name, packages: Named("other", "driver", name))) == []
+
+
 PYTHON = b"""
 from launch import LaunchDescription
 from launch_ros.actions import ComposableNodeContainer, Node

@@ -25,7 +25,8 @@ def told(tmp_path):
             place = tmp_path / name
             (place / "config").mkdir(parents=True)
             (place / "package.xml").write_text(MANIFEST.format(name=name))
-            (place / "CMakeLists.txt").write_text(CMAKE.format(name=name))
+            if not (place / "CMakeLists.txt").exists():
+                (place / "CMakeLists.txt").write_text(CMAKE.format(name=name))
         file = Path(tmp_path, "rover", folder, "drive.yaml")
         file.parent.mkdir(exist_ok=True)
         file.write_text(text)
@@ -77,6 +78,28 @@ def test_a_name_that_is_not_there_yet(told):
 )
 def test_nothing_is_told(told, text, own, folder):
     assert told(text, "jazzy", own=own, folder=folder) == []
+
+
+PROGRAM = CMAKE.replace("install(", "add_executable(controller_server main.cpp)\ninstall(")
+LAUNCH = '<launch><node pkg="{0}" exec="{1}" name="{2}"/></launch>'
+
+
+@pytest.mark.parametrize(
+    ("more", "expected"),
+    [
+        ({}, 1),
+        ({"CMakeLists.txt": PROGRAM.format(name="rover")}, 0),
+        ({"launch/a.launch.xml": LAUNCH.format("nav2_controller", "controller_server", "controller_server")}, 1),
+        ({"launch/a.launch.xml": LAUNCH.format("other_controller", "controller_server", "any")}, 0),
+        ({"launch/a.launch.xml": LAUNCH.format("other_controller", "any", "controller_server")}, 0),
+    ],
+)
+def test_a_node_of_that_name_may_be_another_packages(told, tmp_path, more, expected):
+    for path, text in more.items():
+        file = tmp_path / "rover" / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    assert len(told(OLD, "jazzy")) == expected
 
 
 GRACEFUL = """controller_server:

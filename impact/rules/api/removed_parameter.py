@@ -109,13 +109,32 @@ def _owners(view: View, use: SettingUse) -> Iterator[Offer]:
     like the node."""
     changing = view.offers.surfaces.changing_parameters.get(last_part(use.name), frozenset[str]())
     for name in [use.package] if use.package else sorted(changing):
-        offer = view.offers.package(name) if name not in view.workspace.packages else None
+        if name in view.workspace.packages or (not use.package and _started(view).get(use.node, {name}) != {name}):
+            continue  # by that name another package's program is meant
+        offer = view.offers.package(name)
         if offer is None:
             continue
         programs = (program.name for program in offer.build.programs)
         plugins = (known for plugin in offer.build.plugins for known in (plugin.name, plugin.type))
         if use.plugin in plugins if use.plugin else use.node in programs:
             yield offer
+
+
+def _started(view: View) -> dict[str, set[str]]:
+    """The packages whose program of a name the workspace builds, or starts from a launch file."""
+    known = view.worked_out.get(("programs", ""))
+    if known is None:
+        known = view.worked_out["programs", ""] = {}
+        for package in view.workspace:
+            names = [target.name for target in package.build.targets if target.kind == "executable"]
+            names += [name for _, setup in package.digest.setup for name, _, _ in setup.entry_points]
+            names += [path.rpartition("/")[2].removesuffix(".py") for path in package.digest.scripts]
+            for name in names:
+                known.setdefault(name, set()).add(package.name)
+            for use in package.digest.references:
+                if use.reference.kind == "executable" and use.reference.name:
+                    known.setdefault(use.reference.name, set()).add(use.reference.package)
+    return known
 
 
 def _offered(view: View, offer: Offer, use: SettingUse) -> Offered | None:
