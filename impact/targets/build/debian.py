@@ -5,8 +5,7 @@
 FOLDER holds a folder for each Debian release, with the development packages of the libraries as `apt-get download
 PACKAGE=VERSION` gives them. Their headers are read as `surface diff` reads those of an installed package, and those of
 consecutive versions compared. CLONES holds git clones (`OWNER+NAME`); versions before the first packaged one are read
-at their release tags there, into changes_library_tags.json and uses_library_tags.json. Only names and versions are
-kept.
+at their release tags there, into changes_library_tags.json. Only names and versions are kept.
 
 A header is gone when no package of that release, or of a later one, has it. A name is gone when its last part is not
 even a word in any header of its library in that version or a later one: then no macro, alias, specialisation or
@@ -123,7 +122,7 @@ _PARTS = (
     r"|mpl|fusion|spirit2?|phoenix|proto|typeof|hana|yap|metaparse|vmd|preprocessor|msm|wave|compute|qvm|type_traits"
     r"|contract|intrusive|move|mysql|redis|cobalt|beast|outcome|leaf|mp11|hof|describe|safe_numerics|gil|histogram|icl"
     r"|log/support|(?:test|asio)/traits|regex/v[45]|dll|stl_interfaces|unit_test|charconv|mqtt5|decimal|callable_traits"
-    r"|machine|interfaces?\d+|v\d+|boost(?:/|::)(?:geometry|numeric|math|parameter|config|json|url|stacktrace|hash2)"
+    r"|machine|winapi|interfaces?\d+|v\d+|boost(?:/|::)(?:geometry|numeric|math|parameter|config|json|url|stacktrace|hash2)"
 )
 _INNER = re.compile(
     rf"(?:^|[/_])(?:{_PARTS}|win32|wince|win32u|windows|macos|sunos|vx|cygwin|posix|aix)(?:[/_.]|$)", re.IGNORECASE
@@ -431,7 +430,9 @@ def _one(folder: Path, clones: Path | None, known: Callable[[str, str], bool], l
     """Groups by Debian's packages, and those by tags."""
     packaged = _packaged(folder, library)
     versions, steps = _tagged(clones, library, packaged) if clones is not None else ([], 0)
-    return [list(groups(library, packaged, known)), list(groups(library, versions, known, steps)) if steps else []]
+    # Macros that only old versions have may declare more than is read, so that no numbers of arguments are told.
+    early = [one for one in groups(library, versions, known, steps) if one[0] == "changes"] if steps else []
+    return [list(groups(library, packaged, known)), early]
 
 
 def write(file: Path, key: str, rows: Iterable[dict]) -> None:
@@ -455,8 +456,8 @@ def main(arguments: list[str] | None = None) -> None:
     libraries = LIBRARIES if asked.clones is None else (*LIBRARIES, _LIBAV)
     with ProcessPoolExecutor(asked.jobs, mp_context=get_context("fork"), initializer=_keep, initargs=(known,)) as pool:
         found = list(pool.map(partial(_work, asked.folder, asked.clones), libraries))
-    for place, name in enumerate(("debian", "library_tags")[: 1 if asked.clones is None else 2]):
-        for key in ("changes", "uses"):
+    for place, key, name in ((0, "changes", "debian"), (0, "uses", "debian"), (1, "changes", "library_tags")):
+        if place == 0 or asked.clones is not None:
             rows = [group for one in found for kind, group in one[place] if kind == key]
             write(asked.output / f"{key}_{name}.json", key, rows)
 
