@@ -851,7 +851,8 @@ class _Join:
         return list(seen)
 
     def declares(self, path: str, name: str) -> bool:
-        """True when the file, or one of the package that it includes, announces or defines a type of this name."""
+        """True when the file, or one of the package that it includes, announces or defines a type or function of this
+        name."""
         space, _, word = name.rpartition("::")
         head = space.partition("::")[0]
         if head in ("", "std"):
@@ -859,7 +860,8 @@ class _Join:
         files = (self.read(at) for at in self.reached(path))
         if type_in(name) is not None:  # tf2 has a Quaternion too
             files = (data for data in files if re.search(rb"\bnamespace\s+" + head.encode() + rb"\b", data))
-        return any(_declares_type(data, word.encode()) for data in files)
+        known = _adds_conversion if space == "tf2" and word[0].islower() else _declares_type
+        return any(known(data, word.encode()) for data in files)
 
     # -- what Python files need ------------------------------------------------------------------------------------
 
@@ -970,6 +972,15 @@ def _declares_type(data: bytes, word: bytes) -> bool:
             return True
         at = data.find(word, end)
     return False
+
+
+# tf2's namespace up to its end or that of the file, and a special form of one of its templates from outside.
+_OF_TF2 = re.compile(rb"\bnamespace\s+tf2\s*\{.*|\btemplate\s*<\s*>[^;{}]*", re.DOTALL)
+
+
+def _adds_conversion(data: bytes, word: bytes) -> bool:
+    """True when the bytes of a file may add a form of a function of tf2's."""
+    return any(word in found.group() for found in _OF_TF2.finditer(data))
 
 
 # Stands for a test of which only is known that one of several branches of it has to be taken.

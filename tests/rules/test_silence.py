@@ -650,6 +650,19 @@ SILENT = {
         ),
         ("sled.cpp", "#include <tf2_ros/buffer.h>\n", ""),
     ),
+    "a conversion of the package's own": Silent(
+        "missing-include",
+        ("jazzy",),
+        ament(
+            "find_package(tf2 REQUIRED)\nadd_library(sled sled.cpp)\nament_target_dependencies(sled tf2)\n"
+            "install(TARGETS sled DESTINATION lib)",
+            "depend:tf2",
+            sled_cpp="#include <tf2/utils.h>\nstruct Pose {};\n"
+            "namespace tf2 {\nPose toMsg(const Transform &) { return {}; }\n}\n"
+            "Pose here(const tf2::Transform & at) { return tf2::toMsg(at); }\n",
+        ),
+        ("sled.cpp", "namespace tf2 {\nPose toMsg(const Transform &) { return {}; }\n}\n", ""),
+    ),
     "a type that the package announces itself": Silent(
         "missing-include",
         ("jazzy",),

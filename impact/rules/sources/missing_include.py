@@ -1,10 +1,10 @@
 """missing-include: a name is used and its header reaches the file only by luck.
 
 What it does
-    Reports names of the standard library, of Boost and of ROS packages in files that do not include the header that
-    offers them, when the headers that they do include stopped bringing it along; names of Boost that none of them
-    brings, where some of them are Boost's; and types of messages, services and actions whose header none of them
-    brings.
+    Reports names of the standard library, of Boost and of ROS packages (types, and tf2's conversions) in files that do
+    not include the header that offers them, when the headers that they do include stopped bringing it along; names of
+    Boost that none of them brings, where some of them are Boost's; and types of messages, services and actions whose
+    header none of them brings.
 
 Why it breaks
     Some other header brought it. The next compiler or library version stops including it, and the build fails on the
@@ -37,7 +37,7 @@ from ...model.build import for_tests
 from ...model.package import NeededHeader
 from ...model.view import View
 from ...targets.includes import Machine, announced, offered
-from ...targets.message_headers import type_in
+from ...targets.message_headers import package_of, type_in
 from ...targets.standard import DEFINED_IN
 from ..cure import Insert
 from ..rule import Hit, rule
@@ -45,6 +45,8 @@ from ..rule import Hit, rule
 # Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache
 # Portable Runtime, which needs no other library, or of Boost, whose own headers are all known as far as they are there.
 _GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|^apr_?\w*\.h$|^boost/|@")
+# Functions that packages add their own forms of.
+_EXTENDED = frozenset({"tf2::toMsg", "tf2::fromMsg", "tf2::convert", "tf2::doTransform"})
 # What compilers have for one processor.
 _OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+|builtins)\.h$")
 
@@ -129,6 +131,8 @@ def _lost(
     for reach, own in reaches:
         if bits & machine.mask(reach) or not wanted.isdisjoint(own):
             continue
+        if need.name in _EXTENDED and any(package_of(header, machine.ros) is None for header in own):
+            continue  # another package of the workspace may have added one
         outside = _outside(view, need.name, reach, machine)
         # Of what the workspace generates itself, all that it brings along reaches the file too.
         if outside is None or (made is not None and not machine.tells_all(reach - own)):
