@@ -58,14 +58,14 @@ def test_a_component_that_the_target_has_not_got_may_export_anything(tmp_path):
 
 
 @pytest.mark.parametrize("target", ["indigo", "kinetic", "noetic"])
-def test_a_library_of_the_package_needs_it_where_a_program_is_linked_to_it(target, tmp_path):
+def test_what_a_library_of_the_package_misses_may_come_with_another(target, tmp_path):
     cmake = (
         "find_package(catkin REQUIRED COMPONENTS roscpp)\nadd_library(share share.cpp)\n"
         "add_executable(plough plough.cpp)\ntarget_link_libraries(plough share ${catkin_LIBRARIES})\n"
     )
-    sources = {"share_DOT_cpp": LISTENS, "plough_DOT_cpp": "int main() {}\n"}
-    assert told(tmp_path, cmake, target, **sources) == [("error", "tf")]
-    assert told(tmp_path, cmake.replace("plough share", "plough"), target, **sources) == []
+    idle = "int main() {}\n"
+    assert told(tmp_path, cmake, target, share_DOT_cpp=LISTENS, plough_DOT_cpp=idle) == []
+    assert told(tmp_path, cmake, target, share_DOT_cpp=idle, plough_DOT_cpp=LISTENS) == [("error", "tf")]
 
 
 @pytest.mark.parametrize(
@@ -83,6 +83,12 @@ def test_what_may_be_the_library_is_taken_for_it(link, tmp_path):
         f"target_link_libraries(plough ${{catkin_LIBRARIES}} {link})\n"
     )
     assert told(tmp_path, cmake, plough_DOT_cpp=LISTENS) == []
+
+
+def test_a_header_of_the_package_may_include_it_for_another_source(tmp_path):
+    cmake = f"find_package(catkin REQUIRED COMPONENTS roscpp)\n{LINKED}"
+    sources = {"share_DOT_h": LISTENS.splitlines()[0] + "\n", "plough_DOT_cpp": '#include "share.h"\nint main() {}\n'}
+    assert told(tmp_path, cmake, **sources) == []
 
 
 def test_headers_that_need_no_library_say_nothing(tmp_path):

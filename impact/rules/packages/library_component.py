@@ -140,7 +140,8 @@ def _included(view: View, package, asked):
             known = given[name]
             if known is None or component in known.linked:
                 continue
-            lacking = include.role == "build" and lacks_boost(view, package, targets[name], component)
+            own = include.role == "build" and include.at.path in targets[name].sources
+            lacking = own and lacks_boost(view, package, targets[name], component)
             if component in known.components and not lacking:
                 continue
             told.add(component)

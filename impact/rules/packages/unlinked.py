@@ -15,7 +15,8 @@ from ..rule import Hit
 
 
 def unlinked(view: View, package) -> Iterator[Hit]:
-    """Programs, or libraries of the package that programs of it link, which the linker stops at."""
+    """Programs whose own sources the linker misses a library for. What libraries of the package miss may come with any
+    library that one of theirs needs in turn, which the linker finds by itself."""
     build = package.build
     if package.build_type != "catkin" or view.target.ros != 1 or build.unresolved:
         return
@@ -36,33 +37,31 @@ def unlinked(view: View, package) -> Iterator[Hit]:
         linked = _linked(package, targets, target)
         if linked is None:
             continue
-        items, parts = linked
-        brought = exported.closure(_packages(view, package, items))
+        brought = exported.closure(_packages(view, package, linked))
         if brought is None:
             continue
-        words = [_plain(item) for item in items]
-        for part in parts:
-            for include in includes.get(part, ()):
-                if not include.path.startswith(_COMPILED):
-                    continue
-                providers = view.header(include.path)
-                if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
-                    continue
-                name = providers[0].name
-                if name in brought or name in told or name == package.name:
-                    continue
-                libraries = exported.libraries(name)
-                if not libraries or any(_plain(lib) in word for lib in (*libraries, name) for word in words):
-                    continue
-                told.add(name)
-                yield Hit(
-                    include.at,
-                    name,
-                    f"`{target.name}` compiles `{include.path}` and is linked to nothing that brings `{name}`",
-                    f"add `{name}` to find_package(catkin REQUIRED COMPONENTS ...) and link ${{catkin_LIBRARIES}}",
-                    package.name,
-                    severity="error",
-                )
+        words = [_plain(item) for item in linked]
+        for include in includes.get(target.name, ()):
+            if not include.path.startswith(_COMPILED) or include.at.path not in target.sources:
+                continue  # a header may be included for what another source uses
+            providers = view.header(include.path)
+            if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
+                continue
+            name = providers[0].name
+            if name in brought or name in told or name == package.name:
+                continue
+            libraries = exported.libraries(name)
+            if not libraries or any(_plain(lib) in word for lib in (*libraries, name) for word in words):
+                continue
+            told.add(name)
+            yield Hit(
+                include.at,
+                name,
+                f"`{target.name}` compiles `{include.path}` and is linked to nothing that brings `{name}`",
+                f"add `{name}` to find_package(catkin REQUIRED COMPONENTS ...) and link ${{catkin_LIBRARIES}}",
+                package.name,
+                severity="error",
+            )
 
 
 # Headers of classes and functions that stand in a library, so that a program that uses them is linked to it. Headers
@@ -129,12 +128,12 @@ def unlinked_opencv(view: View, package) -> Iterator[Hit]:
         if target.kind != "executable" or for_tests(target.conditions) or not view.certain(target.conditions):
             continue
         linked = _linked(package, targets, target)
-        if linked is None or any("opencv" in item.lower() for item in linked[0]):
+        if linked is None or any("opencv" in item.lower() for item in linked):
             continue
-        if not all(_stem(item) in _OF_THEIR_OWN or view.is_package(_stem(item)) for item in linked[0] if "$" in item):
+        if not all(_stem(item) in _OF_THEIR_OWN or view.is_package(_stem(item)) for item in linked if "$" in item):
             continue
-        call = next((use for use in calls if any(part in use.targets for part in linked[1])), None)
-        brought = exported.closure(_packages(view, package, linked[0])) if call is not None else None
+        call = next((use for use in calls if use.at.path in target.sources), None)
+        brought = exported.closure(_packages(view, package, linked)) if call is not None else None
         if call is None or brought is None:
             continue
         bringing = {
@@ -163,11 +162,10 @@ def lacks_boost(view: View, package, target: BuildTarget, component: str) -> boo
     linked = _linked(package, {t.name: t for t in package.build.targets}, target)
     if linked is None or any("$" in f.name for f in package.build.found):
         return False
-    items = linked[0]
-    if not all(_stem(item) in _OF_THEIR_OWN or view.is_package(_stem(item)) for item in items if "$" in item):
+    if not all(_stem(item) in _OF_THEIR_OWN or view.is_package(_stem(item)) for item in linked if "$" in item):
         return False
     exported = _Exported(view)
-    brought = exported.closure(_packages(view, package, items))
+    brought = exported.closure(_packages(view, package, linked))
     return brought is not None and all(
         name in _WITH_BOOST_OF_THE_CORE or not exported.may_bring(name, "boost") for name in brought
     )
@@ -253,19 +251,18 @@ _INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
 _BARE = frozenset({"message_runtime", "message_generation"})
 
 
-def _linked(package, targets: dict[str, BuildTarget], program: BuildTarget) -> tuple[set[str], list[str]] | None:
-    """All that a program is linked to, and itself with the libraries of its package that it is linked to; None where
-    that cannot be told."""
+def _linked(package, targets: dict[str, BuildTarget], program: BuildTarget) -> set[str] | None:
+    """All that a program is linked to, itself and through libraries of its package; None where that cannot be told."""
     items = {link.item for link in package.build.links}
-    parts: list[str] = []
+    seen: set[str] = set()
     waiting = [program.name, *items]
     while waiting:
         target = targets.get(waiting.pop())
-        if target is None or target.name in parts:
+        if target is None or target.name in seen:
             continue
         if target.kind in ("unknown", "external", "fetched", "imported"):
             return None
-        parts.append(target.name)
+        seen.add(target.name)
         if target.alias_of:
             waiting.append(target.alias_of)
         for link in target.links:
@@ -274,7 +271,7 @@ def _linked(package, targets: dict[str, BuildTarget], program: BuildTarget) -> t
                 waiting.append(link.item)
     if any("$" in item and not _VARIABLE.fullmatch(item) for item in items):
         return None
-    return items, parts
+    return items
 
 
 _VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
