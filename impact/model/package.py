@@ -795,7 +795,8 @@ class _Join:
         return {include.path for at in self.reached(path) for _, include in self.resolved.get(at, ())}
 
     def reaches(self, paths: Iterable[str], roles) -> dict[str, tuple[tuple[str, ...], ...]]:
-        """For each file, what reaches it in the sources that compile it; the least of them tell enough."""
+        """For each file, what reaches it in the sources that compile it; the least of them tell enough. A header that
+        none does is taken alone, and one that is only a part of another as that one includes it."""
         found: dict[str, set[tuple[str, ...]]] = {p: set() if is_header(p) else {self.outward(p)} for p in paths}
         own = {path: frozenset(self.outward(path)) for path in found if is_header(path)}
         for source, (role, *_) in roles.items():
@@ -804,9 +805,9 @@ class _Join:
             for path, before in self.met(source, own):
                 if role == roles[path][0]:
                     found[path].add(tuple(sorted(own[path] | before)))
-        alone = {path: own[path] for path, sets in found.items() if not sets}
-        for header in self.outermost(roles) if alone else ():
-            for path, before in self.met(header, alone):
+        parts = {path: own[path] for path, sets in found.items() if not sets and _PART.search(path)}
+        for header in self.outermost(roles) if parts else ():
+            for path, before in self.met(header, parts):
                 found[path].add(tuple(sorted(own[path] | before)))
         return {
             path: tuple(sorted(sets, key=lambda s: (len(s), s))[:_SOURCES]) or (self.outward(path),)
@@ -957,6 +958,8 @@ def _spoken(facts: CppFile) -> frozenset[str]:
 
 _TYPE_AHEAD = re.compile(rb"\b(?:class|struct|enum|typedef|using)\b[^;{}=]*(?<!\w)\Z")
 _TYPE_BEHIND = re.compile(rb"\s*[;:{=<]")
+# Headers that nobody includes by themselves.
+_PART = re.compile(r"[_-](?:impl?|inl|details?)\.\w+\Z|/(?:impl|details?|internal)/|\.(?:hxx|ipp|tpp|txx)\Z")
 # The macro of ros/message_forward.h that announces a message.
 _MESSAGE_AHEAD = re.compile(rb"\bROS_DECLARE_MESSAGE\s*\(\s*\Z")
 

@@ -129,13 +129,23 @@ def test_a_message_type_whose_header_nothing_brings(included, source, expected, 
     assert told == expected
 
 
-@pytest.mark.parametrize(("first", "expected"), [("", {"warning"}), ("#include <nav_msgs/Path.h>\n", set())])
-def test_an_installed_header_that_only_another_header_includes(first, expected, tmp_path):
+@pytest.mark.parametrize(
+    ("name", "first", "expected"),
+    [
+        ("length_impl", "", {"warning"}),
+        ("length_impl", "#include <nav_msgs/Path.h>\n", set()),
+        ("length", "#include <nav_msgs/Path.h>\n", {"warning"}),  # which others may include by itself
+    ],
+)
+def test_an_installed_header_that_only_another_header_includes(name, first, expected, tmp_path):
     told = severities(
         tmp_path, "missing-include", "nav_msgs/Path.h", "noetic", depend="nav_msgs",
         cmake="install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})\n",
-        include__sled__sled_DOT_h=f"{first}#include <vector>\n#include <sled/impl.h>\n",
-        include__sled__impl_DOT_h="#pragma once\ninline bool any(nav_msgs::Path & path) { return path.size(); }\n",
+        include__sled__sled_DOT_h=f"{first}#include <vector>\n#include <sled/{name}.h>\n",
+        **{
+            f"include__sled__{name}_DOT_h": "#pragma once\n"
+            "inline bool any(nav_msgs::Path & path) { return path.poses.size(); }\n"
+        },
     )  # fmt: skip
     assert told == expected
 
