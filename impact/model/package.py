@@ -436,7 +436,12 @@ class _Join:
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter),
-            defined=tuple(sorted({n for f in self.cpp.values() for n in f.defined} & self.watched.words)),
+            defined=tuple(
+                sorted(
+                    {n for f in self.cpp.values() for n in f.defined}
+                    & (self.watched.words | self.watched.headers_of.keys())
+                )
+            ),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
             uses=tuple(uses),
             functions=tuple(sorted({name for facts in self.cpp.values() for name in facts.functions})),
@@ -560,14 +565,14 @@ class _Join:
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in headers) and not self.declares(path, text):
                         around = conditions + self.macros.asked(name.conditions, targets)
-                        whole = names_a_variable(self.read(path), text)
+                        whole = text.startswith("std::") or names_a_variable(self.read(path), text)
                         needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
             if facts.words:
                 words = facts.words.split(" ")
                 for word in sorted(watched.words.intersection(words) - defined):
                     if not initialises(self.read(path), word):  # else it is a variable of the file's own
                         names.append(self.bare(word, path, role, public, targets, conditions))
-                for word in sorted(watched.headers_of.keys() & set(words)):
+                for word in sorted((watched.headers_of.keys() & set(words)) - defined):
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in watched.headers_of[word]):
                         at = self.bare(word, path, role, public, targets, conditions).at
@@ -798,13 +803,16 @@ class _Join:
         """For each file, what reaches it in the sources that compile it; the least of them tell enough. A header that
         none does is taken alone, and one that is only a part of another as that one includes it."""
         found: dict[str, set[tuple[str, ...]]] = {p: set() if is_header(p) else {self.outward(p)} for p in paths}
+        besides: dict[str, set[tuple[str, ...]]] = {p: set() for p in found}
         own = {path: frozenset(self.outward(path)) for path in found if is_header(path)}
         for source, (role, *_) in roles.items():
             if is_header(source):
                 continue
             for path, before in self.met(source, own):
-                if role == roles[path][0]:
-                    found[path].add(tuple(sorted(own[path] | before)))
+                # An installed header may be compiled by nothing but programs that are called tests.
+                (found if role == roles[path][0] else besides)[path].add(tuple(sorted(own[path] | before)))
+        for path, sets in found.items():
+            sets.update(besides[path] if not sets else ())
         parts = {path: own[path] for path, sets in found.items() if not sets and _PART.search(path)}
         for header in self.outermost(roles) if parts else ():
             for path, before in self.met(header, parts):

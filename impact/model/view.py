@@ -21,7 +21,7 @@ from ..targets.distro import known_distros
 from ..targets.evidence import Evidence
 from ..targets.fields import History, before, default_fields, there
 from ..targets.includes import Machine, machine, machine_of
-from ..targets.library import include_roots, standard_year
+from ..targets.library import default_standard, include_roots, standard_year
 from ..targets.offers import Offers
 from ..targets.offers_python import PythonOffers
 from ..targets.stdlib import ever_stdlib, stdlib
@@ -140,6 +140,7 @@ class View:
         self._around: dict[str, frozenset[str]] = {}
         self._files: dict[str, tuple[str, ...]] = {}
         self._libraries_of: dict[str, list[str]] = {}
+        self._languages: dict[str, int] = {}
         self._held: dict[tuple[Condition, ...], bool | None] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._standard: dict[str, bool] = {}
@@ -231,6 +232,25 @@ class View:
         build = package.build
         held = [(number, at) for number, at, conditions in build.standards if self.active(conditions)]
         return max(held, key=lambda entry: standard_year(entry[0])) if held else None
+
+    def language(self, package: Package) -> int:
+        """The year of the highest C++ standard that a part of a package may be compiled under on this target, as far
+        as the workspace tells: what it sets itself or packages that it finds do, C++17, or the compiler's default."""
+        known = self._languages.get(package.name)
+        if known is None:
+            years = [2017, default_standard(self.target) or 2017]
+            for name in {package.name, *self.spread(found.name for found in package.build.found)}:
+                own = self.workspace.packages.get(name)
+                if own is not None:
+                    years.extend(standard_year(number) for number, *_ in own.build.standards)
+                    years.extend(standard_year(max(t.standard, t.public_standard)) for t in own.build.targets)
+            known = self._languages[package.name] = max(years)
+        return known
+
+    def language_asked(self, package: Package) -> int:
+        """The same, and what the released packages ask for that come along with those which it finds."""
+        found = self.spread(found.name for found in package.build.found) - self.workspace.packages.keys()
+        return max(self.language(package), *(standard_year(self.offers.standard(name)) for name in found), 0)
 
     def built(self, role: str) -> bool:
         """True for code that is built or run wherever the package is: colcon builds tests along, catkin on request."""

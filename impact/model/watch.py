@@ -14,7 +14,7 @@ from ..targets.changes import all_rows, transitive_includes
 from ..targets.fields import default_fields
 from ..targets.includes import offered
 from ..targets.library import OPENCV_FUNCTIONS
-from ..targets.standard import DEFINED_IN
+from ..targets.standard import offering
 from ..targets.surface_store import shipped
 from ..targets.uses import all_uses, stamp
 from .package import Watched
@@ -43,7 +43,7 @@ def watched() -> Watched:
             if row.new_since and len(row.new) > 7 and _WORD.match(row.new) and not row.ambiguous:
                 (qualified if "::" in row.new else words).add(row.new)
     headers.update({name: found for name, found in offered().items() if name not in headers})
-    headers.update({name: tuple(h for h in found if "bits/" not in h) for name, found in DEFINED_IN.items()})
+    headers.update({name: tuple(h for h in found if "bits/" not in h) for name, found in offering().items()})
     for include in transitive_includes():
         headers[include.name] = tuple(dict.fromkeys((*include.headers, *headers.get(include.name, ()))))
     modules: dict[str, list[tuple[str, Pattern]]] = {}

@@ -16,7 +16,7 @@ import msgspec
 
 from . import message_headers
 from .snapshot import DATA, SnapshotError
-from .standard import brought_by
+from .standard import DEFINED_IN, bit_of, brought_by, named_by, oldest
 from .version import at_least, parts
 
 if TYPE_CHECKING:
@@ -106,6 +106,8 @@ def default() -> Includes:
         raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
 
 
+_INCLUDE_FOLDERS = ("eigen3/Eigen/", "eigen3/unsupported/", "opencv4/opencv2/")
+"""Heads of include paths that name a library's own folder below the system's, as some write them."""
 _GENERATOR = {1: ("gencpp", "<gencpp>"), 2: ("rosidl_generator_cpp", "<rosidl_generator_cpp>")}
 _CONFIG = re.compile(r"\w+/\w+Config\.h\Z")
 _RECONFIGURE = (
@@ -120,12 +122,27 @@ _RECONFIGURE = (
 """What a header made from a .cfg file includes. Source: dynamic_reconfigure's ConfigType.h.template."""
 
 
+_NUMBERS = re.compile(r"\w+/version\.hp?p?")
+"""Headers of ROS 2 packages that define the macros of their version, and include nothing. Source: version.h.in of
+ament_cmake_gen_version_h."""
+_WRITTEN = {
+    "rclcpp/logging.hpp": (
+        *("sstream", "type_traits", "rclcpp/logger.hpp", "rcutils/logging_macros.h", "rclcpp/utilities.hpp"),
+    ),
+    "rcutils/logging_macros.h": ("rcutils/logging.h", "stdio.h", "stdlib.h"),
+}
+"""Headers that their package's build writes in some versions, and what they include. Source: their templates in the
+packages' resource folders, Humble to Rolling."""
+
+
 class Brought(NamedTuple):
     """What a header brings along, itself included, and of which headers among them nothing is known here: they are of
-    packages that no version is known of, are made while building, or are not there."""
+    packages that no version is known of, are made while building, or are not there. standard: those of the standard
+    libraries, as far as others than these include them."""
 
     headers: frozenset[str]
     outside: frozenset[str]
+    standard: frozenset[str] = frozenset()
 
 
 class _Found(NamedTuple):
@@ -159,6 +176,8 @@ class Machine:
         self._telling: dict[str, bool] = {}
         self._bits: dict[str, int] = {}
         self._versions: dict[str, str | None] = {}
+        self._named: dict[tuple[frozenset[str], int], int] = {}
+        self._named_alone: dict[tuple[str, int], int] = {}
 
     def version(self, owner: str) -> str | None:
         """The version of an owner here."""
@@ -168,7 +187,8 @@ class Machine:
         return self._versions[owner]
 
     @cached_property
-    def _gcc(self) -> int:
+    def gcc(self) -> int:
+        """The major version of the compiler."""
         return parts(self.version("gcc") or "5")[0]
 
     @cached_property
@@ -201,6 +221,8 @@ class Machine:
         return any(header in included.headers for included in every if included is not None)
 
     def _find(self, header: str) -> _Found | None:
+        if header.startswith(_INCLUDE_FOLDERS):
+            header = header.partition("/")[2]
         if header not in self._known:
             libraries = self._data.table.libraries
             owners = self._data.owners_of.get(header, ())
@@ -280,12 +302,19 @@ class Machine:
 
     def _made(self, header: str) -> _Found | None:
         """A header that is made while its package is built."""
+        written = () if _NUMBERS.fullmatch(header) else _WRITTEN.get(header)
+        if written is not None and self.ros == 2:
+            owner = header.partition("/")[0]
+            version = self._version(owner, False)
+            return _Found(owner, version, written) if version else None
         if self.ros == 1 and _CONFIG.match(header):
             owner = "dynamic_reconfigure"
             return _Found(owner, self.version(owner) or "", _RECONFIGURE)
         package = message_headers.package_of(header, self.ros)
         if package is None:
-            return None
+            package = message_headers.package_for_c(header) if self.ros == 2 else None
+            version = self._version(package, False) if package else None
+            return _Found("rosidl_generator_c", version, message_headers.OF_C) if version else None
         owner, pattern = _GENERATOR[self.ros]
         version = self.version(owner)
         always = self._data.included(owner, pattern, version) if version else None
@@ -307,25 +336,28 @@ class Machine:
         """Everything that a header brings along here; of standard ones, by the machine's GCC."""
         known = self._closures.get(header)
         if known is None:
-            seen, outside, stack = {header}, set(), [header]
+            seen, outside, plain, stack = {header}, set(), set(), [header]
             while stack:
                 at = stack.pop()
                 if at in self._closures:
                     seen |= self._closures[at].headers
                     outside |= self._closures[at].outside
+                    plain |= self._closures[at].standard
                     continue
                 found = self.includes(at)
                 if found is None:
-                    standard = brought_by(at, self._gcc)
+                    standard = brought_by(at, self.gcc)
                     seen |= standard
-                    if len(standard) == 1:
+                    if named_by(at, self.gcc, 2017) is not None:
+                        plain.add(at)
+                    elif len(standard) == 1:
                         outside.add(at)
                     continue
                 for path in found:
                     if path not in seen:
                         seen.add(path)
                         stack.append(path)
-            known = self._closures[header] = Brought(frozenset(seen), frozenset(outside))
+            known = self._closures[header] = Brought(frozenset(seen), frozenset(outside), frozenset(plain))
         return known
 
     def mask(self, headers: frozenset[str]) -> int:
@@ -340,6 +372,37 @@ class Machine:
                 known |= alone
             self._masks[headers] = known
         return known
+
+    def named(self, headers: frozenset[str], standard: int) -> int:
+        """The names of the standard libraries that these headers bring along here, as bits of standard.bit_of().
+
+        standard: year of the C++ standard that they are compiled under."""
+        known = self._named.get((headers, standard))
+        if known is None:
+            known = 0
+            for header in headers:
+                alone = self._named_alone.get((header, standard))
+                if alone is None:
+                    alone = 0
+                    for plain in self.brought(header).standard:
+                        alone |= named_by(plain, self.gcc, standard) or 0
+                    self._named_alone[header, standard] = alone
+                known |= alone
+            self._named[headers, standard] = known
+        return known
+
+    def brings(self, name: str, headers: frozenset[str], standard: int) -> bool:
+        """Whether these headers bring a name of the standard libraries along here, as far as that can be excluded."""
+        if bit_of(name) & self.named(headers, standard):
+            return True
+        if self.names(name):
+            return self.gcc < oldest() and bool(self.bits(DEFINED_IN[name]) & self.mask(headers))
+        return True
+
+    def names(self, name: str) -> bool:
+        """Whether it is known here which headers bring a name of the standard libraries along: of older compilers the
+        headers are, and of some names where they are defined."""
+        return bool(bit_of(name)) and (self.gcc >= oldest() or name in DEFINED_IN)
 
     def outside(self, headers: frozenset[str]) -> frozenset[str]:
         """The headers among all that these bring along of which nothing is known here."""

@@ -22,6 +22,14 @@ _TYPE2 = re.compile(
     r"(?P<package>\w+)::"
     r"(?:msg::[A-Z][A-Za-z0-9]*\b|(?:srv|action)::[A-Z][A-Za-z0-9]*(?=_(?:Re|Goal|Send|Get|Feed)|\b))"
 )
+_ROS2_C = re.compile(r"(?P<package>\w+)/(?:msg|srv|action)/(?:detail/)?[a-z0-9_]+\.h\Z")
+OF_C = (
+    *("stdbool.h", "stddef.h", "stdint.h", "stdlib.h", "rosidl_typesupport_interface/macros.h"),
+    *("rosidl_runtime_c/primitives_sequence.h", "rosidl_runtime_c/string.h", "rosidl_runtime_c/u16string.h"),
+    *("rosidl_runtime_c/visibility_control.h", "rosidl_runtime_c/message_type_support_struct.h"),
+)
+"""What the headers for C include, those of nested messages aside, which include the same. Source: the templates of
+rosidl_generator_c, 3.1 (Humble) to 4.6 (Jazzy)."""
 _OF_ACTIONS = ("actionlib_msgs/GoalID.h", "actionlib_msgs/GoalStatus.h", "std_msgs/Header.h")
 
 
@@ -56,6 +64,12 @@ def _defining(parts: list[str]) -> tuple[str, ...]:
         return (f"{parts[0]}/{parts[1]}.h",)
     folder, stem = f"{parts[0]}/{parts[1]}/", snake(parts[2])
     return f"{folder}{stem}.hpp", f"{folder}detail/{stem}__struct.hpp", f"{folder}{stem}__struct.hpp"
+
+
+def package_for_c(header: str) -> str | None:
+    """The package of a header for C that ROS 2 makes from an interface, by its path; None for others."""
+    found = _ROS2_C.match(header)
+    return None if found is None else found["package"]
 
 
 def included_by(header: str, ros: int, interfaces: Mapping[str, Interface], apart: bool) -> tuple[str, ...] | None:

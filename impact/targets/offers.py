@@ -76,6 +76,12 @@ class Offers:
             self._packages[name] = self._offer(name)
         return self._packages[name]
 
+    def standard(self, name: str) -> int:
+        """The C++ standard that a package asks of those who link it, as CMake writes it; 0 when nothing tells."""
+        offer, history = self.package(name), self.surfaces.history(name)
+        built = history.build(offer.stored) if offer is not None and history is not None else None
+        return built.standard if built is not None else 0
+
     def _offer(self, name: str) -> Offer | None:
         version = self.target.version(name)
         line = self.surfaces.lines(name).get(self.target.ros) if version else None

@@ -1,8 +1,11 @@
 """What libstdc++'s headers bring along: which standard header reaches the definition of a name in which GCC.
 
+`data/std_names.json.zst`, which build/std_names.py makes by asking the compilers, tells for GCC 9 and later which names
+each header brings under C++14, 17 and 20, which is much more from standard to standard.
+
 `data/providers_std.json` was made by preprocessing each standard header of GCC 5, 7 and 9 to 15 under the language
 standards in use, and listing the standard headers that it read. Where standards differ, all that any of them reads
-counts.
+counts. It tells of GCC 5 and 7, of which names brought more than later versions did.
 """
 
 from __future__ import annotations
@@ -228,6 +231,89 @@ def _table(gcc: int) -> dict[str, frozenset[str]]:
         **of_c,
         **{header: found.union(*(of_c.get(h, ()) for h in (header, *found))) for header, found in read.items()},
     }
+
+
+class Names(msgspec.Struct, frozen=True):
+    """The shipped table. names: each with the header that is its own, whose places stand for them. gcc: major version
+    to C++ standard to header to the names that it brings, as a hexadecimal number with a bit for each."""
+
+    names: dict[str, str]
+    gcc: dict[str, dict[str, dict[str, str]]]
+
+
+@cache
+def names() -> Names:
+    """The names that are told of. Raises SnapshotError when the data cannot be read."""
+    import zstandard
+
+    path = DATA / "std_names.json.zst"
+    try:
+        raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
+        return msgspec.json.decode(raw, type=Names)
+    except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+
+
+@cache
+def oldest() -> int:
+    """The first GCC that is told of name by name."""
+    return min(map(int, names().gcc))
+
+
+_C = {
+    "cstdint": ("stdint.h",),
+    "cfloat": ("float.h",),
+    "climits": ("limits.h",),
+    "cmath": ("math.h",),
+    "cstdlib": ("stdlib.h",),
+    "cstring": ("string.h",),
+    "cstdio": ("stdio.h",),
+    "cassert": ("assert.h",),
+    "cerrno": ("errno.h",),
+    "cinttypes": ("inttypes.h",),
+    "csignal": ("signal.h",),
+    "cstdarg": ("stdarg.h",),
+}
+
+
+@cache
+def offering() -> dict[str, tuple[str, ...]]:
+    """Names of the standard libraries to the headers that offer them, the one to include first."""
+    told = {
+        name: (header, *(_C.get(header, ()) if not name.startswith("std::") else ()))
+        for name, header in names().names.items()
+    }
+    return {**DEFINED_IN, **told}
+
+
+@cache
+def _places() -> dict[str, int]:
+    return {name: 1 << place for place, name in enumerate(names().names)}
+
+
+def bit_of(name: str) -> int:
+    """The bit that stands for a name in named_by(); 0 for one that is not told of."""
+    return _places().get(name, 0)
+
+
+@cache
+def named_by(header: str, gcc: int, standard: int) -> int | None:
+    """The names that a header brings alone, as bits; None for a header that is not told of.
+
+    gcc: major version; one that is not known is answered as the nearest older one, or the oldest. standard: year of the
+    C++ standard, likewise.
+    """
+    table = _names_of(gcc, standard)
+    told = table.get(header)
+    return None if told is None else int(told, 16)
+
+
+@cache
+def _names_of(gcc: int, standard: int) -> dict[str, str]:
+    majors = {int(major): table for major, table in names().gcc.items()}
+    standards = majors[max((major for major in majors if major <= gcc), default=min(majors))]
+    years = {2000 + int(number): table for number, table in standards.items()}
+    return years[max((year for year in years if year <= standard), default=min(years))]
 
 
 def reaches(headers: frozenset[str], name: str, gcc: int) -> bool | None:

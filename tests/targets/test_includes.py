@@ -142,6 +142,14 @@ def test_a_header_may_be_gone_in_a_version():
         ("#if !defined(_WIN32)\n#include <unistd.h>\n#endif", ("unistd.h",)),
         ("#ifdef WITH_ROPE\n#include <rope.h>\n#endif", ("rope.h",)),
         ("#include WINCH_HEADER", ()),
+        ("#if 0\n#include <for_scanners.h>\n#endif", ()),
+        ("#if defined(_MSC_VER) || defined __BORLANDC__\n#include <float.h>\n#elif 1\n#include <a>\n#endif", ("a",)),
+        (
+            "#if defined(__linux__)\n#include <a>\n#elif defined(WITH_ROPE)\n#include <b>\n#else\n#include <c>\n#endif",
+            ("a",),
+        ),
+        ("#if __cplusplus >= 201703L\n#include <a>\n#else\n#include <b>\n#endif", ("a", "b")),
+        ("#if defined(_WIN32) && WINCH(\n#include <a>\n#endif", ("a",)),
     ],
 )
 def test_include_lines(text, expected):
@@ -160,3 +168,34 @@ def test_include_lines(text, expected):
 )
 def test_types_of_a_header(text, names, announced):
     assert defined(text) == (names, announced)
+
+
+@pytest.mark.parametrize(
+    ("distro", "header", "name", "year", "expected"),
+    [
+        ("humble", "pcl/filters/voxel_grid.h", "FLT_MAX", 2017, True),
+        ("jazzy", "pcl/filters/voxel_grid.h", "FLT_MAX", 2017, False),
+        ("jazzy", "boost/config.hpp", "FLT_MAX", 2017, False),
+        ("jazzy", "opencv2/core.hpp", "std::string", 2017, True),
+        ("jazzy", "opencv4/opencv2/core.hpp", "std::string", 2017, True),
+        ("jazzy", "eigen3/Eigen/Core", "std::sqrt", 2017, True),
+        ("jazzy", "sensor_msgs/msg/image.hpp", "std::vector", 2017, True),
+        ("jazzy", "sensor_msgs/msg/image.h", "uint8_t", 2017, True),
+        ("jazzy", "sensor_msgs/msg/image.h", "std::vector", 2017, False),
+        ("jazzy", "rclcpp/logging.hpp", "std::stringstream", 2017, True),
+        ("jazzy", "rclcpp/version.h", "std::string", 2017, False),
+        ("jazzy", "memory", "std::find", 2017, False),
+        ("jazzy", "memory", "std::find", 2020, True),
+        # Of GCC 7 only the headers are known, and names that are defined in one of its own: others may always be there.
+        ("crystal", "memory", "std::winch", 2017, True),
+        ("crystal", "memory", "std::unique_ptr", 2017, True),
+        ("crystal", "vector", "std::regex", 2017, False),
+    ],
+)
+def test_names_of_the_standard_library_that_a_header_brings_along(distro, header, name, year, expected):
+    assert machine_of(distro, 2).brings(name, frozenset((header,)), year) is expected
+
+
+@pytest.mark.parametrize("header", ["rclcpp/version.h", "rclcpp/logging.hpp", "sensor_msgs/msg/image.h"])
+def test_headers_that_a_package_writes_while_it_is_built_are_known(header):
+    assert header not in machine_of("jazzy", 2).brought(header).outside

@@ -1,7 +1,8 @@
 """Which standard header brings which name along, by version of GCC."""
 
 import pytest
-from rosimpact.impact.targets.standard import DEFINED_IN, brought_by, reaches
+from rosimpact.impact.targets.build import std_names
+from rosimpact.impact.targets.standard import DEFINED_IN, bit_of, brought_by, named_by, names, offering, reaches
 
 
 @pytest.mark.parametrize(
@@ -48,3 +49,61 @@ def test_an_unknown_version_is_answered_as_its_neighbour(gcc, same_as):
 def test_the_public_header_brings_its_names():
     # <shared_mutex> and the like came with newer standards; what is listed here is in all versions from GCC 9 on.
     assert not [name for name, (public, *_) in DEFINED_IN.items() if not reaches(frozenset({public}), name, 9)]
+
+
+@pytest.mark.parametrize(
+    ("header", "name", "gcc", "year", "there"),
+    [
+        # Porting to GCC 13: <string> stopped bringing <cstdint>, whose signed types <cstdlib> still brings
+        ("string", "uint32_t", 11, 2017, True),
+        ("string", "uint32_t", 13, 2017, False),
+        ("string", "int32_t", 13, 2017, True),
+        ("regex", "uint8_t", 13, 2017, False),
+        ("regex", "uint8_t", 13, 2020, True),
+        # C++20 brings much more along than C++17
+        ("memory", "std::find", 13, 2017, False),
+        ("memory", "std::find", 13, 2020, True),
+        ("algorithm", "std::function", 9, 2014, False),
+        ("algorithm", "std::function", 9, 2017, True),
+        # what is only announced is not there
+        ("vector", "std::string", 13, 2017, False),
+        ("utility", "std::array", 13, 2017, False),
+        ("shared_mutex", "std::unique_lock", 11, 2017, False),
+        ("stdlib.h", "memcpy", 13, 2017, False),
+        ("string.h", "memcpy", 13, 2017, True),
+        ("string.h", "std::memcpy", 13, 2017, False),
+        ("cmath", "M_PI", 15, 2017, True),
+    ],
+)
+def test_names_that_a_header_brings_alone(header, name, gcc, year, there):
+    told = named_by(header, gcc, year)
+    assert told is not None and bool(told & bit_of(name)) is there
+
+
+def test_headers_and_names_that_are_not_told_of():
+    assert named_by("winch/winch.hpp", 13, 2017) is None
+    assert bit_of("std::winch") == 0
+
+
+@pytest.mark.parametrize(
+    ("gcc", "year", "gcc_told", "year_told"), [(12, 2017, 11, 2017), (99, 2023, 15, 2020), (13, 2011, 13, 2017)]
+)
+def test_versions_and_standards_that_are_not_told_of_are_answered_as_their_neighbours(gcc, year, gcc_told, year_told):
+    assert named_by("memory", gcc, year) == named_by("memory", gcc_told, year_told)
+
+
+def test_the_table_has_the_names_that_its_builder_asks_for():
+    assert names().names == std_names.home()
+
+
+def test_each_name_is_brought_by_the_header_that_is_said_to_offer_it():
+    late = {name for name, header in names().names.items() if header in ("span", "charconv")}
+    told = {n: h for n, (h, *_) in offering().items() if bit_of(n) and n not in late}
+    assert [n for n, h in told.items() if not (named_by(h, 13, 2017) or 0) & bit_of(n)] == []
+
+
+def test_probes_refuse_types_that_are_only_announced():
+    lines = dict(std_names.probes())
+    assert lines["std::vector"] == "enum { size = sizeof(std::vector<int>) };"
+    assert lines["std::mutex"] == "enum { size = sizeof(std::mutex) };"
+    assert lines["std::sort"] == "using std::sort;" and lines["memcpy"] == "using ::memcpy;"

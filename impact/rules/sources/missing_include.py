@@ -11,10 +11,10 @@ Why it breaks
     machine that has that version.
 
 Severity
-    error when a source compiles the file, none of the headers that reach it there brings the name on the target, and
-    all of them are known, or for a ROS package's name none of the others depends on that; warning when something else
-    is not known, or is known to announce the type, and in installed headers that only tests compile, or nothing; note
-    for files that no source compiles, and for what lies ahead, in the newest distro.
+    error when a source compiles the file, none of the headers that reach it there brings the name on the target, under
+    the C++ standard in force, and all of them are known, or for a ROS package's name none of the others depends on
+    that; warning when something else is not known, or is known to announce the type, and in installed headers that only
+    tests compile, or nothing; note for files that no source compiles, and for what lies ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
@@ -27,7 +27,8 @@ Use instead
 Not reported
     Names that a header which reaches the file may still bring; names of the standard library and of Boost in files that
     something unknown reaches; types that a file of the package announces itself; types of the workspace's own
-    interfaces.
+    interfaces; names of the standard library that packages found bring under a later C++ standard which they ask for;
+    macros that a file of the workspace defines.
 """
 
 import re
@@ -38,7 +39,7 @@ from ...model.package import NeededHeader
 from ...model.view import View
 from ...targets.includes import Machine, announced, offered
 from ...targets.message_headers import package_of, type_in
-from ...targets.standard import DEFINED_IN
+from ...targets.standard import bit_of, named_by, offering, oldest
 from ..cure import Insert
 from ..rule import Hit, rule
 
@@ -53,27 +54,37 @@ _OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+|builtin
 
 @rule(severity="warning")
 def missing_include(view: View):
+    # Macros that a file of the workspace defines, maybe where nothing else does.
+    defined = frozenset().union(*(package.digest.defined for package in view.workspace))
     for package in view:
         reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
-        told = set()
+        told, year = set(), view.language(package)
         built = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         compiled = {path for path, targets in package.digest.source_targets if built.intersection(targets)}
         offered_to_others = {path for path, _ in package.digest.source_targets}.intersection(
             package.digest.public_headers
         )
         for need in package.digest.needed_headers:
-            if need.role == "aside" or not view.active(need.conditions):
+            if need.role == "aside" or need.name in defined or not view.active(need.conditions):
                 continue
-            lost, now = _lost(view, need, reaches[need.at.path], view.machine, view.earlier_machines), True
+            reach = reaches[need.at.path]
+            lost, now = _lost(view, need, reach, year, view.machine, view.earlier_machines), True
             if lost is None and view.later_machine is not None and view.later_active(need.conditions):
-                lost, now = _lost(view, need, reaches[need.at.path], view.later_machine, (view.machine,)), False
+                lost, now = _lost(view, need, reach, year, view.later_machine, (view.machine,)), False
             if lost is None or (need.at.path, lost.header) in told:
                 continue
-            told.add((need.at.path, lost.header))
+            if lost.plain and (asked := view.language_asked(package)) > year:
+                # What packages from elsewhere ask for is looked up for the few that are left.
+                machine, earlier = (
+                    (view.machine, view.earlier_machines) if now else (view.later_machine, (view.machine,))
+                )
+                lost = _lost(view, need, reach, asked, machine, earlier) if machine is not None else None
+                if lost is None:
+                    continue
             here = now and (
                 need.at.path in compiled
                 or need.at.path in offered_to_others
-                or (lost.sure and need.at.path in package.digest.public_headers)
+                or (lost.sure and not lost.plain and need.at.path in package.digest.public_headers)
             )
             sure = (
                 need.at.path in compiled
@@ -82,6 +93,9 @@ def missing_include(view: View):
                 and need.role == "build"
                 and view.certain(need.conditions)
             )
+            if lost.plain and not lost.once and not sure:
+                continue
+            told.add((need.at.path, lost.header))
             where = "" if now else f" of {view.horizon}"
             how = (
                 f", which {lost.by} {lost.version}{where} no longer brings along"
@@ -101,35 +115,39 @@ def missing_include(view: View):
 
 class _Lost(NamedTuple):
     """A header that nothing brings along. by, version: what did, or else whose it is; sure: all that is included is
-    known; once: something did."""
+    known; once: something did; plain: a name of the standard libraries."""
 
     header: str
     by: str
     version: str
     sure: bool
     once: bool
+    plain: bool
 
 
 def _lost(
     view: View,
     need: NeededHeader,
     reaches: list[tuple[frozenset[str], frozenset[str]]],
+    year: int,
     machine: Machine,
     earlier: tuple[Machine, ...],
 ) -> _Lost | None:
     """What one of the sources that compile a file misses on a machine: what an earlier one brought along, or nothing
     ever did."""
-    offering = _offering(view, need.name)
-    if not offering:
+    standard = bool(bit_of(need.name))
+    headers = offering()[need.name] if standard else _offering(view, need.name)
+    if not headers or not (
+        machine.names(need.name) if standard else any(machine.includes(header) is not None for header in headers)
+    ):
         return None
-    if need.name not in DEFINED_IN and all(machine.includes(header) is None for header in offering):
-        return None
-    wanted, best = frozenset(offering), None
+    wanted, best = frozenset(headers), None
     bits, made = machine.bits(wanted), type_in(need.name)
     # To a type that is announced, pointers may be made.
-    pointed = 0 if need.whole else machine.bits(announced(need.name))
+    pointed = 0 if need.whole or standard else machine.bits(announced(need.name))
     for reach, own in reaches:
-        if bits & machine.mask(reach) or not wanted.isdisjoint(own):
+        brought = machine.brings(need.name, reach, year) if standard else bits & machine.mask(reach)
+        if brought or not wanted.isdisjoint(own):
             continue
         if need.name in _EXTENDED and any(package_of(header, machine.ros) is None for header in own):
             continue  # another package of the workspace may have added one
@@ -137,16 +155,21 @@ def _lost(
         # Of what the workspace generates itself, all that it brings along reaches the file too.
         if outside is None or (made is not None and not machine.tells_all(reach - own)):
             continue
-        dropped = _dropped(view, wanted, reach, machine, earlier)
-        # Whose headers a platform library's bring, no table tells.
-        told = made is not None or all(p.kind == "ros" for path in outside for p in view.header(path))
-        found = dropped or (_never(need.name, offering, reach, machine) if told else None)
+        if standard:
+            dropped = _dropped_name(view, need.name, reach, year, machine, earlier)
+            told = need.name.startswith("std::") and not outside and machine.gcc >= oldest()
+            found = dropped or (("gcc", machine.version("gcc") or "") if told else None)
+        else:
+            dropped = _dropped(view, wanted, reach, machine, earlier)
+            # Whose headers a platform library's bring, no table tells.
+            told = made is not None or all(p.kind == "ros" for path in outside for p in view.header(path))
+            found = dropped or (_never(need.name, headers, reach, machine) if told else None)
         if found is None or (best is not None and (best.sure or outside)):
             continue
         # Of what reaches the file and is not known, nothing depends on a ROS package whose name it is.
-        known = not outside or not (need.name in DEFINED_IN or machine.of_library(offering[0]))
+        known = not outside or not (standard or machine.of_library(headers[0]))
         sure = known and not pointed & machine.mask(reach)
-        best = _Lost(offering[0], *found, sure, dropped is not None)
+        best = _Lost(headers[0], *found, sure, dropped is not None, standard)
     return best
 
 
@@ -155,7 +178,7 @@ def _offering(view: View, name: str) -> tuple[str, ...]:
     known on the target."""
     made = type_in(name)
     if made is None:
-        return DEFINED_IN.get(name) or offered().get(name) or ()
+        return offered().get(name) or ()
     known = made.ros == view.target.ros and made.package not in view.workspace.packages
     return made.headers if known and view.machine.tells(made.headers[0]) else ()
 
@@ -185,6 +208,23 @@ def _dropped(
     return None
 
 
+def _dropped_name(
+    view: View, name: str, reach: frozenset[str], year: int, machine: Machine, earlier: tuple[Machine, ...]
+) -> tuple[str, str] | None:
+    """The same for a name of the standard libraries."""
+    for before in earlier:
+        if not before.names(name):
+            continue
+        for header in sorted(reach):
+            if not before.brings(name, frozenset((header,)), year):
+                continue
+            still = machine.brought(header).standard
+            if view.is_standard(header) or any((named_by(h, before.gcc, year) or 0) & bit_of(name) for h in still):
+                return "gcc", machine.version("gcc") or ""
+            return machine.owner(header)
+    return None
+
+
 def _outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> list[str] | None:
     """Headers among those that reach a file of which nothing is known; None when one of them may well bring the name.
 
@@ -198,7 +238,7 @@ def _outside(view: View, name: str, reach: frozenset[str], machine: Machine) -> 
         and not _OF_PROCESSOR.search(path)
         and (path in reach or (view.header(path) and not _GENERATED.search(path)))
     }
-    if name in DEFINED_IN:
+    if bit_of(name):
         return None if outside & reach else sorted(outside)
     if (made := type_in(name)) is not None:
         owners = {made.package}

@@ -27,6 +27,7 @@ from pathlib import Path
 import msgspec
 import zstandard
 
+from ...facts.condition import Condition
 from .. import includes
 from ..build_history import _tree, git_directory
 from ..changes import DISTROS
@@ -85,30 +86,67 @@ _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 _DIRECTIVE = re.compile(
     r"^[ \t]*#[ \t]*(include|if|ifdef|ifndef|elif|else|endif)\b[ \t]*((?:[^\n\\]|\\\n)*)", re.MULTILINE
 )
+# Macros of other compilers, systems and processors, and of parts that no package of ROS compiles.
 _ELSEWHERE = re.compile(
-    r"_WIN32|\bWIN32|_MSC_VER|__APPLE__|__BORLANDC__|_WIN64|__CYGWIN__|_LIBCPP_VERSION|__QNX__|__ANDROID__|__VXWORKS__"
-    r"|HAVE_AV_CONFIG_H|__CUDACC__|__HIPCC__|EIGEN_GPU|EIGEN_CUDA|EIGEN_HIP|EIGEN_HAS_GPU|SYCL|EIGEN_USE_|__ARM|__ALTIVEC|__VSX|__ZVECTOR"
+    r"(?:_WIN32|WIN32|_MSC_VER|__APPLE__|__BORLANDC__|__CODEGEARC__|_WIN64|__CYGWIN__|__MINGW\w*|_LIBCPP_VERSION|__QNX\w*"
+    r"|__ANDROID__|__VXWORKS__|HAVE_AV_CONFIG_H|__CUDACC__|__CUDA_ARCH__|__CUDA__|__NVCC__|__HIPCC__|__HIP\w*|__SYCL\w*"
+    r"|__SUNPRO_CC|__sun|__hpux|__HP_aCC|__IBMCPP__|__ibmxl__|_AIX|__sgi|__INTEL_COMPILER|__ICL|__ICC|__clang__|__DMC__"
+    r"|__MWERKS__|__COMO__|__GCCXML__|__WATCOMC__|__EDG__|__PATHCC__|__PGI|_CRAYC|_STLPORT_VERSION|__SGI_STL_PORT"
+    r"|_RWSTD_VER|__FreeBSD__|__OpenBSD__|__NetBSD__|__DragonFly__|__EMSCRIPTEN__|__BEOS__|__HAIKU__|__CLOUDABI__"
+    r"|EIGEN_GPU\w*|EIGEN_CUDA\w*|EIGEN_HIP\w*|EIGEN_HAS_GPU\w*|EIGEN_USE_(?:SYCL|GPU|MKL\w*|BLAS|LAPACKE\w*)"
+    r"|EIGEN_COMP_(?:MSVC|CLANG|ICC|ARM|PGI|IBM)|EIGEN_VECTORIZE_(?:NEON|ALTIVEC|VSX|ZVECTOR|MSA|SVE)"
+    r"|__ARM\w*|__ALTIVEC__|__VSX__|__ZVECTOR__|__wasm\w*|__powerpc\w*|__mips\w*|__sparc\w*|__SWITCH__)\Z"
 )
-_NEGATED = re.compile(r"!|__linux|__GNUC__|__unix|\|\|")
+_WORD = re.compile(r"defined\s*(?:\(\s*(\w+)\s*\)|(\w+))|\b([A-Za-z_]\w*)\b")
+
+
+def _elsewhere(text: str) -> str:
+    """A test with 0 for every macro that GCC on Linux surely lacks."""
+
+    def told(match: re.Match[str]) -> str:
+        name = match[1] or match[2] or match[3]
+        return "0" if _ELSEWHERE.match(name) else match[0]
+
+    return _WORD.sub(told, text.replace("\\\n", " "))
 
 
 def included(text: str) -> tuple[str, ...]:
-    """Include paths of a header, without those that only another operating system reads."""
+    """Include paths of a header, without those that GCC on Linux surely skips."""
     found: dict[str, None] = {}
-    skipped: list[bool | None] = []
+    groups: list[_Group] = []
     for directive, rest in _DIRECTIVE.findall(_COMMENT.sub(lambda m: "\n" * m.group().count("\n"), text)):
         if directive in ("if", "ifdef", "ifndef"):
-            other = bool(_ELSEWHERE.search(rest)) and not _NEGATED.search(rest)
-            skipped.append(None if not other else directive != "ifndef")
-        elif directive in ("else", "elif") and skipped:
-            skipped[-1] = None if skipped[-1] is None else directive == "else" and not skipped[-1]
-        elif directive == "endif" and skipped:
-            skipped.pop()
-        elif directive == "include" and True not in skipped:
+            groups.append(_Group())
+            groups[-1].reach(_test(directive, rest))
+        elif directive in ("else", "elif") and groups:
+            groups[-1].reach(None if directive == "else" else _test("if", rest))
+        elif directive == "endif" and groups:
+            groups.pop()
+        elif directive == "include" and all(group.read for group in groups):
             path = re.match(r'[<"]\s*([^>"]+?)\s*[>"]', rest)
             if path:
                 found[path.group(1)] = None
     return tuple(found)
+
+
+class _Group:
+    """The branches of one #if. read: whether the branch that was reached last may be read."""
+
+    def __init__(self) -> None:
+        self.read, self.done = True, False
+
+    def reach(self, test: bool | None) -> None:
+        """The next branch, and whether its test holds."""
+        self.read = not self.done and test is not False
+        self.done = self.done or test is True
+
+
+def _test(directive: str, rest: str) -> bool | None:
+    from ...model.conditions import Environment, holds
+
+    text = rest if directive == "if" else f"defined({rest.split()[0] if rest.split() else ''})"
+    condition = Condition("cpp", _elsewhere(text), directive == "ifndef")
+    return holds(condition, Environment())
 
 
 # Where a class, structure, enumeration or alias of a namespace is defined or only announced.
