@@ -627,6 +627,40 @@ SILENT = {
         ),
         ("msg/Tracks.msg", "geometry_msgs/Pose[] poses", "float64 length"),
     ),
+    "a name that comes along under the C++ standard that is set": Silent(
+        "missing-include",
+        ("jazzy",),
+        ament(
+            "set(CMAKE_CXX_STANDARD 20)\nadd_library(sled sled.cpp)\ninstall(TARGETS sled DESTINATION lib)",
+            sled_cpp="#include <regex>\nuint8_t length(const std::string & s) { return s.size(); }\n",
+        ),
+        ("CMakeLists.txt", "STANDARD 20", "STANDARD 17"),
+    ),
+    "a macro that the file defines where nothing else does": Silent(
+        "missing-include",
+        ("jazzy",),
+        ament(
+            "find_package(PCL REQUIRED)\nadd_library(sled sled.cpp)\n"
+            "target_include_directories(sled PRIVATE ${PCL_INCLUDE_DIRS})\n"
+            "target_link_libraries(sled ${PCL_LIBRARIES})\ninstall(TARGETS sled DESTINATION lib)",
+            "depend:libpcl-all-dev",
+            sled_cpp="#include <pcl/filters/voxel_grid.h>\n#ifndef FLT_MAX\n#define FLT_MAX 3.4e38F\n#endif\n"
+            "float far() { return FLT_MAX; }\n",
+        ),
+        ("sled.cpp", "#define FLT_MAX 3.4e38F", "#define FAR 3.4e38F"),
+    ),
+    "a header that only a program of tests compiles": Silent(
+        "missing-include",
+        ("jazzy",),
+        ament(
+            "add_executable(slide test/slide.cpp)\ninstall(DIRECTORY include/ DESTINATION include)\n"
+            "install(TARGETS slide DESTINATION lib/${PROJECT_NAME})\n"
+            "target_include_directories(slide PRIVATE include)",
+            include__sled__sled_hpp="#pragma once\n#include <vector>\nstd::vector<std::map<int, int>> all();\n",
+            test__slide_cpp="#include <map>\n#include <sled/sled.hpp>\nint main() { return 0; }\n",
+        ),
+        ("test/slide.cpp", "#include <map>\n", ""),
+    ),
     "a header that comes through the package's own": Silent(
         "missing-include",
         ("jazzy",),
