@@ -13,10 +13,10 @@ Why it breaks
 
 Severity
     error where a target is linked or an include path used under a name that only the missing find_package defines,
-    where catkin is asked for a system library, for a program that lacks a library of ROS, for a variable that nothing
-    sets where it stands for a library whose headers the target compiles, and, since Kinetic, where no target gets ROS's
-    include folder; warning for includes, since an include path may come along by accident, and for other variables that
-    nothing sets.
+    where catkin is asked for a system library, for a variable that nothing sets where it stands for a library whose
+    headers the target compiles, and, since Kinetic, where no target gets ROS's include folder; warning for includes,
+    since an include path may come along by accident, for a program that includes a library of ROS and is not linked to
+    it, since it may not use it, and for other variables that nothing sets.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)

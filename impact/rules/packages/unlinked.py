@@ -15,8 +15,9 @@ from ..rule import Hit
 
 
 def unlinked(view: View, package) -> Iterator[Hit]:
-    """Programs whose own sources the linker misses a library for. What libraries of the package miss may come with any
-    library that one of theirs needs in turn, which the linker finds by itself."""
+    """Programs whose own sources the linker most likely misses a library for: they include its headers, and what they
+    use of those is not looked at. What libraries of the package miss may come with any library that one of theirs needs
+    in turn, which the linker finds by itself."""
     build = package.build
     if package.build_type != "catkin" or view.target.ros != 1 or build.unresolved:
         return
@@ -60,7 +61,7 @@ def unlinked(view: View, package) -> Iterator[Hit]:
                 f"`{target.name}` compiles `{include.path}` and is linked to nothing that brings `{name}`",
                 f"add `{name}` to find_package(catkin REQUIRED COMPONENTS ...) and link ${{catkin_LIBRARIES}}",
                 package.name,
-                severity="error",
+                severity="warning",
             )
 
 
