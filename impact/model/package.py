@@ -866,11 +866,11 @@ class _Join:
         head = space.partition("::")[0]
         if head in ("", "std"):
             return False
-        files = (self.read(at) for at in self.reached(path))
-        if type_in(name) is not None:  # tf2 has a Quaternion too
-            files = (data for data in files if re.search(rb"\bnamespace\s+" + head.encode() + rb"\b", data))
-        known = _adds_conversion if space == "tf2" and word[0].islower() else _declares_type
-        return any(known(data, word.encode()) for data in files)
+        found = (data for at in self.reached(path) if _declares_type(data := self.read(at), word.encode()))
+        if type_in(name) is None:
+            return any(True for _ in found)
+        # tf2 has a Quaternion too.
+        return any(re.search(rb"\bnamespace\s+" + head.encode() + rb"\b", data) for data in found)
 
     # -- what Python files need ------------------------------------------------------------------------------------
 

@@ -145,6 +145,7 @@ class View:
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._standard: dict[str, bool] = {}
         self._outward_of: dict[tuple[str, ...], tuple[frozenset[str], frozenset[str]]] = {}
+        self._made: dict[str, tuple[str, ...]] = {}
         self._interfaces: dict[str, dict[str, Interface]] = {}
         self._lost: dict[str, Misnamed | None] = {}
         # What rules worked out for each package and several of them ask for.
@@ -344,12 +345,14 @@ class View:
 
     def _made_of(self, path: str) -> tuple[str, ...]:
         """The generated headers that one which the workspace generates includes, itself first; none for others."""
-        package = message_headers.package_of(path, self.target.ros)
-        if package is None or package not in self.workspace.packages:
-            return ()
-        interfaces = self._own_interfaces(package)
-        inner = message_headers.included_by(path, self.target.ros, interfaces, self._parts_apart)
-        return () if inner is None else (path, *inner)
+        known = self._made.get(path)
+        if known is None:
+            package, inner = message_headers.package_of(path, self.target.ros), None
+            if package is not None and package in self.workspace.packages:
+                interfaces = self._own_interfaces(package)
+                inner = message_headers.included_by(path, self.target.ros, interfaces, self._parts_apart)
+            known = self._made[path] = () if inner is None else (path, *inner)
+        return known
 
     def _own_interfaces(self, package: str) -> dict[str, Interface]:
         """The interfaces of a package of the workspace, by `msg/Name`."""
