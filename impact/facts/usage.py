@@ -318,30 +318,32 @@ def arguments_at(text: str, at: int) -> tuple[list[str], int] | None:
     return ([text[begins:ends].strip() for begins, ends in found[0]], found[1]) if found is not None else None
 
 
+_DIVIDER = re.compile(r"[(){}\[\]<,]")
+
+
 def argument_spans(text: str, at: int) -> tuple[list[tuple[int, int]], int] | None:
     """The same by where each argument begins and ends, blanks around it included."""
     given, depth, begins, last = [], [_CLOSING[text[at]]], at + 1, min(len(text), at + _LONGEST)
     position = at + 1
-    while position < last:
-        character = text[position]
+    while (mark := _DIVIDER.search(text, position, last)) is not None:
+        place, character = mark.start(), mark[0]
+        position = place + 1
         if character in _CLOSING:
             depth.append(_CLOSING[character])
         elif character in ")}]":
             if character != depth.pop():
                 return None
             if not depth:
-                if given or text[begins:position].strip():
-                    given.append((begins, position))
-                return given, position + 1
+                if given or text[begins:place].strip():
+                    given.append((begins, place))
+                return given, position
         elif character == "<":
-            types = TEMPLATE_ARGUMENTS.match(text, position + 1)
+            types = TEMPLATE_ARGUMENTS.match(text, position)
             if types is not None and text[types.end() : types.end() + 1] in ("(", "{", ":", ",", ")", ">"):
                 position = types.end()
-                continue
-        elif character == "," and len(depth) == 1:
-            given.append((begins, position))
-            begins = position + 1
-        position += 1
+        elif len(depth) == 1:
+            given.append((begins, place))
+            begins = position
     return None
 
 

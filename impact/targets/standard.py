@@ -297,6 +297,7 @@ def bit_of(name: str) -> int:
 
 
 @cache
+@cache
 def named_by(header: str, gcc: int, standard: int) -> int | None:
     """The names that a header brings alone, as bits; None for a header that is not told of.
 
