@@ -137,9 +137,7 @@ def unlinked_opencv(view: View, package) -> Iterator[Hit]:
         brought = exported.closure(_packages(view, package, linked)) if call is not None else None
         if call is None or brought is None:
             continue
-        bringing = {
-            name for name in brought if name != "OpenCV" and exported.may_bring(name, "opencv")
-        }  # but who gives it
+        bringing = {name for name in brought if name != "OpenCV" and exported.may_bring(name, "opencv")}
         if not bringing <= {"cv_bridge"} or (bringing and view.target.distro in _WITH_ALL_OF_OPENCV):
             continue
         library = OPENCV_FUNCTIONS[call.text]
