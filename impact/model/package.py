@@ -565,7 +565,9 @@ class _Join:
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in headers) and not self.declares(path, text):
                         around = conditions + self.macros.asked(name.conditions, targets)
-                        whole = text.startswith("std::") or names_a_variable(self.read(path), text)
+                        whole = (text.startswith("std::") and text not in _STREAMS) or names_a_variable(
+                            self.read(path), text
+                        )
                         needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
             if facts.words:
                 words = facts.words.split(" ")
@@ -866,7 +868,8 @@ class _Join:
         head = space.partition("::")[0]
         if head in ("", "std"):
             return False
-        found = (data for at in self.reached(path) if _declares_type(data := self.read(at), word.encode()))
+        known = _adds_conversion if space == "tf2" and word[0].islower() else _declares_type
+        found = (data for at in self.reached(path) if known(data := self.read(at), word.encode()))
         if type_in(name) is None:
             return any(True for _ in found)
         # tf2 has a Quaternion too.
@@ -985,6 +988,11 @@ def _declares_type(data: bytes, word: bytes) -> bool:
     return False
 
 
+# What <iosfwd> announces, and with it most standard headers, so that references may be made to it.
+_STREAMS = frozenset(
+    f"std::{name}{kind}" for name in ("i", "o", "io", "f", "if", "of", "string", "istring", "ostring")
+    for kind in ("stream", "streambuf")
+)  # fmt: skip
 # tf2's namespace up to its end or that of the file, and a special form of one of its templates from outside.
 _OF_TF2 = re.compile(rb"\bnamespace\s+tf2\s*\{.*|\btemplate\s*<\s*>[^;{}]*", re.DOTALL)
 

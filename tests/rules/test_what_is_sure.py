@@ -192,3 +192,18 @@ def test_a_find_module_of_cmake_modules(cmake, include, expected, tmp_path):
         cmake=f"{cmake}\nadd_library(sled sled.cpp)\n", sled_DOT_cpp=f"#include {include}\n",
     )  # fmt: skip
     assert told == expected
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        ("std::ostringstream text;", {"error"}),
+        ("void write(std::ostringstream & to);", set()),  # <vector> brings nothing, and others announce it
+    ],
+)
+def test_a_stream_whose_header_nothing_brings(source, expected, tmp_path):
+    told = severities(
+        tmp_path, "missing-include", "sstream", "noetic",
+        cmake="add_library(sled sled.cpp)\n", sled_DOT_cpp=f"#include <vector>\n{source}\n",
+    )  # fmt: skip
+    assert told == expected
