@@ -565,7 +565,7 @@ class _Join:
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in headers) and not self.declares(path, text):
                         around = conditions + self.macros.asked(name.conditions, targets)
-                        whole = (text.startswith("std::") and text not in _STREAMS) or names_a_variable(
+                        whole = (text.startswith("std::") and text not in _ANNOUNCED) or names_a_variable(
                             self.read(path), text
                         )
                         needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
@@ -989,7 +989,7 @@ def _declares_type(data: bytes, word: bytes) -> bool:
 
 
 # What <iosfwd> announces, and with it most standard headers, so that references may be made to it.
-_STREAMS = frozenset(
+_ANNOUNCED = frozenset({"std::string"}).union(
     f"std::{name}{kind}" for name in ("i", "o", "io", "f", "if", "of", "string", "istring", "ostring")
     for kind in ("stream", "streambuf")
 )  # fmt: skip

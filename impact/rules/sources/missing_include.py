@@ -137,7 +137,7 @@ def _lost(
     ever did."""
     standard = bool(bit_of(need.name))
     if standard and not need.whole and need.name.startswith("std::"):
-        return None  # a reference to a stream, which is announced everywhere
+        return None  # a reference to a string or stream, which are announced everywhere
     headers = offering()[need.name] if standard else _offering(view, need.name)
     if not headers or not (
         machine.names(need.name) if standard else any(machine.includes(header) is not None for header in headers)
