@@ -207,3 +207,22 @@ def test_a_stream_whose_header_nothing_brings(source, expected, tmp_path):
         cmake="add_library(sled sled.cpp)\n", sled_DOT_cpp=f"#include <vector>\n{source}\n",
     )  # fmt: skip
     assert told == expected
+
+
+@pytest.mark.parametrize(
+    ("more", "expected"),
+    [
+        ("", {"error"}),
+        ("include(ExternalProject)\nExternalProject_Add(rope GIT_REPOSITORY https://example.org/rope.git)\n", set()),
+    ],
+)
+def test_an_exported_library_that_another_build_system_may_make(more, expected, tmp_path):
+    export = "<export><build_type>ament_cmake</build_type></export></package>"
+    manifest = MANIFEST.replace("<buildtool_depend>catkin</buildtool_depend>", "").replace("</package>", export)
+    (tmp_path / "package.xml").write_text(manifest.replace("<depend>roscpp</depend><depend>rospy</depend>", ""))
+    (tmp_path / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.8)\nproject(sled)\nfind_package(ament_cmake REQUIRED)\n"
+        f"{more}ament_export_libraries(rope-core)\nament_package()\n"
+    )
+    options = Options(targets=("jazzy",), select=("missing-export",), cache=tmp_path / "cache", jobs=1)
+    assert {f.severity for f in check(tmp_path, options).findings if f.subject == "rope-core"} == expected

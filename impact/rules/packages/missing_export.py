@@ -261,6 +261,8 @@ def _never_built(view: View, package, exports):
     names = {n for t in package.build.targets for n in (t.name, t.output_name) if t.kind != "unknown"}
     if package.build.unresolved or any("$" in name for name in names):
         return
+    if any(t.kind in ("external", "fetched") for t in package.build.targets):
+        return  # another build system makes libraries of its own
     for export in exports:
         item = export.item
         if export.how != "ament_export_libraries" or item in names or re.search(r"[$/.:]|^-", item):
