@@ -2,7 +2,7 @@
 
 from setuptools import find_packages, setup
 
-ROOMS = ("impact", "corpus", "classifier")
+ROOMS = ("impact", "corpus", "classifier", "edges")
 
 setup(
     packages=[f"rosimpact.{name}" for name in find_packages(include=[*ROOMS, *(f"{room}.*" for room in ROOMS)])],

@@ -98,7 +98,7 @@ def train(
 
     def work() -> None:
         from ..corpus.outputs import need_file
-        from ..corpus.told import counted, steps
+        from ..edges.console import counted, steps
 
         need_file(output)
         file = _labels(labels, reports)
@@ -130,7 +130,7 @@ def evaluate(
     """Measure the classifier on labelled reports, judging each by a model that has not seen its repository."""
 
     def work() -> None:
-        from ..corpus.told import steps
+        from ..edges.console import steps
 
         _format(format)
         file = _labels(labels, reports)
@@ -185,9 +185,9 @@ def _foreseen() -> Iterator[None]:
 
 def _end(work: Callable[[], None], interrupted: str = "interrupted; nothing was written") -> None:
     """Runs a command's work and ends it: what fails is one line on standard error, and no traceback."""
-    from ..corpus.told import told
+    from ..edges.console import run_command
 
-    raise typer.Exit(told(lambda: work() or 0, interrupted, "the classifier"))
+    raise typer.Exit(run_command(lambda: work() or 0, interrupted, "the classifier"))
 
 
 def _write(text: str) -> None:

@@ -13,11 +13,11 @@ from datetime import date, datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..edges.console import counted, run_command, say
 from .polite import Client, Later, service_address
 from .progress import Reporter, outcome, span
 from .report import LABELS_FILE, SOURCES, CorpusError, read_labels, read_reports, write_rows
 from .store import Store, open_reports, store_path
-from .told import counted, say, told
 
 if TYPE_CHECKING:
     from .gather import Service, Source
@@ -56,7 +56,7 @@ def gather(
                 _gathered(source, client, store, manner)
         return 0
 
-    return told(lambda: _until_later(work), _INTERRUPTED)
+    return run_command(lambda: _until_later(work), _INTERRUPTED)
 
 
 def hydrate(labels: Path | None, texts: Path | None, *, archive: Path | None, manner: Manner) -> int:
@@ -78,7 +78,7 @@ def hydrate(labels: Path | None, texts: Path | None, *, archive: Path | None, ma
                 _tell_hydrated(store, ids)
         return 0
 
-    return told(lambda: _until_later(work), _INTERRUPTED)
+    return run_command(lambda: _until_later(work), _INTERRUPTED)
 
 
 def refresh(sources: Sequence[str], limit: int | None, *, archive: Path | None, manner: Manner) -> int:
@@ -99,7 +99,7 @@ def refresh(sources: Sequence[str], limit: int | None, *, archive: Path | None, 
         print(f"refresh: {outcome(taken)}")
         return 0
 
-    return told(lambda: _until_later(work), _INTERRUPTED)
+    return run_command(lambda: _until_later(work), _INTERRUPTED)
 
 
 def export(file: Path, *, store: Path | None) -> int:
@@ -119,7 +119,7 @@ def export(file: Path, *, store: Path | None) -> int:
         print(f"{file}: {counted(count, 'report')}")
         return 0
 
-    return told(work)
+    return run_command(work)
 
 
 def status(*, store: Path | None) -> int:
@@ -141,7 +141,7 @@ def status(*, store: Path | None) -> int:
                 print(f"  {name}: {'up to date' if finished else 'not finished'}, {day}")
         return 0
 
-    return told(work)
+    return run_command(work)
 
 
 def _until_later(work: Callable[[], int]) -> int:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..edges.console import any_sign, counted, run_command, say
 from .report import LABELS_FILE, SOURCES, CorpusError, Report
-from .told import any_sign, counted, say, told
 
 FORMATS = ("text", "json")
 
@@ -16,7 +16,7 @@ def label(
     repositories: Sequence[str], listed: bool,
 ) -> int:  # fmt: skip
     """Opens the labelling screen, or lists what it would show. Returns the exit status."""
-    return told(
+    return run_command(
         lambda: _label(reports, labels, annotator, mode, sources, repositories, listed),
         "interrupted; every answer given is saved",
     )
@@ -109,7 +109,7 @@ def _line(text: str) -> str:
 
 def stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
     """Prints the numbers of labels, and draws them into a folder. Returns the exit status."""
-    return told(lambda: _stats(labels, reports, format, plots))
+    return run_command(lambda: _stats(labels, reports, format, plots))
 
 
 def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
@@ -145,7 +145,7 @@ def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path |
 
 def import_robust(folder: Path, output: Path | None, format: str) -> int:
     """Prints what ROBUST's records map to, and writes those with a label to a file. Returns the exit status."""
-    return told(lambda: _import_robust(folder, output, format))
+    return run_command(lambda: _import_robust(folder, output, format))
 
 
 def _import_robust(folder: Path, output: Path | None, format: str) -> int:

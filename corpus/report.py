@@ -13,6 +13,8 @@ from typing import TypeVar
 
 import msgspec
 
+from ..edges.console import UserError
+
 LABELS = ("library-update", "dependency", "inconsistency", "message-logic", "other")
 KINDS = {
     "library-update": ("ros", "system", "robot"),
@@ -28,7 +30,7 @@ LABELS_FILE = Path(__file__).parent / "labels.jsonl"
 _Row = TypeVar("_Row", bound=msgspec.Struct)
 
 
-class CorpusError(Exception):
+class CorpusError(UserError):
     """What was asked for cannot be done; the text names the file or place and what to do."""
 
 

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 
+from ..edges.console import counted
 from .agreement import Agreement, Interval, agreement
 from .distros import DISTROS, distros_in
 from .report import KINDS, LABELS, PHASES, Label, Report, repository_of
-from .told import counted
 
 NONE_NAMED = "none named"
 UNDATED = "undated"

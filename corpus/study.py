@@ -14,10 +14,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..edges.console import counted, run_command, say
 from .figures import SETTINGS
 from .report import CorpusError
 from .store import open_reports
-from .told import counted, say, told
 
 _BESIDE = Path(__file__).resolve().parent.parent / "notebooks"
 """Where the notebooks are in a checkout."""
@@ -53,7 +53,7 @@ def command(
         say(f"{done}, {counted(made, 'figure')}: {output}")
         return 1 if failed else 0
 
-    return told(work, "interrupted; notebooks that were finished are kept")
+    return run_command(work, "interrupted; notebooks that were finished are kept")
 
 
 def run(

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
+from ..edges.console import run_command, say
 from .report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, group_of, read_labels
-from .told import say, told
 
 if TYPE_CHECKING:
     from ..classifier.evaluate import Judged
@@ -70,7 +70,7 @@ def command(reports: Path, output: Path, quiet: bool = False) -> int:
         say(f"{len(found.predictions):,} predictions and {len(found.beside)} means beside: {output}")
         return 0
 
-    return told(work, "interrupted; nothing was written")
+    return run_command(work, "interrupted; nothing was written")
 
 
 def measured(reports: Path, progress: Callable[[str, int, int], None] | None = None) -> Measured:

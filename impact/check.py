@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..corpus import __version__
-from ..corpus.told import unforeseen
+from ..edges.console import unforeseen
 from . import findings as after
 from . import memo
 from .config import Config, PathSetting, load, parse

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from ..corpus.told import counted
+from ..edges.console import counted
 from . import processes
 from .facts import elf
 from .facts.elf import Elf

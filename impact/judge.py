@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from ..corpus.told import unforeseen
+from ..edges.console import unforeseen
 from . import memo, processes
 from .rules.rule import Hit, Rule
 from .targets.snapshot import SnapshotError

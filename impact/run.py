@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..corpus import __version__
-from ..corpus.told import DEBUG, counted, say, steps, unforeseen
+from ..edges.console import DEBUG, counted, say, steps, unforeseen
 from .check import Checked, CheckError, Options
 from .check import run as run_check
 from .config import ConfigError

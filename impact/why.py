@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from ..corpus.told import counted
+from ..edges.console import counted
 from .check import Options, open_workspace
 from .model.view import View
 from .targets.distro import DistroTarget

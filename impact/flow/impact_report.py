@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from ...corpus.told import counted
+from ...edges.console import counted
 from ..findings import printable
 from ..report.columns import Piece, laid_out
 from ..report.markdown import code, escaped

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
-from ...corpus.told import counted
+from ...edges.console import counted
 from ..findings import printable
 from ..report.columns import UNBROKEN, Piece, laid_out
 from ..report.report import one_line

@@ -7,7 +7,7 @@ import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...corpus.told import counted
+from ...edges.console import counted
 from ..rules.rule import Finding, Rule
 
 if TYPE_CHECKING:

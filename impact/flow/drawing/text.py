@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ....corpus.told import counted
+from ....edges.console import counted
 from ...model.flow.graph import Coverage, Endpoint, Graph, GuardAt, Publish, Trigger, Unresolved
 from ...report.columns import UNBROKEN, Piece, laid_out
 from ...report.report import one_line

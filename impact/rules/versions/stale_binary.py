@@ -35,7 +35,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from ....corpus.told import counted
+from ....edges.console import counted
 from ...model.build import At
 from ...model.build_order import build_order
 from ...model.view import View

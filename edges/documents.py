@@ -1,0 +1,138 @@
+"""YAML, TOML and JSON within limits: what somebody wrote cannot make reading it take for ever, or all memory.
+
+YAML is read with aliases expanded under a budget, so that ten lines that stand for a billion nodes are refused. TOML is
+refused where keys nest too deeply for the standard library's reader, whose time is quadratic in that. Nothing of any
+document is ever executed: YAML's tags for Python objects are errors.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+from .limits import limits
+
+
+class DocumentError(ValueError):
+    """A document cannot be read, or exceeds a limit; the text is one clause. line: counted from 1, 0 when unknown."""
+
+    def __init__(self, reason: str, line: int = 0):
+        super().__init__(reason)
+        self.line = line
+
+
+def load_yaml(data: bytes | str) -> Any:
+    """The first document of a YAML text as Python's own types. Raises DocumentError.
+
+    Mappings whose keys are no plain values, and values that Python cannot build (a date in month 13), are errors.
+    """
+    import yaml
+
+    try:
+        return _construct(data, yaml)
+    except DocumentError:
+        raise
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        raise DocumentError(_clause(error.problem or error), mark.line + 1 if mark is not None else 0) from None
+    except (yaml.YAMLError, ValueError, TypeError, OverflowError, AttributeError, KeyError, IndexError) as error:
+        raise DocumentError(_clause(error)) from None
+    except RecursionError:
+        raise DocumentError("nested too deeply") from None
+
+
+def _construct(data: bytes | str, yaml: Any) -> Any:
+    base = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    budget = limits()
+    _check_depth(data, yaml, base, budget.depth)
+    loader = base(data)
+    try:
+        node = loader.get_node() if loader.check_node() else None
+        if node is None:
+            return None
+        _count(node, yaml, budget.nodes, budget.depth)
+        return loader.construct_document(node)
+    finally:
+        loader.dispose()
+
+
+def _check_depth(data: bytes | str, yaml: Any, loader: Any, depth: int) -> None:
+    """Raises DocumentError where a YAML text nests deeper than that; its composer would recurse, in C without end."""
+    level = 0
+    for event in yaml.parse(data, Loader=loader):
+        if isinstance(event, (yaml.SequenceStartEvent, yaml.MappingStartEvent)):
+            level += 1
+            if level > depth:
+                raise DocumentError(f"nested deeper than {depth} levels", event.start_mark.line + 1)
+        elif isinstance(event, (yaml.SequenceEndEvent, yaml.MappingEndEvent)):
+            level -= 1
+
+
+def _count(node: Any, yaml: Any, budget: int, depth: int) -> None:
+    """Raises DocumentError where the nodes below one, each alias counted with all that it stands for, are too many."""
+    sizes: dict[int, int] = {}
+    open_nodes: set[int] = set()
+
+    def size(each: Any, level: int) -> int:
+        known = sizes.get(id(each))
+        if known is not None:
+            return known
+        if id(each) in open_nodes:
+            raise DocumentError("an alias stands for something that contains it", each.start_mark.line + 1)
+        if level > depth:
+            raise DocumentError(f"nested deeper than {depth} levels", each.start_mark.line + 1)
+        total = 1
+        if not isinstance(each, yaml.ScalarNode):
+            open_nodes.add(id(each))
+            children = each.value if isinstance(each, yaml.SequenceNode) else [n for pair in each.value for n in pair]
+            for child in children:
+                total += size(child, level + 1)
+                if total > budget:
+                    raise DocumentError(f"more than {budget:,} nodes, aliases included", each.start_mark.line + 1)
+            open_nodes.discard(id(each))
+        sizes[id(each)] = total
+        return total
+
+    size(node, 0)
+
+
+_DOTTED = re.compile(r"(?m)^[ \t]*\[{0,2}[^=\n\"'#\[\]]*")
+
+
+def load_toml(text: str) -> dict[str, Any]:
+    """A TOML document. Raises DocumentError."""
+    import sys
+
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib  # pyright: ignore[reportMissingImports]
+
+    depth = limits().depth
+    for match in _DOTTED.finditer(text):
+        if match[0].count(".") > depth:
+            raise DocumentError(f"a key of more than {depth} parts", text.count("\n", 0, match.start()) + 1)
+    try:
+        return tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, ValueError) as error:
+        line = re.search(r"at line (\d+)", str(error))
+        raise DocumentError(_clause(error), int(line[1]) if line else 0) from None
+    except RecursionError:
+        raise DocumentError("nested too deeply") from None
+
+
+def load_json(data: bytes | str) -> Any:
+    """A JSON document, a byte-order mark left out. Raises DocumentError."""
+    try:
+        return json.loads(data.decode("utf-8-sig") if isinstance(data, bytes) else data.removeprefix("\ufeff"))
+    except json.JSONDecodeError as error:
+        raise DocumentError(error.msg, error.lineno) from None
+    except RecursionError:
+        raise DocumentError("nested too deeply") from None
+    except ValueError as error:  # wrong UTF-8, integers of thousands of digits
+        raise DocumentError(_clause(error)) from None
+
+
+def _clause(error: object) -> str:
+    return " ".join(str(error).split())[:200] or type(error).__name__
