@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..edges.console import UserError
 from .reading import VIEWS, Reading
 from .signs import DIGEST, LIMIT, SIGNS
 
@@ -21,7 +22,7 @@ FORMAT = 2
 SHIPPED = Path(__file__).parent / "data" / "model.npz"
 
 
-class ClassifierError(Exception):
+class ClassifierError(UserError):
     """What was asked for cannot be done; the text names the file or place and what to do."""
 
 

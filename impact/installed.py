@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from ..edges.console import counted
+from ..edges.console import UserError, counted
 from . import processes
 from .facts import elf
 from .facts.elf import Elf
@@ -46,7 +46,7 @@ _PREFIX_OF_COLCON = re.compile(r'^COLCON_CURRENT_PREFIX="([^"$]+)"', re.M)
 _PREFIXES_OF_CATKIN = re.compile(r"CMAKE_PREFIX_PATH = r?'([^']*)'")
 
 
-class InstallError(Exception):
+class InstallError(UserError):
     """There is no install space to read; the text says what to do."""
 
 

@@ -26,6 +26,8 @@ from typing import Any, Protocol
 
 import msgspec
 
+from ..edges.console import UserError
+
 IGNORE_MARKERS = frozenset(
     ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "_setup_util.py", "_order_isolated_packages.py")
 )
@@ -54,7 +56,7 @@ class PathProblem(msgspec.Struct, frozen=True, array_like=True, gc=False, order=
     message: str
 
 
-class TreeError(Exception):
+class TreeError(UserError):
     """There is no tree to read: no such folder, no such repository, no such revision. The text says what to do."""
 
 

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import zstandard
 
+from ...edges.console import UserError
 from ..facts.interface import Interface
 from ..facts.parameters import last_part
 from ..facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
@@ -53,7 +54,7 @@ _TYPES = CLASSES | {"enum", "alias"}
 _Row = tuple[str, str, Any]
 
 
-class StoredSurfacesError(Exception):
+class StoredSurfacesError(UserError):
     """The file cannot be read; the message names it and says what to do."""
 
 

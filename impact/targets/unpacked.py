@@ -11,12 +11,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from ...edges.console import UserError
 from ..cache import CACHE_VARIABLE
 
 _STALE = 3600
 
 
-class SnapshotError(Exception):
+class SnapshotError(UserError):
     """The shipped snapshot cannot be read; the message says what to do."""
 
 
