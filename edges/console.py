@@ -19,6 +19,7 @@ import sys
 from collections.abc import Callable
 from typing import Any, TextIO
 
+from .interrupts import interruptible
 from .limits import LimitError, limits
 
 DEBUG = "ROSIMPACT_DEBUG"
@@ -254,7 +255,8 @@ def run_command(
     is 130. about: what an error of the system without a file of its own is about. fail: says why the work failed, and
     returns the status, where that takes more than a line. Raises BrokenPipeError when nobody reads any longer.
     """
-    try:
+
+    def contained() -> int:
         try:
             limits()
             return work()
@@ -266,9 +268,8 @@ def run_command(
             message = describe(error, about)
         # Outside the handler, where what the work held is free again.
         return (fail or _failed)(message)
-    except KeyboardInterrupt:
-        say(f"rosimpact: {interrupted}")
-        return 130
+
+    return interruptible(contained, lambda: say(f"rosimpact: {interrupted}"))
 
 
 def describe(error: Exception, about: object = "") -> str:
@@ -289,7 +290,9 @@ def _shortage(error: BaseException) -> str:
     number = error.errno if isinstance(error, OSError) else 0
     if number in (errno.EMFILE, errno.ENFILE):
         return "too many open files; allow more with `ulimit -n 4096`, or use fewer processes with --jobs"
-    if isinstance(error, MemoryError) or number == errno.ENOMEM:
+    # What the dynamic loader says when a module is imported.
+    unloaded = isinstance(error, ImportError) and ("failed to map" in str(error) or "allocate" in str(error))
+    if isinstance(error, MemoryError) or unloaded or number == errno.ENOMEM:
         return "not enough memory; give it more, or use fewer processes with --jobs 1"
     if number == errno.EAGAIN or (isinstance(error, RuntimeError) and "start new thread" in str(error)):
         return "the system allows no more processes or threads; use fewer with --jobs 1, or allow more with `ulimit -u`"

@@ -78,6 +78,7 @@ def _start(parent: int, what: tuple[Any, ...]) -> None:
     _WHAT[:] = what
     # Ctrl-C goes to every process of the terminal; the parent alone decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     threading.Thread(target=_die_with, args=(parent,), daemon=True).start()
 
 
