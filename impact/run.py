@@ -528,6 +528,7 @@ def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask,
             raise UserError("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
         if dask is not None and jobs is not None:
             raise UserError("--jobs: is for this machine, and with --dask the cluster works; give one of the two")
+        _check_output(output, "")
         report = None if quiet else steps()
         versions = "all" if all_versions else "newest"
         built = build(Clones(repos), all_distros(distros), output, packages, jobs, report, versions=versions, dask=dask)
