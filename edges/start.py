@@ -34,8 +34,9 @@ def main() -> None:
             raise
         _say(_description(error))
     interrupts.finish(status)
-    if interrupts.was_interrupted():
-        # Waiting for what other processes and threads still do is what the user has just declined.
+    if interrupts.was_interrupted() or status == 2:
+        # What other processes and threads still do is of no use by now, and where files or processes ran out they may
+        # never end.
         _flush()
         interrupts.exit_now()
     raise SystemExit(status)

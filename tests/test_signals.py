@@ -38,7 +38,9 @@ def ws(tmp_path_factory) -> Path:
         package = root / f"p{number}"
         (package / "src").mkdir(parents=True)
         (package / "package.xml").write_text(MANIFEST.format(package.name))
-        (package / "CMakeLists.txt").write_text(f"project({package.name})\nfind_package(rclcpp)\n")
+        (package / "CMakeLists.txt").write_text(
+            f"project({package.name})\nfind_package(rclcpp)\nadd_executable(a src/f0.cpp)\n"
+        )
         for place in range(8):
             lines = "".join(f"int f{number}_{place}_{k}() {{ return {k}; }}\n" for k in range(150))
             (package / f"src/f{place}.cpp").write_text("#include <rclcpp/rclcpp.hpp>\n" + lines)
@@ -177,34 +179,36 @@ def limited(kind: int, limit: int):
 COMMAND = [sys.executable, "-c", "import sys; from rosimpact.edges.start import main; sys.exit(main())"]
 
 
-@pytest.mark.parametrize("files", [5, 8, 12, 16, 24, 40])
-def test_few_open_files(ws, tmp_path, files):
+@pytest.mark.parametrize("files", [5, 12, 16, 18, 24])
+def test_few_open_files(ws, cache, files):
     run = subprocess.run(
         [*COMMAND, "check", str(ws), "-t", "jazzy"],
-        env={**os.environ, "ROSIMPACT_CACHE": str(tmp_path)},
+        env={**os.environ, "ROSIMPACT_CACHE": str(cache)},
         preexec_fn=limited(resource.RLIMIT_NOFILE, files),
         capture_output=True,
         text=True,
+        timeout=60,
     )
     assert run.returncode in (1, 2)
     assert "Traceback" not in run.stderr and "fault of rosimpact" not in run.stderr + run.stdout
 
 
-@pytest.mark.parametrize("megabytes", [40, 70, 100, 160, 220])
-def test_little_memory(ws, tmp_path, megabytes):
+@pytest.mark.parametrize("megabytes", [40, 100, 160, 220])
+def test_little_memory(ws, cache, megabytes):
     run = subprocess.run(
         [*COMMAND, "check", str(ws), "-t", "jazzy", "-j", "1"],
-        env={**os.environ, "ROSIMPACT_CACHE": str(tmp_path)},
+        env={**os.environ, "ROSIMPACT_CACHE": str(cache)},
         preexec_fn=limited(resource.RLIMIT_AS, megabytes << 20),
         capture_output=True,
         text=True,
+        timeout=60,
     )
     assert run.returncode in (1, 2)
     assert "Traceback" not in run.stderr and "fault of rosimpact" not in run.stderr + run.stdout
 
 
 @pytest.mark.parametrize("closed", [(0,), (1,), (2,), (0, 1), (1, 2), (0, 1, 2)])
-def test_closed_streams(ws, cache, tmp_path, closed):
+def test_closed_streams(ws, cache, closed):
     """No file of ours gets the place of a stream, and with it what is printed."""
 
     def close() -> None:
@@ -213,14 +217,15 @@ def test_closed_streams(ws, cache, tmp_path, closed):
 
     run = subprocess.run(
         [*COMMAND, "check", str(ws), "-t", "jazzy"],
-        env={**os.environ, "ROSIMPACT_CACHE": str(tmp_path)},
+        env={**os.environ, "ROSIMPACT_CACHE": str(cache)},
         preexec_fn=close,
         capture_output=True,
         text=True,
+        timeout=60,
     )
     assert run.returncode == (2 if 1 in closed else 1)
     assert "Traceback" not in run.stderr and "fault of rosimpact" not in run.stderr
-    assert 1 in closed or "no_such_key" in run.stdout
+    assert 1 in closed or "missing-find-package" in run.stdout
 
 
 # (error, what is said of it)
