@@ -9,18 +9,21 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from functools import cache
-from typing import NamedTuple
+
+from .console import UserError
 
 VARIABLE = "ROSIMPACT_LIMITS"
 KB, MB, GB = 1 << 10, 1 << 20, 1 << 30
 
 
-class LimitError(ValueError):
+class LimitError(UserError):
     """ROSIMPACT_LIMITS cannot be read; the text says how to write it."""
 
 
-class Limits(NamedTuple):
+@dataclass(frozen=True)
+class Limits:
     """Bytes of one file, by what it is; then other limits, in the unit that each says.
 
     Sizes: manifest (package.xml), cmake, interface (msg, srv, action, idl), cpp, python, launch (launch, xacro, urdf,
@@ -60,13 +63,14 @@ _UNITS = {"": 1, "k": KB, "kb": KB, "m": MB, "mb": MB, "g": GB, "gb": GB}
 
 def parse(text: str) -> Limits:
     """Limits from `name=value` pairs separated by commas; sizes in bytes, or with KB, MB or GB. Raises LimitError."""
+    known = [field.name for field in fields(Limits)]
     changed: dict[str, int] = {}
     for pair in filter(None, (part.strip() for part in text.split(","))):
         name, _, value = (part.strip() for part in pair.partition("="))
         match = re.fullmatch(r"([0-9]{1,12})\s*([kmg]?b?)", value.lower())
-        if name not in Limits._fields or match is None or match[2] not in _UNITS or not int(match[1]):
-            known = ", ".join(Limits._fields)
-            raise LimitError(f"{VARIABLE}: `{pair}` is no limit; write such as cpp=32MB; known are {known}")
+        if name not in known or match is None or match[2] not in _UNITS or not int(match[1]):
+            names = ", ".join(known)
+            raise LimitError(f"{VARIABLE}: `{pair}` is not a limit; write for example cpp=32MB; known are {names}")
         changed[name] = int(match[1]) * _UNITS[match[2]]
     return Limits(**changed)
 

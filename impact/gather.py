@@ -18,8 +18,10 @@ from typing import Any
 
 import msgspec
 
+from ..edges.limits import size_text
 from . import processes
 from .facts import kinds
+from .facts.place import Problem
 from .facts.store import Store, fact_key, pack, unpack
 from .tree import PathProblem, Tree
 
@@ -100,9 +102,11 @@ class Gathered:
                 pass
         # The store lost it, or holds something else under its name: the file is still there.
         data, content = self.tree.read_with_id(path)
-        facts = kinds.extract(key[1], data)
-        self.store.put([(_key(content, key[1]), pack(kinds.encode(facts)))])
-        return facts
+        ((_, ((_, kind, made, failure),)),) = _extracted(iter([[(path, content, (key[1],), data)]]), 1)
+        if failure:
+            return kinds.FileFacts(kind, kinds.empty(kind, Problem(1, failure)))
+        self.store.put([(_key(content, kind), made)])
+        return kinds.decode(kind, unpack(made))
 
 
 def gather(
@@ -140,8 +144,9 @@ def gather(
         other = second(path) if second is not None else None
         if kind is None and other is None:
             continue
-        if size > kinds.LARGEST:
-            message = f"larger than {kinds.LARGEST >> 20} MB ({size >> 20} MB), taken for generated and not read"
+        largest = max(_largest(each) for each in (kind, other) if each is not None)
+        if size > largest:
+            message = f"larger than {size_text(largest)} ({size_text(size)}), taken for generated and not read"
             gathered.problems.append(PathProblem(path, message))
             continue
         content = known_id(path)
@@ -173,6 +178,9 @@ def gather(
 
 def _key(content: str, kind: str) -> bytes:
     return fact_key(content, _version(kind))
+
+
+_largest = cache(kinds.largest)
 
 
 @cache
