@@ -1,5 +1,9 @@
 """Limits are the user's: every name, unit and mistake of ROSIMPACT_LIMITS."""
 
+import re
+from dataclasses import fields
+from pathlib import Path
+
 import pytest
 from rosimpact.edges.limits import KB, MB, LimitError, Limits, of_environment, parse, size_text
 
@@ -29,3 +33,15 @@ def test_a_wrong_limit_is_an_error_that_shows_how_to_write_one(text):
 )
 def test_sizes_as_people_write_them(size, text):
     assert size_text(size) == text
+
+
+def test_the_documentation_lists_every_limit_with_its_default():
+    page = (Path(__file__).parents[2] / "docs" / "security.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"(?m)^\| `(\w+)` \| .* \| ([^|]+) \|$", page))
+    counts, seconds = {"entries", "depth", "nodes"}, {"seconds"}
+    expected = {}
+    for field in fields(Limits):
+        value = field.default
+        unit = f"{value:,}" if field.name in counts else f"{value} s" if field.name in seconds else size_text(value)
+        expected[field.name] = unit
+    assert rows == expected
