@@ -24,7 +24,7 @@ def test_limits_are_read(text, expected):
 
 @pytest.mark.parametrize("text", ["cpp", "cpp=", "cpp=-1", "cpp=0", "cpp=1TB", "cxx=1MB", "cpp=" + "9" * 5000, "cpp=²"])
 def test_a_wrong_limit_is_an_error_that_shows_how_to_write_one(text):
-    with pytest.raises(LimitError, match="ROSIMPACT_LIMITS: .* write for example cpp=32MB; known are manifest, cmake"):
+    with pytest.raises(LimitError, match=r"ROSIMPACT_LIMITS: .* write for example cpp=32MB; known are manifest, cmake"):
         parse(text)
 
 
