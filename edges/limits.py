@@ -30,7 +30,7 @@ class Limits:
     other XML), parameters (YAML), script, settings (rosimpact.toml, colcon.meta, colcon.pkg, defaults.yaml, setup.cfg,
     .gitmodules, .repos), text (whatever a pattern is looked for in), baseline, capture, listing (dpkg -l), library
     (ELF files), deb (a Debian package as downloaded, and unpacked), index (of git), object (a git object), report (bug
-    reports, models).
+    reports, models), row (of the cache).
     """
 
     manifest: int = 1 * MB
@@ -51,6 +51,7 @@ class Limits:
     index: int = 256 * MB
     object: int = 16 * MB
     report: int = 512 * MB
+    row: int = 512 * MB
     entries: int = 2_000_000  # files and folders of one tree
     depth: int = 200  # folders, or nested nodes of a document
     nodes: int = 200_000  # of one YAML document, aliases expanded

@@ -454,9 +454,12 @@ class _Linker:
             blob = remembered.get(keys[place.path])
             if blob is not None:
                 size = int.from_bytes(blob[:4], "big")
-                read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
                 packed = memoryview(blob)[4 + size :]
-                before = decoder.decode(packed)
+                try:
+                    read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
+                    before = decoder.decode(packed)
+                except msgspec.MsgspecError:
+                    continue  # of another version: made anew
                 if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items()):
                     found[place.path] = _Joined(before, packed, None)
                 else:
