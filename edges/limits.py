@@ -12,13 +12,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
 
-from .console import UserError
-
 VARIABLE = "ROSIMPACT_LIMITS"
 KB, MB, GB = 1 << 10, 1 << 20, 1 << 30
 
 
-class LimitError(UserError):
+class LimitError(ValueError):
     """ROSIMPACT_LIMITS cannot be read; the text says how to write it."""
 
 
