@@ -41,6 +41,10 @@ _NOT_UTF8 = re.compile("[\ud800-\udfff]")
 _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 # GitHub's runner strips white space before it looks for `::`.
 _COMMAND = re.compile(r"(?m)^([^\S\n]*):(?=:)")
+_OBEYED = re.compile(
+    "(?m)[\x00-\x08\x0b\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]|\r(?!\n)"
+    "|##[A-Za-z]{0,20}\\[|^[^\\S\n]*::"
+)
 # In our own output colours are the only escape sequences.
 _COLOUR = re.compile(r"\x1b\[[0-9;]{0,20}m")
 
@@ -132,6 +136,11 @@ def _json_errors(error: UnicodeError) -> tuple[str, int]:
 codecs.register_error("rosimpact.json", _json_errors)
 
 
+def is_obeyed(text: str) -> bool:
+    """Whether a terminal or CI would obey something in a document that has to be printed as it is, such as a patch."""
+    return _OBEYED.search(text) is not None
+
+
 def without_commands(text: str) -> str:
     """Text of which no line begins with `::`, which GitHub's runner obeys."""
     return _COMMAND.sub(r"\1\\x3a", text) if "::" in text else text
@@ -198,18 +207,20 @@ def _told_failures(stream: TextIO | None):
     """What a stream that cannot be written raises as UserError; it is let alone from then on, so that Python does not
     complain of it once more at its end."""
     if stream is None:
-        raise UserError(f"{_CANNOT}: it is closed; {_INSTEAD}")
+        raise UserError(_unwritable(None))
     try:
         yield
     except (OSError, ValueError) as error:
         _silence(stream)
         if isinstance(error, BrokenPipeError):
             raise
-        raise UserError(f"{_CANNOT}: {getattr(error, 'strerror', None) or error}; {_INSTEAD}") from None
+        raise UserError(_unwritable(error)) from None
 
 
-_CANNOT = "standard output cannot be written"
-_INSTEAD = "check where it goes"
+def _unwritable(error: OSError | ValueError | None) -> str:
+    closed = error is None or (isinstance(error, OSError) and error.errno == errno.EBADF)
+    reason = "it is closed" if closed else getattr(error, "strerror", None) or error
+    return f"standard output cannot be written: {reason}; check where it goes, or name a file with --output"
 
 
 def _silence(stream: TextIO) -> None:
@@ -218,6 +229,12 @@ def _silence(stream: TextIO) -> None:
         null = os.open(os.devnull, os.O_WRONLY)
         os.dup2(null, stream.fileno())
         os.close(null)
+
+
+def output_failed(error: OSError) -> int:
+    """Says that standard output cannot be written and gives the exit status; nothing more is written there."""
+    _silence(sys.stdout)
+    return _failed(_unwritable(error))
 
 
 def hold_streams() -> None:

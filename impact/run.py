@@ -5,10 +5,25 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from ..corpus import __version__
-from ..edges.console import UserError, counted, run_command, say, steps, visible
+from ..edges.console import (
+    UserError,
+    counted,
+    escape_json,
+    is_obeyed,
+    json_text,
+    rewrite,
+    run_command,
+    say,
+    steps,
+    visible,
+    write,
+    write_exactly,
+    write_json,
+)
 from ..edges.files import check_writable_path, outermost, read_file, write_file
 from ..edges.limits import limits
 from .check import Checked, Options
@@ -32,10 +47,12 @@ def _fail(message: str, format: str, output: Path | None, path: object) -> int:
     say(f"rosimpact: {message}")
     if format in FORMATS and format != "text":
         text = render(Report(__version__, "", (), (), Coverage(), failure=message), format, notes=False)
-        try:
-            _deliver(text, output, path)
-        except UserError:
-            _write(text)
+        with suppress(UserError):
+            try:
+                _deliver(text, output, format, path)
+            except UserError:
+                if output is not None:
+                    _print(text, format)
     return 2
 
 
@@ -55,7 +72,7 @@ def _deliver_answer(
     def work() -> int:
         _one_of("--format", format, known)
         _check_output(output, path)
-        _deliver(answer(), output, path)
+        _deliver(answer(), output, format, path)
         return 0
 
     return run_command(work, _READ_SO_FAR, path)
@@ -99,8 +116,11 @@ def check(
             _prune(baseline, known, report, path)
         if write_baseline:
             return _new_baseline(write_baseline, report, path)
-        text = _patch(checked) if diff else render(report, format, notes, output, _prefix(path, checked))
-        _deliver(text, output, path)
+        if diff:
+            patch, incomplete = _patch(checked, output)
+            _deliver(patch, output, "patch", path)
+        else:
+            _deliver(render(report, format, notes, output, _prefix(path, checked)), output, format, path)
         if format == "github" and not diff:
             _write_step_summary(report)
         if report.failure or incomplete:
@@ -144,7 +164,7 @@ def _new_baseline(file: Path, report: Report, path: Path) -> int:
         raise UserError(f"{file}: not written, since nothing was analysed")
     found = in_order([*report.findings, *report.known])
     _save(file, baseline(found), path)
-    say(f"{file}: {counted(len(found), 'finding')}")
+    say(f"rosimpact: {file}: {counted(len(found), 'finding')}")
     return 2 if report.failure else 0
 
 
@@ -155,7 +175,7 @@ def _prune(file: Path, known: str, report: Report, path: Path) -> None:
     text, gone = pruned(known_from(known), [*report.findings, *report.known])
     if gone:
         _save(file, text, path)
-    say(f"{file}: {gone} cured, taken out")
+    say(f"rosimpact: {file}: {gone} cured, taken out")
 
 
 def _fixed(path: Path, checked: Checked) -> bool:
@@ -184,14 +204,27 @@ def _applied(checked: Checked):
     return fix.apply(fix.fixes(finding for finding in checked.report.findings if finding.new), checked.originals.get)
 
 
-def _patch(checked: Checked) -> str:
-    """What the fixes would change, as `git apply` reads it."""
+def _patch(checked: Checked, output: Path | None) -> tuple[str, bool]:
+    """What the fixes would change, as `git apply` reads it, and whether some of it is left out: a patch holds lines of
+    the workspace as they are, so that one which a terminal or CI would obey goes to a file alone."""
     from . import fix
 
     applied = _applied(checked)
     for edit, reason in applied.refused:
         say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
-    return "".join(fix.unified_diff(name, checked.originals[name], data) for name, data in applied.files.items())
+    parts: list[str] = []
+    incomplete = False
+    for name, data in applied.files.items():
+        part = fix.unified_diff(name, checked.originals[name], data)
+        if output is None and is_obeyed(part):
+            incomplete = True
+            say(
+                f"rosimpact: {shown(name)}: its changes are not printed, since the lines around them hold what a "
+                "terminal or CI would obey; write them to a file with --output"
+            )
+        else:
+            parts.append(part)
+    return "".join(parts), incomplete
 
 
 def _prefix(path: Path, checked: Checked) -> str:
@@ -232,14 +265,14 @@ def schema() -> int:
     """Prints the JSON schema of the JSON report."""
     from .report.json import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
-def _deliver(text: str, output: Path | None, path: object = "") -> None:
-    """Writes a text to the file asked for, or to standard output. Raises UserError when the file cannot be written."""
+def _deliver(text: str, output: Path | None, format: str, path: object = "") -> None:
+    """Writes a text to the file asked for, or to standard output. Raises UserError when that cannot be written."""
     if output is None:
-        _write(text)
+        _print(text, format)
     else:
         _save(output, text, path)
 
@@ -296,22 +329,28 @@ def _bytes(text: str) -> bytes:
     return (text if text.endswith("\n") or not text else text + "\n").encode("utf-8", "surrogateescape")
 
 
-def _write(text: str) -> None:
-    sys.stdout.flush()
-    sys.stdout.buffer.write(_bytes(text))
-    sys.stdout.flush()
+_PRINTERS: dict[str, Callable[[str], None]] = {
+    "json": write_json, "sarif": write_json, "html": write_exactly, "graphml": write_exactly, "dot": write_exactly,
+    "github": write_exactly, "patch": write_exactly,
+}  # fmt: skip
+"""Formats whose makers escape what they hold; all others are for people."""
+
+
+def _print(text: str, format: str) -> None:
+    """Prints a text on standard output. Who reads no further has read enough: the exit status stays what it is. Raises
+    UserError when it cannot be written."""
+    with suppress(BrokenPipeError):
+        _PRINTERS.get(format, write)(text)
 
 
 def _progress() -> Callable[[int, int], None] | None:
     """A line on standard error that is rewritten while files are parsed; None when nobody watches."""
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         return None
 
     def show(done: int, total: int) -> None:
         share = 100 * done // max(1, total)
-        end = "\r\x1b[K" if done >= total else ""
-        sys.stderr.write(f"\rparsing {share:3d} % of {total / 1e6:.1f} MB{end}")
-        sys.stderr.flush()
+        rewrite("" if done >= total else f"parsing {share:3d} % of {total / 1e6:.1f} MB", ended=False)
 
     return show
 
@@ -323,7 +362,7 @@ def graph_schema() -> int:
     """Prints the JSON schema of the graph's JSON."""
     from .flow.drawing.json import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
@@ -362,7 +401,7 @@ def impact_schema() -> int:
     """Prints the JSON schema of the JSON of `impact`."""
     from .flow.impact_report import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
@@ -394,7 +433,7 @@ def upgrade_schema() -> int:
     """Prints the JSON schema of the JSON of `upgrade`."""
     from .report.upgrade import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
@@ -610,13 +649,14 @@ def explain(name: str | None) -> int:
 
     rules = all_rules()
     if name is None:
-        family = ""
+        family, lines = "", []
         for rule in sorted(rules.values(), key=lambda r: (r.family, r.name)):
             if rule.family != family:
                 family = rule.family
-                print(f"{family}:")
-            print(f"  {rule.name:26s} {rule.severity:8s} {rule.documentation.splitlines()[0].split(': ', 1)[-1]}")
-        return 0
+                lines.append(f"{family}:")
+            first = rule.documentation.splitlines()[0].split(": ", 1)[-1]
+            lines.append(f"  {rule.name:26s} {rule.severity:8s} {first}")
+        return _deliver_answer(lambda: "\n".join(lines))
     if name not in rules:
         from difflib import get_close_matches
 
@@ -626,8 +666,7 @@ def explain(name: str | None) -> int:
             + (f"did you mean `{close[0]}`?" if close else "`rosimpact explain` lists them")
         )
         return 2
-    print(rules[name].documentation.rstrip())
-    return 0
+    return _deliver_answer(rules[name].documentation.rstrip)
 
 
 def env_capture(output: Path | None) -> int:
@@ -638,11 +677,11 @@ def env_capture(output: Path | None) -> int:
 
         _check_output(output, "")
         machine = capture()
-        _deliver(to_json(machine), output)
+        _deliver(to_json(machine), output, "json")
         if not machine.distro:
-            say("no ROS distro was found on this machine: set `distro` in the file before it is used as a target")
+            say("rosimpact: no ROS distro was found here: set `distro` in the file before it is used as a target")
         if output is not None:
-            say(f"{output}: written; use it with --target {output}")
+            say(f"rosimpact: {output}: written; use it with --target {output}")
         return 0
 
     return run_command(work, "interrupted; nothing was written", "this machine")
@@ -652,7 +691,7 @@ def env_diff_schema() -> int:
     """Prints the JSON schema of the JSON of `env diff`."""
     from .report.machines import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
@@ -685,10 +724,9 @@ def why(name: str, path: Path, targets: tuple[str, ...], format: str) -> int:
         unanswered = answered != {a.target for a in found}
         if format == "text":
             return as_text(name, found)
-        import json
-
-        rows = [answer._asdict() | {"offers": [offer._asdict() for offer in answer.offers]} for answer in found]
-        return json.dumps(rows, indent=1)
+        return json_text(
+            [answer._asdict() | {"offers": [offer._asdict() for offer in answer.offers]} for answer in found]
+        )
 
     return _deliver_answer(answer, format, _TEXT_OR_JSON, path=path) or int(unanswered)
 
@@ -703,7 +741,7 @@ def data_status(format: str = "text") -> int:
         if format == "json":
             import json
 
-            return json.dumps(found._asdict(), indent=1, default=str)
+            return escape_json(json.dumps(found._asdict(), indent=1, default=str, ensure_ascii=False))
         origin = "updated" if found.updated else "shipped with rosimpact"
         lines = [f"distro data of {found.date}, {origin}, {found.packed / 1e6:.1f} MB, in {found.folder}"]
         lines += [f"from {name} {commit}" for name, commit in found.sources.items()]
@@ -726,13 +764,14 @@ def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path 
         from .targets.build_data import build
 
         built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, steps())
-        _write(
+        _print(
             f"data of {built.date} in {output}: {counted(built.releases, 'release')}, "
             f"{counted(built.manifests, 'manifest')}, {counted(built.rules, 'rosdep rule')}, "
-            f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)"
+            f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)",
+            "text",
         )
         for name, count in built.unreadable.items():
-            say(f"{name}: {counted(count, 'version')} of its distribution file could not be read")
+            say(f"rosimpact: {name}: {counted(count, 'version')} of its distribution file could not be read")
         return 0
 
     return run_command(build_it, _READ_SO_FAR, rosdistro)
@@ -746,11 +785,12 @@ def data_update() -> int:
 
         found = update(report=steps())
         for failure in found.failures:
-            say(f"not updated: {failure}")
-        _write(
+            say(f"rosimpact: not updated: {failure}")
+        _print(
             f"data of {found.date} in {found.folder}: {counted(len(found.syncs), 'new sync')}, "
             f"{counted(found.releases, 'release')}, {counted(found.manifests, 'manifest')}, "
-            f"{counted(found.rules, 'rosdep rule')}"
+            f"{counted(found.rules, 'rosdep rule')}",
+            "text",
         )
         return 0
 
