@@ -270,7 +270,7 @@ def shelves(installed: Installed, targets: Sequence[Chosen], config: Config) -> 
     from .targets.sonames import default_sonames
 
     base = config.path.parent if config.path else Path()
-    underlays = [str(base / Path(underlay).expanduser()) for underlay in config.underlays]
+    underlays = [str(base / os.path.expanduser(underlay)) for underlay in config.underlays]
     sourced = [str(prefix) for prefix in prefixes(Path("/"), dict(os.environ))]
     own, near = _library_folders(underlays), _library_folders([*installed.underlays, *sourced])
     platform = normal_platform(platform_of(Path("/")))
