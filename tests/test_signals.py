@@ -97,9 +97,9 @@ def is_clean(status: int, out: str, err: str) -> None:
 def test_interrupted_at_any_moment(ws, tmp_path, signalled):
     """One process alone and the whole group, from the first import to the report."""
     statuses = set()
-    for number in range(10):
+    for number in range(7):
         run = Run(ws, tmp_path / str(number))
-        time.sleep(number**2 * 0.02)
+        time.sleep(number**2 * 0.05)
         if number % 2:
             os.killpg(run.process.pid, signalled)
         else:
@@ -115,7 +115,7 @@ def test_interrupted_at_any_moment(ws, tmp_path, signalled):
 
 
 def test_what_was_interrupted_is_gone_on_with(ws, tmp_path):
-    for wait in (0.2, 0.6, 1.0):
+    for wait in (0.3, 0.9):
         run = Run(ws, tmp_path)
         time.sleep(wait)
         run.process.send_signal(signal.SIGINT)
@@ -179,7 +179,7 @@ def limited(kind: int, limit: int):
 COMMAND = [sys.executable, "-c", "import sys; from rosimpact.edges.start import main; sys.exit(main())"]
 
 
-@pytest.mark.parametrize("files", [5, 12, 16, 18, 24])
+@pytest.mark.parametrize("files", [5, 12, 18, 24])
 def test_few_open_files(ws, cache, files):
     run = subprocess.run(
         [*COMMAND, "check", str(ws), "-t", "jazzy"],
@@ -193,7 +193,7 @@ def test_few_open_files(ws, cache, files):
     assert "Traceback" not in run.stderr and "fault of rosimpact" not in run.stderr + run.stdout
 
 
-@pytest.mark.parametrize("megabytes", [40, 100, 160, 220])
+@pytest.mark.parametrize("megabytes", [40, 100, 220])
 def test_little_memory(ws, cache, megabytes):
     run = subprocess.run(
         [*COMMAND, "check", str(ws), "-t", "jazzy", "-j", "1"],
@@ -207,7 +207,7 @@ def test_little_memory(ws, cache, megabytes):
     assert "Traceback" not in run.stderr and "fault of rosimpact" not in run.stderr + run.stdout
 
 
-@pytest.mark.parametrize("closed", [(0,), (1,), (2,), (0, 1), (1, 2), (0, 1, 2)])
+@pytest.mark.parametrize("closed", [(0,), (1,), (2,), (0, 1, 2)])
 def test_closed_streams(ws, cache, closed):
     """No file of ours gets the place of a stream, and with it what is printed."""
 
