@@ -3,8 +3,8 @@
 Each request asks for what is not older than the newest row of the one before, so a list whose rows move or go loses
 nothing. Only where more rows than a page holds are of one moment, numbered pages are the way on, and there a row that
 goes moves all later ones up, one of them from an unread page to one that was read. So after each further page the one
-before it is read again: is it the same, nothing went from what was read, and the further page followed it without a gap;
-else what moved into it has now been read, and the further page is asked for once more.
+before it is read again: when it is the same, nothing went from what was read, and the further page followed it without
+a gap; else what moved into it has now been read, and the further page is asked for once more.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ def read_in_order(
 ) -> Iterator[Step]:
     """Reads a list from a moment to its end, each row at least once.
 
-    ask: gives a page of the rows that are not older than its first argument; the second is the place of a further page,
-    None for the first one. moment_of, name_of: of a row. wait: called when a moment is not over. Raises CorpusError when
-    a list changes faster than it can be read, and whatever ask() and wait() raise.
+    ask: gives a page of the rows that are not older than its first argument; the second is the place of a further
+    page, None for the first one. moment_of, name_of: of a row. wait: called when a moment is not over. Raises
+    CorpusError when a list changes faster than it can be read, and whatever ask() and wait() raise.
     """
     known: dict[Hashable, Row] = {}
 

@@ -143,7 +143,8 @@ class Tagged:
         """From a state (None: from the start) to the end. State: the second of the last question's posting."""
         since = (state or {}).get("since")
         if since is None:
-            since = int(datetime.fromisoformat(self._since).replace(tzinfo=timezone.utc).timestamp()) if self._since else 0
+            day = datetime.fromisoformat(self._since).replace(tzinfo=timezone.utc) if self._since else None
+            since = int(day.timestamp()) if day else 0
         client, done = self._server.client, 0
         for step in read_in_order(
             self._part, int(since), _posted, lambda item: str(item.get("question_id")), lambda: None, client.service
