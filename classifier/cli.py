@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
@@ -98,7 +99,7 @@ def _text_of(file: Path | None) -> IO[str]:
     """A file, or standard input, as text without a byte-order mark. Raises OSError."""
     from ..edges.files import open_regular
 
-    source = sys.stdin.buffer if file is None else open(open_regular(file), "rb")
+    source = sys.stdin.buffer if file is None else os.fdopen(open_regular(file), "rb")
     return io.TextIOWrapper(source, "utf-8-sig", "replace")
 
 

@@ -32,8 +32,11 @@ PER_PAGE = 100
 SEARCH_LIMIT = 1_000
 """Results that a search gives at most."""
 _OVER = 2  # seconds after which nothing more is updated at a time, by the server's clock
-_NAME = re.compile(r"[\w-][\w.-]*/(?!\.{1,2}\Z)[\w.-]+\Z")
-_ID = re.compile(r"(?:https://api\.github\.com/repos/)?([\w.-]+/[\w.-]+)(?:#|/(?:issues|pulls?)/)(\d+)\Z")
+_NAME = re.compile(r"[\w-][\w.-]*/(?!\.{1,2}\Z)[\w.-]+\Z", re.ASCII)
+_ID = re.compile(
+    r"(?:https://api\.github\.com/repos/)?([\w-][\w.-]*/(?!\.{1,2}[#/])[\w.-]+)(?:#|/(?:issues|pulls?)/)(\d{1,12})\Z",
+    re.ASCII,
+)
 _PAGE = re.compile(r"https?://[^/]+/(?:repos/)?([\w.-]+/[\w.-]+)/(?:issues|pulls?)/(\d+)")
 _KEPT = (
     "number", "title", "body", "state", "state_reason", "created_at", "updated_at", "closed_at", "html_url", "url",

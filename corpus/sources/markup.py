@@ -22,8 +22,12 @@ def soup(html: str):
 
 
 def markdown(html: str | Tag) -> str:
-    """The Markdown of a post's HTML, without blank lines at its ends."""
-    return _tidy(_blocks(soup(html) if isinstance(html, str) else html))
+    """The Markdown of a post's HTML, without blank lines at its ends; its bare text where it nests too deeply."""
+    page = soup(html) if isinstance(html, str) else html
+    try:
+        return _tidy(_blocks(page))
+    except RecursionError:
+        return _tidy("".join(page.strings))
 
 
 def _tidy(text: str) -> str:
