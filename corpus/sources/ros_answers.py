@@ -164,7 +164,7 @@ class Archive:
                 for count, member in enumerate(tar):
                     if count > limits().entries or tar.offset > _UNPACKED:
                         raise tarfile.ReadError("unpacks to too much")
-                    tar.members = []  # which are kept for whoever looks names up
+                    tar.members = []  # type: ignore[attr-defined]  # which are kept for whoever looks names up
                     folder, _, name = member.name.rpartition("/")
                     number = _NAME.match(name)
                     if number and folder.endswith(_FOLDER) and member.isreg() and (content := tar.extractfile(member)):
@@ -372,8 +372,9 @@ def parse_item(item: dict[str, Any]) -> Gathered:
         posted = datetime.fromtimestamp(int(item["added_at"]), timezone.utc).date().isoformat()
     except (KeyError, TypeError, ValueError, OverflowError, OSError):
         raise CorpusError("Askbot: an answer holds something that is no question; check --api") from None
-    author = item.get("author") if isinstance(item.get("author"), dict) else {}
-    tags = item.get("tags") if isinstance(item.get("tags"), list) else []
+    given, listed = item.get("author"), item.get("tags")
+    author = given if isinstance(given, dict) else {}
+    tags = listed if isinstance(listed, list) else []
     title, _ = _title(str(item.get("title") or ""))
     kept = {
         name: item[name]

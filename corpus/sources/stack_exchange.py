@@ -192,8 +192,9 @@ def gathered(item: dict[str, Any]) -> Gathered:
     except (KeyError, TypeError, ValueError, OverflowError, OSError):
         raise CorpusError("Stack Exchange: an answer holds something that is no question; check --api") from None
     original = original_of(body)
-    owner = item.get("owner") if isinstance(item.get("owner"), dict) else {}
-    tags = item.get("tags") if isinstance(item.get("tags"), list) else []
+    given, listed = item.get("owner"), item.get("tags")
+    owner = given if isinstance(given, dict) else {}
+    tags = listed if isinstance(listed, list) else []
     report = Report(
         id=f"robotics-se:{number}",
         url=str(item.get("link") or "") or f"https://robotics.stackexchange.com/questions/{number}",

@@ -1,4 +1,4 @@
-"""Files of others that mean harm are one error, or are left out and named; nothing hangs, nothing is written through."""
+"""Files of others that mean harm are one error, or are left out and named; nothing hangs or is written through."""
 
 from __future__ import annotations
 
