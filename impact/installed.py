@@ -5,6 +5,7 @@ Install spaces of catkin (devel and install), of colcon (isolated and merged), a
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
 import re
@@ -17,10 +18,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 
 from ..edges.console import counted
+from ..edges.files import read_start, read_text
+from ..edges.limits import limits
 from . import processes
 from .facts import elf
 from .facts.elf import Elf
 from .facts.store import Store, fact_key, pack, unpack
+from .targets.loader import open_library
 from .tree import PathProblem, shown
 
 if TYPE_CHECKING:
@@ -142,8 +146,16 @@ def _candidates(folder: Path, problems: list[PathProblem]) -> Iterator[tuple[str
         where = os.path.relpath(os.fsdecode(error.filename or folder), folder)
         problems.append(PathProblem(_joined(shown(os.fspath(folder)), shown(where)), _reason(error)))
 
+    entries = 0
     for here, folders, names in os.walk(folder, onerror=unread):
         folders[:] = sorted(name for name in folders if name not in _LEFT_OUT)
+        if folders and here.count(os.sep) - os.fspath(folder).count(os.sep) >= limits().depth:
+            unread(OSError(errno.ELOOP, f"folders nested deeper than {limits().depth}", here))
+            folders.clear()
+        entries += len(names)
+        if entries > limits().entries:
+            unread(OSError(errno.EFBIG, f"more than {limits().entries:,} files, the others are left out", here))
+            return
         for name in sorted(names):
             if name.endswith(_TEXT_ENDS):
                 continue
@@ -164,11 +176,10 @@ def _facts(paths: Iterable[str], store: Store, jobs: int) -> dict[str, Elf | str
     sizes: dict[str, int] = {}
     for path in dict.fromkeys(paths):
         try:
-            with open(path, "rb") as file:
-                if file.read(4) == elf.MAGIC:
-                    sizes[path] = os.fstat(file.fileno()).st_size
-                else:
-                    result[path] = None
+            if read_start(path, 4) == elf.MAGIC:
+                sizes[path] = os.stat(path).st_size
+            else:
+                result[path] = None
         except OSError as error:
             result[path] = _reason(error)
     keys: dict[str, bytes] = {}
@@ -218,7 +229,8 @@ def _extracted(items: Iterable[tuple[bytes, str]]) -> list[tuple[bytes, bytes]]:
     rows = []
     for key, path in items:
         try:
-            found = elf.read(Path(path).read_bytes())
+            with open_library(path) as file:
+                found = elf.read(file)
         except OSError:
             found = None
         rows.append((key, pack(msgspec.msgpack.encode(found)) if found is not None else b""))
@@ -227,7 +239,7 @@ def _extracted(items: Iterable[tuple[bytes, str]]) -> list[tuple[bytes, bytes]]:
 
 def _content_id(path: str) -> str:
     """git's id of the file's content."""
-    with open(path, "rb") as file:
+    with open_library(path) as file:
         digest = hashlib.sha1(b"blob %d\0" % os.fstat(file.fileno()).st_size, usedforsecurity=False)
         while chunk := file.read(1 << 20):
             digest.update(chunk)
@@ -371,7 +383,7 @@ class _Owner:
         for build in self._builds:
             for manifest in sorted(build.glob("*/install_manifest.txt")):
                 try:
-                    lines = manifest.read_text(encoding="utf-8", errors="replace").splitlines()
+                    lines = read_text(manifest, limits().listing, "replace").splitlines()
                 except OSError:
                     continue
                 for line in lines:
@@ -390,7 +402,8 @@ def _folders(folder: Path) -> list[Path]:
 def _underlays(folder: Path) -> Iterator[str]:
     """Prefixes that an install space was built on, as its own setup files name them; for the prefix of one package the
     install space around it."""
-    if any((folder / mark / folder.name).exists() for mark in ("share", "share/colcon-core/packages")):
+    marks = ("share", "share/colcon-core/packages")
+    if folder.name and any((folder / mark / folder.name).exists() for mark in marks):
         yield str(folder.parent)
         yield from _underlays(folder.parent)
     for name, pattern, parted in (
@@ -398,7 +411,7 @@ def _underlays(folder: Path) -> Iterator[str]:
         ("_setup_util.py", _PREFIXES_OF_CATKIN, ";"),
     ):
         try:
-            text = (folder / name).read_text(encoding="utf-8", errors="replace")
+            text = read_text(folder / name, limits().settings, "replace")
         except OSError:
             continue
         for match in pattern.finditer(text):
