@@ -141,10 +141,12 @@ def _baseline(file: Path | None) -> str:
     """The text of a baseline file, checked, so that a wrong one is named before the work starts."""
     if file is None:
         return ""
+    from ..edges.files import read_file
+    from ..edges.limits import limits
     from .findings import known_from
 
     try:
-        text = file.read_bytes()
+        text = read_file(file, limits().baseline)
         known_from(text)
         return text.decode("utf-8-sig")
     except OSError as error:
