@@ -8,6 +8,7 @@ and keeps its id. Of a person, only the public name and the address of their pag
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import os
 import sqlite3
@@ -19,6 +20,8 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from ..edges.files import NOT_REGULAR
+from ..edges.limits import limits
 from .outputs import unwritable
 from .report import CorpusError, Report, read_reports, repository_of
 
@@ -255,7 +258,8 @@ class Store:
     def state(self, name: str) -> dict[str, Any] | None:
         """The state of a gathering, None when it was never begun."""
         rows = self._all("SELECT state FROM gathering WHERE name = ?", (name,))
-        return msgspec.json.decode(rows[0][0]) if rows else None
+        with self._reading(name):
+            return msgspec.json.decode(rows[0][0]) if rows else None
 
     def gatherings(self) -> list[tuple[str, bool, float]]:
         """(name, whether it came to its end, seconds since 1970 of its last page) of each gathering."""
@@ -270,12 +274,14 @@ class Store:
     def raw(self, id: str) -> bytes:
         """What is kept of the answer that a report was read from; empty when there is none."""
         rows = self._all("SELECT raw FROM report WHERE key = ?", (self._key(id),))
-        return zlib.decompress(rows[0][0]) if rows and rows[0][0] else b""
+        with self._reading(id):
+            return _inflated(rows[0][0]) if rows and rows[0][0] else b""
 
     def report(self, id: str) -> Report | None:
         """One report by its id or by one it had before; None when it is not here or has no text any more."""
         rows = self._all(f"{_REPORTS} AND r.key = ?", (self._key(id),))
-        return _decoded(*rows[0][1:]) if rows else None
+        with self._reading(id):
+            return _decoded(*rows[0][1:]) if rows else None
 
     def reports(self) -> Iterator[Report]:
         """All reports with a text in the order of their keys, each thing reported once (see open_reports)."""
@@ -283,8 +289,10 @@ class Store:
         try:
             for key, *row in self._db.execute(f"{_REPORTS} ORDER BY r.key"):
                 if key not in left_out:
-                    yield _decoded(*row)
-        except sqlite3.Error as error:
+                    with self._reading(key):
+                        report = _decoded(*row)
+                    yield report
+        except (sqlite3.Error, UnicodeDecodeError) as error:
             raise self._fault(error) from None
 
     def kept(self, id: str) -> Kept | None:
@@ -386,10 +394,12 @@ class Store:
         for key, id, packed in self._all(
             "SELECT key, id, report FROM report WHERE key >= ? AND key < ?", (f"{old.lower()}#", f"{old.lower()}$")
         ):
-            number = id.rpartition("#")[2]
+            with self._reading(key):
+                number = id.rpartition("#")[2]
             now_id = f"{new}#{number}"
             if packed is not None:
-                report = _decode(zlib.decompress(packed))
+                with self._reading(key):
+                    report = _decode(_inflated(packed))
                 url = report.url.replace(f"/{old}/", f"/{new}/")
                 packed = zlib.compress(msgspec.json.encode(msgspec.structs.replace(report, id=now_id, url=url)), _LEVEL)
             self._db.execute("UPDATE report SET id = ?, report = ? WHERE key = ?", (now_id, packed, key))
@@ -430,6 +440,8 @@ class Store:
         before = self._db
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
+            if os.path.exists(self.path) and not os.path.isfile(self.path):
+                raise OSError(errno.EINVAL, NOT_REGULAR)  # SQLite would wait for a named pipe
             self._db = sqlite3.connect(self.path, timeout=_BUSY_SECONDS, isolation_level=None)
         except (OSError, sqlite3.Error) as error:
             raise CorpusError(
@@ -466,7 +478,7 @@ class Store:
                         for statement in filter(str.strip, _SCHEMA.split(";")):
                             self._db.execute(statement)
                         self._db.execute(f"PRAGMA user_version = {_SCHEMA_VERSION}")
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeDecodeError) as error:
             raise self._fault(error) from None
 
     @contextlib.contextmanager
@@ -479,16 +491,26 @@ class Store:
                 self._db.execute("ROLLBACK")
                 raise
             self._db.execute("COMMIT")
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeDecodeError) as error:
             raise self._fault(error) from None
 
     def _all(self, statement: str, values: tuple = ()) -> list[tuple]:
         try:
             return self._db.execute(statement, values).fetchall()
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeDecodeError) as error:
             raise self._fault(error) from None
 
-    def _fault(self, error: sqlite3.Error) -> CorpusError:
+    @contextlib.contextmanager
+    def _reading(self, what: object) -> Iterator[None]:
+        """Makes what a damaged row raises a CorpusError. what: the report, or the gathering."""
+        try:
+            yield
+        except (zlib.error, ValueError, TypeError):
+            raise CorpusError(
+                f"{self.path}: is damaged: `{what}` cannot be read; gather it again into another file with --store"
+            ) from None
+
+    def _fault(self, error: Exception) -> CorpusError:
         if "locked" in str(error):
             return CorpusError(f"{self.path}: another process writes to it; wait until that has ended")
         if isinstance(error, sqlite3.OperationalError):
@@ -506,8 +528,17 @@ _REPORTS = (
 _decode = msgspec.json.Decoder(Report).decode
 
 
+def _inflated(packed: bytes) -> bytes:
+    """Undoes zlib.compress(). Raises ValueError, and what it raises itself, for anything else."""
+    inflater = zlib.decompressobj()
+    data = inflater.decompress(packed, limits().report)
+    if not inflater.eof:
+        raise ValueError("cut off, or too large")
+    return data
+
+
 def _decoded(packed: bytes, wanted: str | None, original: str | None) -> Report:
-    report = _decode(zlib.decompress(packed))
+    report = _decode(_inflated(packed))
     if not wanted and not original:
         return report
     return msgspec.structs.replace(report, id=wanted or report.id, same_as=original or "")

@@ -12,6 +12,7 @@ import re
 import stat
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -46,6 +47,8 @@ _LEFT_OUT = frozenset((".debug", ".git", "CMakeFiles"))
 # Below this, reading takes less time than starting processes.
 _ALONE_BYTES = 20_000_000
 _PARTS_PER_JOB = 4
+# that an install space is said to be built on
+_PREFIXES = 100
 _PREFIX_OF_COLCON = re.compile(r'^COLCON_CURRENT_PREFIX="([^"$]+)"', re.M)
 _PREFIXES_OF_CATKIN = re.compile(r"CMAKE_PREFIX_PATH = r?'([^']*)'")
 
@@ -132,7 +135,9 @@ def read_installed(
             f"--install {label}: holds no built program or library (no ELF file){unread}; build the workspace first, "
             "or give another folder"
         )
-    return Installed(label, tuple(binaries), frozenset(names), tuple(problems), tuple(_underlays(folder)))
+    return Installed(
+        label, tuple(binaries), frozenset(names), tuple(problems), tuple(islice(_underlays(folder), _PREFIXES))
+    )
 
 
 def _joined(label: str, path: str) -> str:
