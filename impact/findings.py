@@ -11,6 +11,7 @@ from hashlib import blake2b
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..edges.console import UserError
+from ..edges.documents import load_json
 from .facts.place import Allow
 from .rules.rule import SEVERITIES, Cure, Finding, Hit, Rule
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from .config import PathSetting
 
 BASELINE_NAME = ".rosimpact-baseline.json"
+_MOST_OF_ONE = 1_000_000
 EVERYTHING = ("all", "*")
 
 _RANK = {name: rank for rank, name in enumerate(SEVERITIES)}
@@ -432,13 +434,18 @@ def baseline(findings: Iterable[Finding]) -> str:
 def known_from(text: str | bytes) -> Counter[str]:
     """Fingerprints a baseline file knows, with their counts. Raises SettingsError when it is not a baseline file."""
     try:
-        data = json.loads(text)
+        data = load_json(text)
         if data["schema"] != 1:
             raise SettingsError(f"the baseline has schema {data['schema']}; this version reads schema 1")
-        return Counter({str(entry["fingerprint"]): int(entry.get("count", 1)) for entry in data["findings"]})
+        return Counter(
+            {
+                str(entry["fingerprint"]): max(0, min(int(entry.get("count", 1)), _MOST_OF_ONE))
+                for entry in data["findings"]
+            }
+        )
     except SettingsError:
         raise
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError) as error:
         raise SettingsError(f"the baseline cannot be read ({error}); write it anew with --write-baseline") from None
 
 

@@ -3,6 +3,9 @@
 Futures of `distributed`, not joblib's dask backend: joblib ends a whole run when one job ends its workers, and cannot
 say which. A job of a worker that died is done again by another (the scheduler's part); each result is fetched as soon
 as it is there, so that a worker takes nothing with it that was given away already.
+
+Jobs and results travel as distributed packs them, pickles among them: only between processes of a cluster whose address
+the user gave, and never by way of a file.
 """
 
 from __future__ import annotations
