@@ -97,7 +97,8 @@ def _count(node: Any, yaml: Any, budget: int, depth: int) -> None:
     size(node, 0)
 
 
-_DOTTED = re.compile(r"(?m)^[ \t]*\[{0,2}[^=\n\"'#\[\]]*")
+# Reading a dotted key takes time quadratic in its parts, of which a line has at most one more than dots.
+_DOTS_SQUARED = 2_000_000
 
 
 def load_toml(text: str) -> dict[str, Any]:
@@ -109,10 +110,11 @@ def load_toml(text: str) -> dict[str, Any]:
     else:
         import tomli as tomllib  # pyright: ignore[reportMissingImports]
 
-    depth = limits().depth
-    for match in _DOTTED.finditer(text):
-        if match[0].count(".") > depth:
-            raise DocumentError(f"a key of more than {depth} parts", text.count("\n", 0, match.start()) + 1)
+    left = _DOTS_SQUARED
+    for number, line in enumerate(text.split("\n"), 1):
+        left -= line.count(".") ** 2
+        if left < 0:
+            raise DocumentError("too many dotted keys, or keys of too many parts", number)
     try:
         return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, ValueError) as error:
