@@ -18,11 +18,12 @@ many, costs that file or folder alone and is among the tree's problems.
 
 from .git import GitTree
 from .joined import JoinedTree, at_merge_bases
-from .paths import IGNORE_MARKERS, Entry, PathProblem, Tree, TreeError, blob_id, inside, shown
+from .paths import IGNORE_MARKERS, LEAVES, Entry, PathProblem, Tree, TreeError, blob_id, inside, shown
 from .working import WorkingTree
 
 __all__ = [
     "IGNORE_MARKERS",
+    "LEAVES",
     "Entry",
     "GitTree",
     "JoinedTree",
