@@ -14,6 +14,10 @@ from typing import Any
 from .limits import limits
 
 
+_DIGITS_AT_MOST = 1_000
+_NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
+
+
 class DocumentError(ValueError):
     """A document cannot be read, or exceeds a limit; the text is one clause. line: counted from 1, 0 when unknown."""
 
@@ -83,7 +87,11 @@ def _count(node: Any, yaml: Any, budget: int, depth: int) -> None:
         if level > depth:
             raise DocumentError(f"nested deeper than {depth} levels", each.start_mark.line + 1)
         total = 1
-        if not isinstance(each, yaml.ScalarNode):
+        if isinstance(each, yaml.ScalarNode):
+            # Numbers in base 60 take quadratic time, and Python does not print those of thousands of digits.
+            if len(each.value) > _DIGITS_AT_MOST and each.tag in _NUMBERS:
+                raise DocumentError(f"a number of more than {_DIGITS_AT_MOST:,} digits", each.start_mark.line + 1)
+        else:
             open_nodes.add(id(each))
             children = each.value if isinstance(each, yaml.SequenceNode) else [n for pair in each.value for n in pair]
             for child in children:
