@@ -13,7 +13,6 @@ from typing import Any
 
 from .limits import limits
 
-
 _DIGITS_AT_MOST = 1_000
 _NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
 
