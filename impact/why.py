@@ -174,7 +174,7 @@ def as_text(name: str, found: list[Answer], *, looked: bool = True) -> str:
         for answer in here:
             meanings.setdefault(answer.offers, []).append(answer.as_what)
         for offers, whats in meanings.items():
-            lines.append(f"{target}: `{name}` as {', '.join(whats)}")
+            lines.append(f"on {target}: `{name}` as {', '.join(whats)}")
             lines += [_offer_line(offer) for offer in offers] or ["  nobody is known to provide it there"]
         lines += [f"  {change}" for change in here[0].changes]
     if not found:
@@ -195,7 +195,7 @@ def as_text(name: str, found: list[Answer], *, looked: bool = True) -> str:
         lines.append(f"not safe: `{name}` is gone on " + ", ".join(gone))
     elif used and not undeclared:
         lines.append("safe: every package that uses it declares it, or something that brings it")
-    return "\n".join(lines)
+    return "\n".join(map(visible, lines))
 
 
 def _is_gone(change: str, name: str) -> bool:
