@@ -104,6 +104,7 @@ def _count(node: Any, yaml: Any, budget: int, depth: int) -> None:
     size(node, 0)
 
 
+_DOTTED = re.compile(r"(?m)^[ \t]*\[{0,2}[^=\n\"'#\[\]]*")
 # Reading a dotted key takes time quadratic in its parts, of which a line has at most one more than dots.
 _DOTS_SQUARED = 2_000_000
 
@@ -117,6 +118,10 @@ def load_toml(text: str) -> dict[str, Any]:
     else:
         import tomli as tomllib  # pyright: ignore[reportMissingImports]
 
+    depth = limits().depth
+    for match in _DOTTED.finditer(text):
+        if match[0].count(".") > depth:
+            raise DocumentError(f"a key of more than {depth} parts", text.count("\n", 0, match.start()) + 1)
     left = _DOTS_SQUARED
     for number, line in enumerate(text.split("\n"), 1):
         left -= line.count(".") ** 2
