@@ -11,6 +11,7 @@ import errno
 import os
 import posixpath
 import stat
+import zlib
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -33,10 +34,11 @@ _FILES = frozenset(("config", "config.worktree", "packed-refs", "index", "shallo
 
 
 class Opened(NamedTuple):
-    """A repository, and ids of objects that are not read since their files are too large."""
+    """A repository; ids of objects that are not read since their files are too large; files of loose objects by id."""
 
     repository: Any
     refused: frozenset[str]
+    loose: dict[str, str]
 
 
 def open_repository(place: str) -> Opened:
@@ -53,11 +55,11 @@ def open_repository(place: str) -> Opened:
                 raise TreeError(f"`{shown(place)}` does not exist; give a git repository, or a folder in one")
             raise TreeError(f"`{shown(place)}` is not in a git repository; give a folder that is in one")
         check.repository(os.path.realpath(found))
-        return Opened(pygit2.Repository(found), frozenset(check.refused))
+        return Opened(pygit2.Repository(found), frozenset(check.refused), check.loose)
     except (pygit2.GitError, KeyError, ValueError, OSError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         named = f"`{shown(str(error.filename))}`: " if isinstance(error, OSError) and error.filename else ""
-        text = f"the git repository `{shown(place)}` cannot be opened: {named}{shown(str(reason))}"
+        text = f"the git repository `{shown(place)}` cannot be opened: {named}{shown(str(reason))}; repair or remove it"
         raise TreeError(text) from None
 
 
@@ -72,6 +74,7 @@ class _Check:
 
     def __init__(self):
         self.refused: set[str] = set()
+        self.loose: dict[str, str] = {}
         self._seen: set[str] = set()
         self._left = limits().entries
 
@@ -140,6 +143,8 @@ class _Check:
                 elif loose:
                     if self._file(item, 0) > limits().object:
                         self.refused.add(loose + item.name)
+                    self.loose[loose + item.name] = item.path
+                    _check_commit(item.path)
                 else:
                     self._file(item, limits().index)
         if objects and deep < _ALTERNATES_DEEP:
@@ -177,6 +182,31 @@ class _Check:
             if included and name.strip().lower() == "path" and "\0" not in value:
                 path = os.path.expanduser(value.strip().strip('"'))
                 self._includes(os.path.join(os.path.dirname(config), path), deep + 1)
+
+
+def _check_commit(place: str) -> None:
+    """Raises OSError for a loose commit or tag that is cut off: libgit2 would wait for the rest for ever, and reads
+    commits by itself. Files and folders are looked at when they are read."""
+    try:
+        start = zlib.decompressobj().decompress(files.read_start(place, 64), 7)
+    except (OSError, zlib.error):
+        return  # libgit2 fails on it too
+    if (not start or start.startswith((b"commit ", b"tag "))) and not _is_whole(place):
+        raise OSError(errno.EIO, "a damaged object of git", place)
+
+
+def _is_whole(place: str) -> bool:
+    """Whether a loose object's file is not cut off. Other faults are libgit2's to find."""
+    reader = zlib.decompressobj()
+    try:
+        data = files.read_file(place, limits().object)
+        left = limits().object + _SMALL_FILE
+        while data and left > 0:
+            left -= len(reader.decompress(data, _SMALL_FILE))
+            data = reader.unconsumed_tail
+    except (OSError, zlib.error):
+        return False
+    return reader.eof
 
 
 def _of_system(real: str) -> bool:
@@ -236,6 +266,7 @@ class Objects:
 
         self._repo = opened.repository
         self._refused = opened.refused
+        self._loose = opened.loose
         self._faults = (KeyError, ValueError, TypeError, AttributeError, pygit2.GitError)
         self._folders: dict[Any, tuple[tuple[str, int, Any], ...]] = {}
         self._names: dict[Any, dict[str, tuple[int, Any]]] = {}
@@ -251,6 +282,7 @@ class Objects:
             raise OSError(errno.EFBIG, f"larger than {size_text(limits().object)}")
         try:
             if self._header is None:
+                self._check(oid)
                 found = self._repo[oid]
                 return int(found.type), found.size if found.type_str == "blob" else 0
             header = self._header(oid)
@@ -261,6 +293,12 @@ class Objects:
         except self._faults:
             raise OSError(errno.EIO, DAMAGED) from None
 
+    def _check(self, oid: Any) -> None:
+        """Raises OSError for a loose object that is cut off, which libgit2 would read for ever."""
+        place = self._loose.get(str(oid))
+        if place is not None and not _is_whole(place):
+            raise OSError(errno.EIO, DAMAGED)
+
     def blob(self, oid: Any, limit: int) -> bytes:
         """A file's bytes, at most as many as `limit`."""
         limit = min(limit, limits().object)
@@ -269,6 +307,7 @@ class Objects:
             raise OSError(errno.EIO, "its object is not a file")
         if size > limit:
             raise OSError(errno.EFBIG, f"larger than {size_text(limit)}")
+        self._check(oid)
         try:
             return self._repo[oid].data
         except self._faults:
@@ -283,6 +322,7 @@ class Objects:
                 raise OSError(errno.EIO, "its object is not a folder")
             if size > limits().object:
                 raise OSError(errno.EFBIG, f"larger than {size_text(limits().object)}")
+            self._check(oid)
             try:
                 listing = tuple(
                     (name, int(item.filemode), item.id)
