@@ -92,6 +92,7 @@ def _say_notes(notes: Iterable[str]) -> None:
 def check(
     path: Path, *, targets, format, output, rev, base, select, ignore, fail_on, notes, preview, baseline,
     write_baseline, prune_baseline, fix, diff, config, jobs, quiet, install=None,
+    follow_links=False,
 ) -> int:  # fmt: skip
     """Runs the check and prints its report. Returns the exit status: 0, 1 (findings), 2 (failed) or 130."""
 
@@ -103,7 +104,10 @@ def check(
         known = _baseline(baseline)
         for file in (output, write_baseline, baseline if prune_baseline else None):
             _check_output(file, path)
-        options = Options(targets, rev, base, select, ignore, preview, jobs, config, known, install=install)
+        options = Options(
+            targets, rev, base, select, ignore, preview, jobs, config, known, install=install,
+            follow_links=follow_links,
+        )  # fmt: skip
         checked = run_check(path, options, None if quiet else _progress())
         incomplete = False
         if fix and not diff:
@@ -368,7 +372,7 @@ def graph_schema() -> int:
 
 def graph(
     path: Path, *, launch, arguments, nodes, topics, packages, around, hops, rev, base, format, output, everything,
-    jobs, quiet,
+    jobs, quiet, follow_links=False,
 ) -> int:  # fmt: skip
     """Draws the message-flow graph. Returns the exit status: 0, or 2 (failed)."""
 
@@ -383,7 +387,7 @@ def graph(
 
         found = graphs(
             path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
-            progress=None if quiet else _progress(),
+            progress=None if quiet else _progress(), follow_links=follow_links,
         )  # fmt: skip
         _say_notes(found.notes)
         return draw(
@@ -406,7 +410,7 @@ def impact_schema() -> int:
 
 
 def impact(
-    path: Path, *, base, rev, packages, topics, nodes, format, output, everything, jobs, quiet
+    path: Path, *, base, rev, packages, topics, nodes, format, output, everything, jobs, quiet, follow_links=False
 ) -> int:  # fmt: skip
     """Prints what the changes since a base reach. Returns the exit status: 0, or 2 (failed)."""
 
@@ -417,7 +421,8 @@ def impact(
         from .flow.impact import chosen
         from .impact import reached
 
-        found = reached(path, base, rev=rev, jobs=jobs, progress=None if quiet else _progress())
+        progress = None if quiet else _progress()
+        found = reached(path, base, rev=rev, jobs=jobs, progress=progress, follow_links=follow_links)
         _say_notes(found.notes)
         part = chosen(found.impact, packages, topics, nodes)
         if format == "json":
@@ -438,7 +443,7 @@ def upgrade_schema() -> int:
 
 
 def upgrade(
-    path: Path, old: str, new: str, *, packages, rev, config, format, output, fail_on, jobs, quiet
+    path: Path, old: str, new: str, *, packages, rev, config, format, output, fail_on, jobs, quiet, follow_links=False
 ) -> int:  # fmt: skip
     """Prints what an upgrade breaks. Returns the exit status: 0 (safe), 1 (something breaks) or 2 (failed)."""
     from .report import upgrade as report
@@ -450,7 +455,7 @@ def upgrade(
         _one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
         from .upgrade import upgrade as compare
 
-        options = Options(rev=rev, config=config, jobs=jobs)
+        options = Options(rev=rev, config=config, jobs=jobs, follow_links=follow_links)
         found = compare(path, old, new, options, packages, None if quiet else _progress())
         breaks = fails(found.brought, fail_on or found.fail_on or "error")
         if format == "json":
@@ -709,26 +714,29 @@ def env_diff(first: str, second: str, path: Path | None, format: str, output: Pa
     return _deliver_answer(answer, format, report.FORMATS, output, path or "")
 
 
-def why(name: str, path: Path, targets: tuple[str, ...], format: str) -> int:
-    """Prints who provides a name on each target, in which version, since when, and who in the workspace uses it.
-
-    Returns 1 when nobody provides it on some target."""
+def why(
+    name: str, path: Path | None, targets: tuple[str, ...], format: str, *, follow_links: bool = False
+) -> int:  # fmt: skip
+    """Prints who provides a name on each target, in which version, since when, and who in the workspace uses it; that
+    of the current folder when no path is given, if it is one. Returns 1 when nobody provides it on some target."""
     unanswered = False
 
     def answer() -> str:
         nonlocal unanswered
-        from .why import answers, as_text
+        from .why import answers, as_text, is_workspace
 
-        found = answers(name, path, targets)
+        here = path or Path()
+        looked = path is not None or is_workspace(here)
+        found = answers(name, here if looked else None, targets, follow_links=follow_links)
         answered = {a.target for a in found if any(offer.kind != "absent" for offer in a.offers)}
         unanswered = answered != {a.target for a in found}
         if format == "text":
-            return as_text(name, found)
+            return as_text(name, found, looked=looked)
         return json_text(
             [answer._asdict() | {"offers": [offer._asdict() for offer in answer.offers]} for answer in found]
         )
 
-    return _deliver_answer(answer, format, _TEXT_OR_JSON, path=path) or int(unanswered)
+    return _deliver_answer(answer, format, _TEXT_OR_JSON, path=path or Path()) or int(unanswered)
 
 
 def data_status(format: str = "text") -> int:

@@ -14,10 +14,10 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from ...edges import files
 from ...edges.documents import DocumentError, load_json
-from ...edges.files import read_file, read_text
 from ...edges.limits import limits
 from .distro import DistroTarget, TargetError
 from .version import compare
@@ -123,7 +123,7 @@ def to_json(captured: Machine) -> str:
 def read(path: Path) -> Machine:
     """Reads a captured file. Raises TargetError with what is wrong and what to do."""
     try:
-        data: Any = load_json(read_file(path, limits().capture))
+        data = load_json(files.read_file(path, limits().capture))
     except (OSError, DocumentError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise TargetError(
@@ -219,19 +219,19 @@ def _only_distro(root: Path) -> str:
 def name_and_version(manifest: Path) -> tuple[str, str]:
     """Name and version that a package.xml gives, two empty texts where it cannot be read."""
     try:
-        text = read_text(manifest, limits().manifest, "replace")
+        text = files.read_text(manifest, limits().manifest, errors="replace")
     except OSError:
         return "", ""
     name, version = (
         re.search(r"<name>\s*([\w.-]+)\s*</name>", text),
-        re.search(r"<version[^>]*>\s*([\d.]+)\s*</version>", text),
+        re.search(r"<version[^<>]*>\s*([\d.]+)\s*</version>", text),
     )
     return (name[1], version[1]) if name and version else ("", "")
 
 
 def platform_of(root: Path) -> str:
     try:
-        text = read_text(root / "etc" / "os-release", limits().settings, "replace")
+        text = files.read_text(root / "etc" / "os-release", limits().settings, "replace")
     except OSError:
         return ""
     fields = dict(re.findall(r'^(\w+)="?([^"\n]*)"?$', text, re.M))

@@ -230,7 +230,7 @@ class OneFile:
     def entries(self):
         return [SimpleNamespace(path=self.path, size=len(self.text))]
 
-    def read(self, path):
+    def read(self, path, limit=0):
         return self.text.encode()
 
 
