@@ -60,7 +60,7 @@ def test_diff_as_text(repos):
     result = run("diff", "rclcpp", "16.0.0", "28.1.0", "--repos", repos)
     assert (result.exit_code, result.stdout) == (
         0,
-        """rclcpp 16.0.0 → 28.1.0
+        """package rclcpp 16.0.0 → 28.1.0
   16.0.0: 16.0.0 of ros2/rclcpp
   28.1.0: 28.1.0 of ros2/rclcpp
 
