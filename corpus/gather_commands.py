@@ -70,9 +70,8 @@ def hydrate(labels: Path | None, texts: Path | None, *, archive: Path | None, ma
             store.want(ids)
             if texts:
                 taken, others = jobs.import_reports(read_reports(texts), store, frozenset(ids))
-                write(
-                    f"{visible(str(texts))}: {outcome(taken)}{f'; {others:,} without a label left out' if others else ''}"
-                )
+                left_out = f"; {others:,} without a label left out" if others else ""
+                write(f"{visible(str(texts))}: {outcome(taken)}{left_out}")
             try:
                 if not texts:
                     _ask_for_missing(jobs.missing(store, ids), store, archive, manner)
