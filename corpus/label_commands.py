@@ -155,7 +155,7 @@ def _import_robust(folder: Path, output: Path | None, format: str) -> int:
     records = read_robust(folder)
     say(records.licence)
     for path, fault in records.unreadable:
-        say(f"{path}: passed over: {fault}")
+        say(f"rosimpact: {path}: passed over: {fault}")
     if format == "json":
         import msgspec
 

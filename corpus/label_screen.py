@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from unicodedata import category
 
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.layout import Layout
@@ -319,8 +320,16 @@ class _Lines:
 
 
 def clean(text: str) -> str:
-    """A text that changes nothing on a terminal: control characters and marks of direction are shown escaped."""
-    return visible_lines(text.replace("\r\n", "\n").replace("\r", "\n").expandtabs(4))
+    """A text that changes nothing on a terminal: control characters, marks of direction and what has no known width are
+    shown escaped."""
+    return "".join(
+        sign
+        if sign == "\n" or sign.isprintable()
+        else " "
+        if category(sign) == "Zs"
+        else sign.encode("unicode_escape").decode()
+        for sign in visible_lines(text.replace("\r\n", "\n").replace("\r", "\n").expandtabs(4))
+    )
 
 
 def as_markdown(text: str) -> Markdown:
