@@ -186,8 +186,8 @@ def unified_diff(path: str, old: bytes, new: bytes) -> str:
 
 
 def _diff_name(path: str) -> str:
-    """A path as git writes it in a patch: in quotes where it holds control characters, ended with a tab where it holds a
-    space, so that no reader takes the rest for a date."""
+    """A path as git writes it in a patch: in quotes where it holds control characters, ended with a tab where it holds
+    a space, so that no reader takes the rest for a date."""
     if re.search("[\x00-\x1f\x7f]", path):
         quoted = re.sub(r'["\\]', r"\\\g<0>", path)
         return '"' + re.sub("[\x00-\x1f\x7f]", lambda match: f"\\{ord(match[0]):03o}", quoted) + '"'
