@@ -136,7 +136,7 @@ def test_without_clones_what_is_shipped_answers():
     result = run("diff", "rclcpp", "humble", "jazzy", "--all")
     assert result.exit_code == 0, result.stderr
     old, new = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
-    assert result.stdout.startswith(f"rclcpp {old} (humble) → {new} (jazzy)\n  humble: ")
+    assert result.stdout.startswith(f"package rclcpp {old} (humble) → {new} (jazzy)\n  humble: ")
     assert " of the shipped surfaces" in result.stdout.splitlines()[1]
     # Deprecated in Galactic for the one of rcpputils, and gone after Humble.
     assert "  removed header  rclcpp/scope_exit.hpp\n" in result.stdout
