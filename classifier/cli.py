@@ -81,7 +81,7 @@ def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: 
     if not (found.title or found.body):
         raise ClassifierError("the report is empty; give a text, a file, an address or - for standard input")
     answer = judge(model, found, commands)
-    _write(as_json(answer) + "\n" if format == "json" else as_text(answer))
+    _print(as_json(answer) if format == "json" else as_text(answer), format)
 
 
 def _lines(stream: IO[str], name: str) -> Iterator[str]:
@@ -126,10 +126,11 @@ def train(
             made = fit(examples(file, reports, progress), seed, progress)
             made.save(output)
         about = made.about
-        _write(
+        _print(
             f"{output}: {counted(about['reports'], 'report')}, {counted(len(made.labels), 'label')}, "
             f"abstains below {made.threshold:.2f}\n"
-            f"labels {about['labels_digest']}\ntexts  {about['texts_digest']}\n"
+            f"labels {about['labels_digest']}\ntexts  {about['texts_digest']}\n",
+            "text",
         )
 
     _end(work)
@@ -161,9 +162,9 @@ def evaluate(
         if format == "json":
             import json
 
-            _write(json.dumps(result, indent=1) + "\n")
+            _print(json.dumps(result, indent=1), format)
         else:
-            _write(as_text(result))
+            _print(as_text(result), format)
 
     _end(work)
 
@@ -206,7 +207,10 @@ def _end(work: Callable[[], None], interrupted: str = "interrupted; nothing was 
     raise typer.Exit(run_command(lambda: work() or 0, interrupted, "the classifier"))
 
 
-def _write(text: str) -> None:
-    sys.stdout.flush()
-    sys.stdout.buffer.write(text.encode("utf-8", "backslashreplace"))
-    sys.stdout.flush()
+def _print(text: str, format: str) -> None:
+    from ..edges.console import escape_json, write, write_json
+
+    if format == "json":
+        write_json(escape_json(text))
+    else:
+        write(text)

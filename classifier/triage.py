@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import sys
 from collections.abc import Collection, Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import NamedTuple
 from urllib.parse import urlsplit
 
 from ..corpus.distros import DISTROS, ROS2
+from ..edges.console import escape_json, visible, write_json
 from .model import ClassifierError, Known, Model, Reason, Verdict, load
 from .reading import read
 
@@ -134,7 +134,7 @@ def as_text(found: Triage) -> str:
         lines.append("no check looks into reports of this label")
     else:
         lines.append(f"no command of this version looks into reports of the label {verdict.label} yet")
-    return "\n".join(lines) + "\n"
+    return "\n".join(map(visible, lines)) + "\n"
 
 
 def row(model: Model, post: Post) -> str:
@@ -307,5 +307,4 @@ def from_argument(argument: str) -> Post | Path | None:
 def triage_all(model: Model, lines: Iterable[str], name: str) -> None:
     """JSON Lines to JSON Lines on standard output, each written as soon as it is known."""
     for post in posts(lines, name):
-        sys.stdout.write(row(model, post) + "\n")
-        sys.stdout.flush()
+        write_json(escape_json(row(model, post)))

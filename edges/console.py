@@ -164,9 +164,12 @@ def write(text: str, stream: TextIO | None = None) -> None:
 
 
 def write_json(text: str) -> None:
-    """Prints JSON on standard output; what the stream's encoding cannot say is escaped as JSON does. Raises as write()
+    """Prints JSON on standard output, in ASCII with JSON's own escapes where that is not UTF-8. Raises as write()
     does."""
-    _put(text, sys.stdout, "rosimpact.json")
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    if codecs.lookup(encoding).name != "utf-8" and not text.isascii():
+        text = text.encode("ascii", "rosimpact.json").decode("ascii")
+    _put(text, sys.stdout, "backslashreplace")
 
 
 def write_exactly(text: str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -10,7 +9,7 @@ from functools import lru_cache
 from hashlib import blake2b
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..edges.console import UserError
+from ..edges.console import UserError, json_text
 from ..edges.documents import load_json
 from .facts.place import Allow
 from .rules.rule import SEVERITIES, Cure, Finding, Hit, Rule
@@ -421,14 +420,14 @@ def baseline(findings: Iterable[Finding]) -> str:
     entries = [
         {
             "rule": finding.rule,
-            "path": printable(finding.path),
-            "subject": printable(finding.subject),
+            "path": finding.path,
+            "subject": finding.subject,
             "fingerprint": fingerprint,
             "count": counts[fingerprint],
         }
         for fingerprint, finding in sorted(facts.items(), key=lambda item: (*_sort_key(item[1]), item[0]))
     ]
-    return json.dumps({"schema": 1, "findings": entries}, indent=1, ensure_ascii=False) + "\n"
+    return json_text({"schema": 1, "findings": entries}) + "\n"
 
 
 def known_from(text: str | bytes) -> Counter[str]:
@@ -475,8 +474,3 @@ def fails(findings: Iterable[Finding], fail_on: str = "error") -> bool:
         return False
     least = _RANK[fail_on]
     return any(finding.new and rank(finding.severity) >= least for finding in findings)
-
-
-def printable(text: str) -> str:
-    """Text that UTF-8 can carry: in paths whose bytes are no UTF-8, those bytes are replaced."""
-    return text if text.isascii() else re.sub("[\ud800-\udfff]", "\ufffd", text)

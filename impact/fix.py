@@ -182,12 +182,19 @@ def unified_diff(path: str, old: bytes, new: bytes) -> str:
     if old == new:
         return ""
     before, after = (re.findall(r"[^\n]*\n|[^\n]+", data.decode("utf-8", "surrogateescape")) for data in (old, new))
-    # Git ends a name that holds a space with a tab, so that no reader takes the rest for a date.
-    end = "\t" if " " in path else ""
     lines = []
-    for line in diff(before, after, f"a/{path}{end}", f"b/{path}{end}"):
+    for line in diff(before, after, _diff_name(f"a/{path}"), _diff_name(f"b/{path}")):
         lines.append(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n")
     return "".join(lines)
+
+
+def _diff_name(path: str) -> str:
+    """A path as git writes it in a patch: in quotes where it holds control characters, ended with a tab where it holds
+    a space, so that no reader takes the rest for a date."""
+    if re.search("[\x00-\x1f\x7f]", path):
+        quoted = re.sub(r'["\\]', r"\\\g<0>", path)
+        return '"' + re.sub("[\x00-\x1f\x7f]", lambda match: f"\\{ord(match[0]):03o}", quoted) + '"'
+    return f"{path}\t" if " " in path else path
 
 
 def write(root: Path, path: str, data: bytes, original: bytes) -> None:

@@ -253,6 +253,8 @@ def test_replace_text_only_where_it_stands():
         ("a.txt", b"\xef\xbb\xbf1\n", b"\xef\xbb\xbf2\n"),
         ("a.txt", b"\xff 1\n\x0c x\n", b"\xff 2\n\x0c x\n"),
         ("with space.txt", b"1\n", b"2\n"),
+        ('a\n+++ b"c\\d\x1b.txt', b"1\n", b"2\n"),
+        ('q"u.txt', b"1\n", b"2\n"),
     ],
 )
 def test_git_applies_the_diff(tmp_path, path, old, new):
