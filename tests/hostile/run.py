@@ -1,0 +1,70 @@
+"""Runs attacks and writes one line of JSON for each: python -m tests.hostile.run --jobs 2 --out FILE [--only CLASS]."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import traceback
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor, as_completed
+
+from .harness import Range
+from .table import attacks
+
+_RANGE: list[Range] = []
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--python", default=sys.executable, help="the interpreter that has rosimpact")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--out", help="file of JSON Lines")
+    parser.add_argument("--only", default="", help="one class")
+    parser.add_argument("--name", default="", help="only attacks whose name holds this")
+    parser.add_argument("--from-failures", default="", help="only attacks that failed in this file")
+    asked = parser.parse_args()
+    rows = [row for row in attacks() if asked.only in ("", row.group) and asked.name in row.name]
+    if asked.from_failures:
+        with open(asked.from_failures) as file:
+            failed = {row["name"] for row in map(json.loads, file) if not row["ok"]}
+        rows = [row for row in rows if row.name in failed]
+    names = [row.name for row in rows]
+    good: Counter[str] = Counter()
+    every: Counter[str] = Counter()
+    out = open(asked.out, "w") if asked.out else None
+    with ProcessPoolExecutor(asked.jobs, initializer=_start, initargs=(asked.python,)) as pool:
+        for future in as_completed([pool.submit(_attempt, name) for name in names]):
+            result = future.result()
+            every[result["class"]] += 1
+            good[result["class"]] += result["ok"]
+            if out:
+                out.write(json.dumps(result) + "\n")
+                out.flush()
+            if not result["ok"]:
+                print(f"{result['class']}: {result['name']}: {'; '.join(result['failures'])}", flush=True)
+    for group in sorted(every):
+        print(f"{group}: {good[group]} of {every[group]}")
+    print(f"all: {good.total()} of {every.total()}")
+    return 0 if good.total() == every.total() else 1
+
+
+def _start(python: str) -> None:
+    _RANGE.append(Range(python).__enter__())
+
+
+def _attempt(name: str) -> dict[str, object]:
+    attack = next(row for row in attacks() if row.name == name)
+    try:
+        result = _RANGE[0].attempt(attack)
+    except Exception as error:
+        text = traceback.format_exc().splitlines()
+        return {"name": name, "class": attack.group, "ok": False, "failures": [f"HARNESS {error!r} {text[-3:]}"], "cpu": 0, "rss": 0}
+    return {
+        "name": name, "class": attack.group, "ok": not result.failures, "failures": result.failures,
+        "cpu": round(result.cpu, 2), "rss": result.rss,
+    }  # fmt: skip
+
+
+if __name__ == "__main__":
+    sys.exit(main())
