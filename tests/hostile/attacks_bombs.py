@@ -66,7 +66,7 @@ FILES: list[tuple[str, dict[str, str | bytes]]] = [
     *[file_row(f"YAML aliases in {path}", path, aliases()) for path in YAML_PLACES],
     *[file_row(f"YAML merges in {path}", path, merges()) for path in YAML_PLACES],
     *[file_row(f"YAML nested deeply in {path}", path, "a: " + "[" * 60_000) for path in YAML_PLACES],
-    *[file_row(f"YAML of 60,000 levels of indentation in {path}", path, "".join(" " * n + "a:\n" for n in range(1_500))) for path in YAML_PLACES[:3]],
+    *[file_row(f"YAML of 1,500 levels of indentation in {path}", path, "".join(" " * n + "a:\n" for n in range(1_500))) for path in YAML_PLACES[:3]],
     *[file_row(f"YAML that holds itself in {path}", path, "build: &a\n  packages-skip: *a\nnames: *a\n") for path in YAML_PLACES],
     *[file_row(f"YAML of 200,000 keys in {path}", path, "".join(f"k{n}: {n}\n" for n in range(200_000))) for path in ("defaults.yaml", "src/bad/config/a.yaml")],
     *[file_row(f"YAML integer of 100,000 digits in {path}", path, "a: " + "9" * 100_000 + "\n") for path in YAML_PLACES[:4:2]],

@@ -93,7 +93,7 @@ def watch(child, job):
             most = max(most, *(each[1] for each in processes.values()), 0)
             if seconds > used + 0.02:
                 used, moved = seconds, now
-            if seconds > job["seconds"] + 1:
+            if seconds > job["seconds"]:
                 killed = "processor time"
             elif most > KILL_MEMORY:
                 killed = "memory"
