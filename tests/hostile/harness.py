@@ -162,7 +162,7 @@ class Attack(NamedTuple):
     are right. found: what has to be in the output; by default what the command says of the healthy package; empty when
     nothing has to. refusable: the status 2 is right as well, when this word is in one line on standard error. words,
     absent: further texts that must, must not be in the output. git: the workspace has two commits, what make gives is
-    committed too. changes: what may change in the workspace. environment: added to the usual one. direct: run as the
+    committed too. dear: takes long, and is no part of the sample. changes: what may change in the workspace. environment: added to the usual one. direct: run as the
     installed command, not in a warm process. after: a further check; it gives what is wrong.
     """
 
@@ -194,6 +194,7 @@ class Attack(NamedTuple):
     snapshot: bool = True
     colours: bool = False
     encoding: str = "utf-8"
+    dear: bool = False
 
 
 class Ended(NamedTuple):
