@@ -234,6 +234,7 @@ FILES: list[tuple[str, dict[str, str | bytes]]] = [
     file_row("hashes in a parameter file", "src/bad/config/a.yaml", "#" * 3_000_000),
 ]  # fmt: skip
 
+DEAR = ("700 MB", "inflates", "100,000 files", "10,000 empty", "2,000 packages", "C++: 60 MB", "manifest of 100 MB")
 FLOW = ("Python: 2^40 paths of calls", "C++: 2^40 paths of calls", "C++: mutual recursion", "C++: variable that doubles",
         "C++: 50,000 else if", "C++: 20,000 publishers", "C++: conditions for the solver", "Python: 50,000 elif",
         "Python: powers", "Python: text times a number", "Python: range of 10^12", "Python: lists that double",
@@ -482,7 +483,7 @@ def rows() -> list[Attack]:
         Attack("a report in JSON, deep", GROUP, {"r.jsonl": '{"title": ' + "[" * 500_000}, ("triage", "{ws}/r.jsonl", "--jsonl"), status=(0, 2), found=""),
         Attack("installed command: YAML aliases", GROUP, {"defaults.yaml": aliases()}, CHECK, direct=True),
     ]  # fmt: skip
-    return found
+    return [row._replace(dear=True) if any(word in row.name for word in DEAR) else row for row in found]
 
 
 def committed(files: dict[str, str | bytes]) -> Callable[[Place], None]:

@@ -308,7 +308,8 @@ def row(command: str, format: str, place: str) -> Attack:
     make = in_git(files) if command in NEEDS_GIT else files
     return Attack(
         f"{command} {format}: {place}", GROUP, make, arguments, (STATUS[command],), git=command in NEEDS_GIT,
-        found="" if command == "impact" or "--launch" in arguments else None, snapshot=False,
+        # `why` lists the first places alone.
+        found="" if command in ("impact", "why") or "--launch" in arguments else None, snapshot=False,
         refusable="rosimpact.toml" if "toml" in place else "",
     )  # fmt: skip
 

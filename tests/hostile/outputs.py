@@ -146,7 +146,9 @@ def _html(text: str) -> Iterator[str]:
                 r"\s*(javascript|data|vbscript):|.*evil\.example", str(value), re.I
             ):
                 yield f"html: {element.name} {name}={value!r}"
-        if element.name in ("img", "iframe", "object", "embed", "base", "form", "link", "frame", "video", "audio"):
+        if element.name == "form" and element.get("action"):
+            yield "html: a form that is sent"
+        if element.name in ("img", "iframe", "object", "embed", "base", "link", "frame", "video", "audio"):
             yield f"html: an element {element.name}"
 
 
