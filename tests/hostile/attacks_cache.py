@@ -41,7 +41,19 @@ def rewritten(name: str, change: Callable[[object], object], only: str = "") -> 
             if only and table != only:
                 continue
             for column in columns:
-                if column in ("id", "key", "name", "bit", "path", "distro", "package", "repository", "ts", "version", "kind"):
+                if column in (
+                    "id",
+                    "key",
+                    "name",
+                    "bit",
+                    "path",
+                    "distro",
+                    "package",
+                    "repository",
+                    "ts",
+                    "version",
+                    "kind",
+                ):
                     continue
                 try:
                     connection.execute(f'update "{table}" set "{column}" = changed("{column}")')
@@ -127,7 +139,9 @@ SCHEMAS = {
     "no table": ("drop table {table}",),
     "no row": ("delete from {table}",),
     "other columns": ("alter table {table} rename to old_{table}", "create table other(a, b)"),
-    "a view that loops": ("create view evil as with recursive x(n) as (select 1 union all select n + 1 from x) select * from x",),
+    "a view that loops": (
+        "create view evil as with recursive x(n) as (select 1 union all select n + 1 from x) select * from x",
+    ),
     "a trigger": ("create table evil(a)", "insert into evil values (zeroblob(100000000))"),
     "a journal": ("pragma journal_mode = wal",),
 }
@@ -135,13 +149,19 @@ SCHEMAS = {
 
 def view_for_table(name: str, table: str) -> Callable[[Place], None]:
     """A table replaced by a view that never ends."""
-    loop = "with recursive x(n) as (select 1 union all select n + 1 from x) select n as id, n as key, n as used, n as data from x"
+    loop = (
+        "with recursive x(n) as (select 1 union all select n + 1 from x) select n as id, n as key, n as used, "
+        "n as data from x"
+    )
     return statement(name, f"drop table if exists {table}", f"create view {table} as {loop}")
 
 
 def locked(place: Place) -> None:
     """Someone else writes, and does not end."""
-    script = "import sqlite3, sys, time; c = sqlite3.connect(sys.argv[1]); c.execute('begin exclusive'); print('x', flush=True); time.sleep(40)"
+    script = (
+        "import sqlite3, sys, time; c = sqlite3.connect(sys.argv[1]); c.execute('begin exclusive'); "
+        "print('x', flush=True); time.sleep(40)"
+    )
     process = subprocess.Popen([sys.executable, "-c", script, str(database(place, "facts"))], stdout=subprocess.PIPE)
     assert process.stdout is not None
     process.stdout.readline()
@@ -186,11 +206,25 @@ def many_at_once(place: Place, ended: Ended) -> list[str]:
     """Ten more runs at once, over a cache that is empty."""
     remove(place.cache)
     environment = {
-        "PATH": os.environ["PATH"], "HOME": str(place.home), "ROSIMPACT_CACHE": str(place.cache), "LANG": "C.UTF-8",
-    }  # fmt: skip
+        "PATH": os.environ["PATH"],
+        "HOME": str(place.home),
+        "ROSIMPACT_CACHE": str(place.cache),
+        "LANG": "C.UTF-8",
+    }
     interpreter = place.interpreter  # pyright: ignore[reportAttributeAccessIssue]
-    command = [interpreter, "-c", "from rosimpact.impact.cli import main; main()", "check", str(place.ws), "-q", "-t", "jazzy"]
-    running = [subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE) for _ in range(10)]
+    command = [
+        interpreter,
+        "-c",
+        "from rosimpact.impact.cli import main; main()",
+        "check",
+        str(place.ws),
+        "-q",
+        "-t",
+        "jazzy",
+    ]
+    running = [
+        subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE) for _ in range(10)
+    ]
     answers = [(*process.communicate(timeout=300), process.returncode) for process in running]
     wrong = []
     for out, err, status in answers:
@@ -202,9 +236,23 @@ def many_at_once(place: Place, ended: Ended) -> list[str]:
 
 def once_more(place: Place, ended: Ended) -> list[str]:
     """A second run, over what the first one left: as good as the first, and it says nothing any longer."""
-    environment = {"PATH": os.environ["PATH"], "HOME": str(place.home), "ROSIMPACT_CACHE": str(place.cache), "LANG": "C.UTF-8"}
+    environment = {
+        "PATH": os.environ["PATH"],
+        "HOME": str(place.home),
+        "ROSIMPACT_CACHE": str(place.cache),
+        "LANG": "C.UTF-8",
+    }
     interpreter = place.interpreter  # pyright: ignore[reportAttributeAccessIssue]
-    command = [interpreter, "-c", "from rosimpact.impact.cli import main; main()", "check", str(place.ws), "-q", "-t", "jazzy"]
+    command = [
+        interpreter,
+        "-c",
+        "from rosimpact.impact.cli import main; main()",
+        "check",
+        str(place.ws),
+        "-q",
+        "-t",
+        "jazzy",
+    ]
     again = subprocess.run(command, env=environment, capture_output=True, timeout=120)
     if again.returncode != 1 or b"asks for 9" not in again.stdout:
         return [f"a second run: status {again.returncode}: {again.stderr[-200:]!r}"]
@@ -214,7 +262,11 @@ def once_more(place: Place, ended: Ended) -> list[str]:
 def same_answer(place: Place, ended: Ended) -> list[str]:
     """The report is the one that an undamaged cache gives."""
     text = ended.out.decode("utf-8", "replace")
-    missing = [word for word in ("asks for 9", "tf2_geometry_msgs.h` is gone", "src/healthy/CMakeLists.txt:4") if word not in text]
+    missing = [
+        word
+        for word in ("asks for 9", "tf2_geometry_msgs.h` is gone", "src/healthy/CMakeLists.txt:4")
+        if word not in text
+    ]
     return [f"another answer than usual: {missing[0]!r} is missing"] if missing else []
 
 
@@ -224,40 +276,227 @@ def rows() -> list[Attack]:
         for label, change in CHANGES.items():
             for table in ("facts", "memo") if name == "facts" else ("",):
                 found.append(
-                    Attack(f"{name} {table}: rows that are {label}".replace(" :", ":"), GROUP, {}, CHECK, (1,), before=rewritten(name, change, table), after=same_answer, snapshot=False)
-                )  # fmt: skip
+                    Attack(
+                        f"{name} {table}: rows that are {label}".replace(" :", ":"),
+                        GROUP,
+                        {},
+                        CHECK,
+                        (1,),
+                        before=rewritten(name, change, table),
+                        after=same_answer,
+                        snapshot=False,
+                    )
+                )
         for label, change in FILES.items():
-            found.append(Attack(f"{name}: a file {label}", GROUP, {}, CHECK, (1,), before=spoiled(name, change), after=same_answer, snapshot=False))
+            found.append(
+                Attack(
+                    f"{name}: a file {label}",
+                    GROUP,
+                    {},
+                    CHECK,
+                    (1,),
+                    before=spoiled(name, change),
+                    after=same_answer,
+                    snapshot=False,
+                )
+            )
         for label, statements in SCHEMAS.items():
             if "other" in label:
                 statements = statements[:1]
-            found.append(Attack(f"{name}: {label}", GROUP, {}, CHECK, (1,), before=statement(name, *statements), after=same_answer, snapshot=False))
-        found.append(Attack(f"{name}: a folder in its place", GROUP, {}, CHECK, (1,), before=a_folder_in_the_way(name), after=same_answer, snapshot=False))
-        found.append(Attack(f"{name}: a link to a file outside", GROUP, {}, CHECK, (1,), before=link_outside(name), after=same_answer))
+            found.append(
+                Attack(
+                    f"{name}: {label}",
+                    GROUP,
+                    {},
+                    CHECK,
+                    (1,),
+                    before=statement(name, *statements),
+                    after=same_answer,
+                    snapshot=False,
+                )
+            )
+        found.append(
+            Attack(
+                f"{name}: a folder in its place",
+                GROUP,
+                {},
+                CHECK,
+                (1,),
+                before=a_folder_in_the_way(name),
+                after=same_answer,
+                snapshot=False,
+            )
+        )
+        found.append(
+            Attack(
+                f"{name}: a link to a file outside",
+                GROUP,
+                {},
+                CHECK,
+                (1,),
+                before=link_outside(name),
+                after=same_answer,
+            )
+        )
     for table in ("facts", "memo"):
-        found.append(Attack(f"facts: a view without end for {table}", GROUP, {}, CHECK, (1,), before=view_for_table("facts", table), after=same_answer, snapshot=False))
-        found.append(Attack(f"facts {table}: rows that inflate to 1.5 GB", GROUP, {}, CHECK, (1,), before=rewritten("facts", _bomb, table), after=same_answer, snapshot=False))
+        found.append(
+            Attack(
+                f"facts: a view without end for {table}",
+                GROUP,
+                {},
+                CHECK,
+                (1,),
+                before=view_for_table("facts", table),
+                after=same_answer,
+                snapshot=False,
+            )
+        )
+        found.append(
+            Attack(
+                f"facts {table}: rows that inflate to 1.5 GB",
+                GROUP,
+                {},
+                CHECK,
+                (1,),
+                before=rewritten("facts", _bomb, table),
+                after=same_answer,
+                snapshot=False,
+            )
+        )
     for command in ("graph", "upgrade", "why", "env"):
         for name in DATABASES:
             for label in ("no UTF-8", "cut off", "garbage that is packed"):
-                found.append(Attack(f"{command}, {name}: rows that are {label}", GROUP, {}, COMMANDS[command], (STATUS[command],), before=rewritten(name, CHANGES[label]), snapshot=False))
+                found.append(
+                    Attack(
+                        f"{command}, {name}: rows that are {label}",
+                        GROUP,
+                        {},
+                        COMMANDS[command],
+                        (STATUS[command],),
+                        before=rewritten(name, CHANGES[label]),
+                        snapshot=False,
+                    )
+                )
     for command in ("impact", "logic"):
         for label in ("no UTF-8", "garbage that is packed", "a bit flipped"):
-            found.append(Attack(f"{command}, facts: rows that are {label}", GROUP, {}, COMMANDS[command], (STATUS[command],), git=True, before=warmed(command, rewritten("facts", CHANGES[label])), snapshot=False))
+            found.append(
+                Attack(
+                    f"{command}, facts: rows that are {label}",
+                    GROUP,
+                    {},
+                    COMMANDS[command],
+                    (STATUS[command],),
+                    git=True,
+                    before=warmed(command, rewritten("facts", CHANGES[label])),
+                    snapshot=False,
+                )
+            )
     found += [
-        Attack("a file where the cache should be", GROUP, {}, CHECK, (1,), before=a_file_in_the_way, after=same_answer, snapshot=False),
-        Attack("no cache, and nowhere to make one", GROUP, {}, CHECK, (1,), environment={"ROSIMPACT_CACHE": "/proc/nowhere/cache"}, after=same_answer, seconds=8),
-        Attack("a cache below a file", GROUP, {"x": ""}, CHECK, (1,), environment={"ROSIMPACT_CACHE": "{ws}/x/cache"}, after=same_answer, seconds=8),
-        Attack("a cache of no home", GROUP, {}, CHECK, (1,), environment={"ROSIMPACT_CACHE": "UNSET", "XDG_CACHE_HOME": "UNSET", "HOME": "/nowhere"}, after=same_answer, seconds=8),
-        Attack("a cache of ~nobody", GROUP, {}, CHECK, (1,), environment={"ROSIMPACT_CACHE": "~nobody/x"}, after=same_answer, seconds=8, snapshot=False),
-        Attack("a cache of ~unknown", GROUP, {}, CHECK, (1,), environment={"ROSIMPACT_CACHE": "{home}/~unknownuser/x"}, after=same_answer, seconds=8),
-        Attack("a cache with a name of 5,000 letters", GROUP, {}, CHECK, (1,), environment={"ROSIMPACT_CACHE": "{home}/" + "x" * 5_000}, after=same_answer, seconds=8),
+        Attack(
+            "a file where the cache should be",
+            GROUP,
+            {},
+            CHECK,
+            (1,),
+            before=a_file_in_the_way,
+            after=same_answer,
+            snapshot=False,
+        ),
+        Attack(
+            "no cache, and nowhere to make one",
+            GROUP,
+            {},
+            CHECK,
+            (1,),
+            environment={"ROSIMPACT_CACHE": "/proc/nowhere/cache"},
+            after=same_answer,
+            seconds=8,
+        ),
+        Attack(
+            "a cache below a file",
+            GROUP,
+            {"x": ""},
+            CHECK,
+            (1,),
+            environment={"ROSIMPACT_CACHE": "{ws}/x/cache"},
+            after=same_answer,
+            seconds=8,
+        ),
+        Attack(
+            "a cache of no home",
+            GROUP,
+            {},
+            CHECK,
+            (1,),
+            environment={"ROSIMPACT_CACHE": "UNSET", "XDG_CACHE_HOME": "UNSET", "HOME": "/nowhere"},
+            after=same_answer,
+            seconds=8,
+        ),
+        Attack(
+            "a cache of ~nobody",
+            GROUP,
+            {},
+            CHECK,
+            (1,),
+            environment={"ROSIMPACT_CACHE": "~nobody/x"},
+            after=same_answer,
+            seconds=8,
+            snapshot=False,
+        ),
+        Attack(
+            "a cache of ~unknown",
+            GROUP,
+            {},
+            CHECK,
+            (1,),
+            environment={"ROSIMPACT_CACHE": "{home}/~unknownuser/x"},
+            after=same_answer,
+            seconds=8,
+        ),
+        Attack(
+            "a cache with a name of 5,000 letters",
+            GROUP,
+            {},
+            CHECK,
+            (1,),
+            environment={"ROSIMPACT_CACHE": "{home}/" + "x" * 5_000},
+            after=same_answer,
+            seconds=8,
+        ),
         Attack("a database that is locked", GROUP, {}, CHECK, (1,), before=locked, after=unlocked, snapshot=False),
         Attack("ten runs at once", GROUP, {}, CHECK, (1,), after=many_at_once, snapshot=False),
-        Attack("facts of garbage, twice", GROUP, {}, CHECK, (1,), before=spoiled("facts", FILES["of text"]), after=once_more, snapshot=False),
-        Attack("distros of garbage, twice", GROUP, {}, CHECK, (1,), before=spoiled("distros", FILES["with bytes flipped"]), after=once_more, snapshot=False),
-        Attack("installed command: rows that are no UTF-8", GROUP, {}, CHECK, (1,), before=rewritten("facts", CHANGES["no UTF-8"]), after=same_answer, direct=True, snapshot=False),
-    ]  # fmt: skip
+        Attack(
+            "facts of garbage, twice",
+            GROUP,
+            {},
+            CHECK,
+            (1,),
+            before=spoiled("facts", FILES["of text"]),
+            after=once_more,
+            snapshot=False,
+        ),
+        Attack(
+            "distros of garbage, twice",
+            GROUP,
+            {},
+            CHECK,
+            (1,),
+            before=spoiled("distros", FILES["with bytes flipped"]),
+            after=once_more,
+            snapshot=False,
+        ),
+        Attack(
+            "installed command: rows that are no UTF-8",
+            GROUP,
+            {},
+            CHECK,
+            (1,),
+            before=rewritten("facts", CHANGES["no UTF-8"]),
+            after=same_answer,
+            direct=True,
+            snapshot=False,
+        ),
+    ]
     return found
 
 
@@ -265,10 +504,20 @@ def warmed(command: str, then: Callable[[Place], None]) -> Callable[[Place], Non
     """Damages a cache that the same command has filled before."""
 
     def before(place: Place) -> None:
-        environment = {"PATH": os.environ["PATH"], "HOME": str(place.home), "ROSIMPACT_CACHE": str(place.cache), "LANG": "C.UTF-8"}
+        environment = {
+            "PATH": os.environ["PATH"],
+            "HOME": str(place.home),
+            "ROSIMPACT_CACHE": str(place.cache),
+            "LANG": "C.UTF-8",
+        }
         interpreter = place.interpreter  # pyright: ignore[reportAttributeAccessIssue]
         arguments = [place.filled(argument) for argument in COMMANDS[command]]
-        subprocess.run([interpreter, "-c", "from rosimpact.impact.cli import main; main()", *arguments], env=environment, capture_output=True, timeout=120)
+        subprocess.run(
+            [interpreter, "-c", "from rosimpact.impact.cli import main; main()", *arguments],
+            env=environment,
+            capture_output=True,
+            timeout=120,
+        )
         then(place)
 
     return before

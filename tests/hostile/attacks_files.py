@@ -49,9 +49,15 @@ def rows() -> list[Attack]:
             kind = next(kind for kind in KINDS if kind.name == name)
             make = making(kind, SPOILED["of random bytes"])
             found.append(
-                Attack(f"{command}: {name} of random bytes", GROUP, in_git(make) if command in NEEDS_GIT else make, COMMANDS[command],
-                       (STATUS[command],), git=command in NEEDS_GIT)
-            )  # fmt: skip
+                Attack(
+                    f"{command}: {name} of random bytes",
+                    GROUP,
+                    in_git(make) if command in NEEDS_GIT else make,
+                    COMMANDS[command],
+                    (STATUS[command],),
+                    git=command in NEEDS_GIT,
+                )
+            )
     found.append(Attack("every kind spoiled at once", GROUP, all_spoiled, CHECK))
     found.append(Attack("installed command: every kind spoiled at once", GROUP, all_spoiled, CHECK, direct=True))
     return found

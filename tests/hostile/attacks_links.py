@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import pygit2
 
+from .attacks_bombs import commit_blob
 from .harness import COMMANDS, FOUND, NEEDS_GIT, STATUS, Attack, Place, cmake, commit, link, manifest, write
 from .kinds import KINDS, Kind
 
@@ -82,21 +83,43 @@ def rows() -> list[Attack]:
             kind = next(kind for kind in KINDS if kind.name == name)
             found.append(
                 Attack(
-                    f"{command}: absolute link as {name}", GROUP, making(kind, absolute), COMMANDS[command],
-                    (STATUS[command],), git=command in NEEDS_GIT,
+                    f"{command}: absolute link as {name}",
+                    GROUP,
+                    making(kind, absolute),
+                    COMMANDS[command],
+                    (STATUS[command],),
+                    git=command in NEEDS_GIT,
                 )
-            )  # fmt: skip
+            )
         for way in (package_elsewhere, folder_of_folders):
             found.append(
                 Attack(
-                    f"{command}: {way.__name__}", GROUP, way, COMMANDS[command], (STATUS[command],),
+                    f"{command}: {way.__name__}",
+                    GROUP,
+                    way,
+                    COMMANDS[command],
+                    (STATUS[command],),
                     git=command in NEEDS_GIT,
                 )
-            )  # fmt: skip
+            )
     for format in ("text", "sarif", "github", "markdown", "html"):
         kind = KINDS[4]
-        found.append(Attack(f"check {format}: absolute link as cpp", GROUP, making(kind, absolute), (*COMMANDS["check"], "--notes", "-f", format)))
-        found.append(Attack(f"check {format}: environ as cmake", GROUP, making(KINDS[1], environ), (*COMMANDS["check"], "--notes", "-f", format)))
+        found.append(
+            Attack(
+                f"check {format}: absolute link as cpp",
+                GROUP,
+                making(kind, absolute),
+                (*COMMANDS["check"], "--notes", "-f", format),
+            )
+        )
+        found.append(
+            Attack(
+                f"check {format}: environ as cmake",
+                GROUP,
+                making(KINDS[1], environ),
+                (*COMMANDS["check"], "--notes", "-f", format),
+            )
+        )
     found += [
         Attack("package linked from elsewhere", GROUP, package_elsewhere, CHECK),
         Attack("folder of packages linked from elsewhere", GROUP, folder_of_folders, CHECK),
@@ -113,49 +136,163 @@ def rows() -> list[Attack]:
         Attack("file(STRINGS) outside", GROUP, cmake_strings, CHECK),
         Attack("file(READ) of the environment", GROUP, cmake_read("/proc/self/environ"), CHECK),
         Attack("configure_file outside", GROUP, configure_file, CHECK),
-        Attack("CMake reads $ENV", GROUP, {"src/bad/CMakeLists.txt": cmake("bad", "find_package($ENV{CANARY} REQUIRED)")}, CHECK),
+        Attack(
+            "CMake reads $ENV",
+            GROUP,
+            {"src/bad/CMakeLists.txt": cmake("bad", "find_package($ENV{CANARY} REQUIRED)")},
+            CHECK,
+        ),
         Attack("XML entity of a file", GROUP, external_entity("package.xml"), CHECK),
         Attack("XML entity of a file in a launch file", GROUP, external_entity("launch/a.launch.xml"), CHECK),
         Attack("XInclude of a file", GROUP, xinclude, CHECK),
         Attack("launch file includes outside", GROUP, launch_outside, CHECK),
-        Attack("graph: launch file includes outside", GROUP, launch_outside, (*COMMANDS["graph"], "--launch", "a.launch.xml", "-f", "json")),
-        Attack("graph: launch file reads the environment", GROUP, launch_environment, (*COMMANDS["graph"], "--launch", "a.launch.xml", "-f", "json")),
-        Attack("graph: launch file reads a file by substitution", GROUP, launch_file_content, (*COMMANDS["graph"], "--launch", "a.launch.xml", "-f", "json")),
-        Attack("graph: parameters outside", GROUP, parameters_outside, (*COMMANDS["graph"], "--launch", "a.launch.py", "-f", "json")),
-        Attack("graph: the launch file is a link", GROUP, making(KINDS[12], absolute), (*COMMANDS["graph"], "--launch", "a.launch.py", "-f", "json"), status=(0, 2), found=""),
+        Attack(
+            "graph: launch file includes outside",
+            GROUP,
+            launch_outside,
+            (*COMMANDS["graph"], "--launch", "a.launch.xml", "-f", "json"),
+        ),
+        Attack(
+            "graph: launch file reads the environment",
+            GROUP,
+            launch_environment,
+            (*COMMANDS["graph"], "--launch", "a.launch.xml", "-f", "json"),
+        ),
+        Attack(
+            "graph: launch file reads a file by substitution",
+            GROUP,
+            launch_file_content,
+            (*COMMANDS["graph"], "--launch", "a.launch.xml", "-f", "json"),
+        ),
+        Attack(
+            "graph: parameters outside",
+            GROUP,
+            parameters_outside,
+            (*COMMANDS["graph"], "--launch", "a.launch.py", "-f", "json"),
+        ),
+        Attack(
+            "graph: the launch file is a link",
+            GROUP,
+            making(KINDS[12], absolute),
+            (*COMMANDS["graph"], "--launch", "a.launch.py", "-f", "json"),
+            status=(0, 2),
+            found="",
+        ),
         Attack("xacro includes outside", GROUP, xacro_outside, CHECK),
         Attack("setup.py reads a file", GROUP, setup_reads, CHECK),
-        Attack("setup.cfg: version of a file", GROUP, {"src/bad/setup.cfg": "[metadata]\nname = bad\nversion = file: {outside}/secret.txt\n"}, CHECK),
+        Attack(
+            "setup.cfg: version of a file",
+            GROUP,
+            {"src/bad/setup.cfg": "[metadata]\nname = bad\nversion = file: {outside}/secret.txt\n"},
+            CHECK,
+        ),
         Attack("colcon.meta names a file outside", GROUP, metas_outside, CHECK),
         Attack("message type by ..", GROUP, message_outside, CHECK),
         Attack("#include of a path outside", GROUP, include_outside, CHECK),
-        Attack("rosimpact.toml: target file outside", GROUP, toml_file("[targets.x]\nfile = '{outside}/secret.txt'\n"), CHECK, refusable="rosimpact.toml", status=(0, 1, 2), found=""),
-        Attack("rosimpact.toml: target file of the environment", GROUP, toml_file("[targets.x]\nfile = '/proc/self/environ'\n"), ("check", "{ws}"), status=(0, 1, 2), found=""),
+        Attack(
+            "rosimpact.toml: target file outside",
+            GROUP,
+            toml_file("[targets.x]\nfile = '{outside}/secret.txt'\n"),
+            CHECK,
+            refusable="rosimpact.toml",
+            status=(0, 1, 2),
+            found="",
+        ),
+        Attack(
+            "rosimpact.toml: target file of the environment",
+            GROUP,
+            toml_file("[targets.x]\nfile = '/proc/self/environ'\n"),
+            ("check", "{ws}"),
+            status=(0, 1, 2),
+            found="",
+        ),
         Attack("rosimpact.toml: underlay outside", GROUP, underlay_outside, CHECK, refusable="rosimpact.toml"),
-        Attack("rosimpact.toml: repos outside", GROUP, toml_file("[workspace]\nrepos = ['{outside}/secret.txt']\n"), CHECK, refusable="rosimpact.toml"),
-        Attack("rosimpact.toml: rosdep sources outside", GROUP, toml_file("[workspace]\nrosdep_sources = ['{outside}/secret.txt']\n"), CHECK, refusable="secret.txt"),
-        Attack("rosimpact.toml: rosdep sources by file:", GROUP, toml_file("[workspace]\nrosdep_sources = ['file://{outside}/secret.txt']\n"), CHECK, refusable="rosimpact.toml"),
-        Attack("rosimpact.toml: index outside", GROUP, toml_file("[workspace]\nindex = '{outside}/secret.txt'\n"), CHECK, refusable="secret.txt"),
-        Attack("rosimpact.toml: index by file:", GROUP, toml_file("[workspace]\nindex = 'file://{outside}/secret.txt'\n"), CHECK, refusable="rosimpact.toml"),
+        Attack(
+            "rosimpact.toml: repos outside",
+            GROUP,
+            toml_file("[workspace]\nrepos = ['{outside}/secret.txt']\n"),
+            CHECK,
+            refusable="rosimpact.toml",
+        ),
+        Attack(
+            "rosimpact.toml: rosdep sources outside",
+            GROUP,
+            toml_file("[workspace]\nrosdep_sources = ['{outside}/secret.txt']\n"),
+            CHECK,
+            refusable="secret.txt",
+        ),
+        Attack(
+            "rosimpact.toml: rosdep sources by file:",
+            GROUP,
+            toml_file("[workspace]\nrosdep_sources = ['file://{outside}/secret.txt']\n"),
+            CHECK,
+            refusable="rosimpact.toml",
+        ),
+        Attack(
+            "rosimpact.toml: index outside",
+            GROUP,
+            toml_file("[workspace]\nindex = '{outside}/secret.txt'\n"),
+            CHECK,
+            refusable="secret.txt",
+        ),
+        Attack(
+            "rosimpact.toml: index by file:",
+            GROUP,
+            toml_file("[workspace]\nindex = 'file://{outside}/secret.txt'\n"),
+            CHECK,
+            refusable="rosimpact.toml",
+        ),
         Attack("rosimpact.toml: rosdep sources linked", GROUP, linked_sources, CHECK, refusable="rosdep.list"),
-    ]  # fmt: skip
+    ]
     found += [by_revision(kind) for kind in KINDS if kind.name in REVISED]
     for command in ("graph", "impact", "logic", "upgrade"):
         arguments = COMMANDS[command] + (("--rev", "HEAD") if command in ("graph", "upgrade") else ())
         found.append(
-            Attack(f"{command}: committed link as node", GROUP, committed_link(KINDS[6]), arguments, (STATUS[command],), git=True)
+            Attack(
+                f"{command}: committed link as node",
+                GROUP,
+                committed_link(KINDS[6]),
+                arguments,
+                (STATUS[command],),
+                git=True,
+            )
         )
     found += [
-        Attack(".git is a link to a repository outside", GROUP, git_link, (*CHECK, "--base", "HEAD"), status=(0, 1, 2), found=""),
-        Attack(".git file names a folder outside", GROUP, git_file, (*CHECK, "--base", "HEAD"), status=(0, 1, 2), found=""),
+        Attack(
+            ".git is a link to a repository outside",
+            GROUP,
+            git_link,
+            (*CHECK, "--base", "HEAD"),
+            status=(0, 1, 2),
+            found="",
+        ),
+        Attack(
+            ".git file names a folder outside", GROUP, git_file, (*CHECK, "--base", "HEAD"), status=(0, 1, 2), found=""
+        ),
         Attack("core.worktree outside", GROUP, git_worktree, (*CHECK, "--rev", "HEAD"), git=True),
         Attack("core.worktree outside, base", GROUP, git_worktree, (*CHECK, "--base", "HEAD~1"), git=True, found=""),
         Attack("core.worktree outside, files", GROUP, git_worktree, CHECK, git=True),
-        Attack("git config includes outside", GROUP, git_include, (*CHECK, "--base", "HEAD~1"), git=True, found="", status=(0, 1)),
+        Attack(
+            "git config includes outside",
+            GROUP,
+            git_include,
+            (*CHECK, "--base", "HEAD~1"),
+            git=True,
+            found="",
+            status=(0, 1, 2),
+        ),
         Attack("alternates outside", GROUP, git_alternates, (*CHECK, "--rev", "HEAD"), git=True),
         Attack("HEAD is a link", GROUP, git_head_link, (*CHECK, "--rev", "HEAD"), git=True, status=(0, 1, 2), found=""),
-        Attack("a ref that is a link to a secret", GROUP, git_ref_link, (*CHECK, "--rev", "evil"), git=True, status=(2,), found=""),
-    ]  # fmt: skip
+        Attack(
+            "a ref that is a link to a secret",
+            GROUP,
+            git_ref_link,
+            (*CHECK, "--rev", "evil"),
+            git=True,
+            status=(2,),
+            found="",
+        ),
+    ]
     for command in ("check", "graph", "impact", "upgrade", "why"):
         found.append(follows(command))
     return found
@@ -163,7 +300,9 @@ def rows() -> list[Attack]:
 
 def in_the_tree(kind: Kind) -> Attack:
     def make(place: Place) -> None:
-        write(place.ws, {**kind.beside, "kept/" + os.path.basename(kind.path) + ".kept": kind.content("intheworkspace")})
+        write(
+            place.ws, {**kind.beside, "kept/" + os.path.basename(kind.path) + ".kept": kind.content("intheworkspace")}
+        )
         link(place.ws / kind.path, "../" * kind.path.count("/") + "kept/" + os.path.basename(kind.path) + ".kept")
 
     return Attack(
@@ -172,11 +311,14 @@ def in_the_tree(kind: Kind) -> Attack:
 
 
 def package_elsewhere(place: Place) -> None:
-    write(place.outside, {
-        "pkg/package.xml": manifest(place.token, "rclcpp", place.token + "_dep"),
-        "pkg/CMakeLists.txt": cmake(place.token, f"find_package(OpenCV 8 REQUIRED)  # {place.token}"),
-        "pkg/src/node.cpp": KINDS[6].content(place.token),
-    })  # fmt: skip
+    write(
+        place.outside,
+        {
+            "pkg/package.xml": manifest(place.token, "rclcpp", place.token + "_dep"),
+            "pkg/CMakeLists.txt": cmake(place.token, f"find_package(OpenCV 8 REQUIRED)  # {place.token}"),
+            "pkg/src/node.cpp": KINDS[6].content(place.token),
+        },
+    )
     link(place.ws / "src/elsewhere", place.outside / "pkg")
 
 
@@ -248,26 +390,47 @@ def xinclude(place: Place) -> None:
 def launch_outside(place: Place) -> None:
     inner = f"<launch><node pkg='bad' exec='{place.token}' name='{place.token}'/></launch>"
     write(place.outside, {"a.launch.xml": inner})
-    write(place.ws, {"src/bad/launch/a.launch.xml":
-        f"<launch><node pkg='healthy' exec='healthy_node'/><include file='{place.outside}/a.launch.xml'/></launch>"})  # fmt: skip
+    write(
+        place.ws,
+        {
+            "src/bad/launch/a.launch.xml": f"<launch><node pkg='healthy' exec='healthy_node'/><include "
+            f"file='{place.outside}/a.launch.xml'/></launch>"
+        },
+    )
 
 
 def launch_environment(place: Place) -> None:
-    write(place.ws, {"src/bad/launch/a.launch.xml":
-        "<launch><node pkg='healthy' exec='healthy_node' namespace='$(env CANARY)'/></launch>"})  # fmt: skip
+    write(
+        place.ws,
+        {
+            "src/bad/launch/a.launch.xml": "<launch><node pkg='healthy' exec='healthy_node' namespace='$(env "
+            "CANARY)'/></launch>"
+        },
+    )
 
 
 def launch_file_content(place: Place) -> None:
-    write(place.ws, {"src/bad/launch/a.launch.xml":
-        "<launch><node pkg='healthy' exec='healthy_node' "
-        f"namespace=\"$(command 'cat {place.outside}/secret.txt')$(file-content {place.outside}/secret.txt)\"/></launch>"})  # fmt: skip
+    write(
+        place.ws,
+        {
+            "src/bad/launch/a.launch.xml": "<launch><node pkg='healthy' exec='healthy_node' "
+            f"namespace=\"$(command 'cat {place.outside}/secret.txt')$(file-content {place.outside}/secret.txt)"
+            f'"/></launch>'
+        },
+    )
 
 
 def parameters_outside(place: Place) -> None:
     write(place.outside, {"p.yaml": f"/**:\n  ros__parameters:\n    {place.token}: {place.token}\n"})
-    write(place.ws, {"src/bad/launch/a.launch.py": "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
-        "def generate_launch_description():\n    return LaunchDescription([Node(package='healthy', executable='healthy_node', "
-        f"parameters=['{place.outside}/p.yaml'])])\n"})  # fmt: skip
+    write(
+        place.ws,
+        {
+            "src/bad/launch/a.launch.py": "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
+            "def generate_launch_description():\n    return LaunchDescription([Node(package='healthy', "
+            "executable='healthy_node', "
+            f"parameters=['{place.outside}/p.yaml'])])\n"
+        },
+    )
 
 
 def xacro_outside(place: Place) -> None:
@@ -313,16 +476,36 @@ def linked_sources(place: Place) -> None:
     write(place.ws, {"rosimpact.toml": "[workspace]\nrosdep_sources = ['rosdep.list']\n"})
 
 
-REVISED = ("manifest", "cmake", "cpp", "header", "python", "launch.py", "launch.xml", "msg", "toml", "gitmodules",
-           "colcon.meta", "cmake-include")  # fmt: skip
+REVISED = (
+    "manifest",
+    "cmake",
+    "cpp",
+    "header",
+    "python",
+    "launch.py",
+    "launch.xml",
+    "msg",
+    "toml",
+    "gitmodules",
+    "colcon.meta",
+    "cmake-include",
+)
 
 
 def committed_link(kind: Kind) -> Callable[[Place], None]:
     def make(place: Place) -> None:
         write(place.ws, dict(kind.beside))
+        if kind.name == "gitmodules":  # no index takes such a link; a tree does
+            repository = pygit2.Repository(str(place.ws))
+            target = repository.create_blob(str(place.outside / "secret.txt").encode())
+            commit_blob(repository, kind.path, target, pygit2.GIT_FILEMODE_LINK)
+            return
         absolute(place, kind)
         commit(place.ws, "link")
-        write(place.ws, {"src/healthy/src/node.cpp": (place.ws / "src/healthy/src/node.cpp").read_text().replace("> 3", "> 4")})
+        write(
+            place.ws,
+            {"src/healthy/src/node.cpp": (place.ws / "src/healthy/src/node.cpp").read_text().replace("> 3", "> 4")},
+        )
         commit(place.ws, "more", time=1_700_000_200)
 
     return make
@@ -330,17 +513,24 @@ def committed_link(kind: Kind) -> Callable[[Place], None]:
 
 def by_revision(kind: Kind) -> Attack:
     return Attack(
-        f"committed link as {kind.name}", GROUP, committed_link(kind), (*CHECK, "--rev", "HEAD"), git=True,
+        f"committed link as {kind.name}",
+        GROUP,
+        committed_link(kind),
+        (*CHECK, "--rev", "HEAD"),
+        git=True,
         refusable=kind.setting,
-    )  # fmt: skip
+    )
 
 
 def _outside_repository(place: Place) -> None:
     folder = place.outside / "repo"
-    write(folder, {
-        "src/elsewhere/package.xml": manifest(place.token, place.token),
-        "src/elsewhere/CMakeLists.txt": cmake(place.token, f"find_package(OpenCV 8 REQUIRED)  # {place.token}"),
-    })  # fmt: skip
+    write(
+        folder,
+        {
+            "src/elsewhere/package.xml": manifest(place.token, place.token),
+            "src/elsewhere/CMakeLists.txt": cmake(place.token, f"find_package(OpenCV 8 REQUIRED)  # {place.token}"),
+        },
+    )
     commit(folder)
 
 
@@ -382,20 +572,31 @@ def follows(command: str) -> Attack:
     """The user asks for links to be followed."""
 
     def make(place: Place) -> None:
-        write(place.outside, {
-            "pkg/package.xml": manifest("followed", "libopencv-dev", "rclcpp", "std_msgs"),
-            "pkg/CMakeLists.txt": cmake("followed", "find_package(OpenCV 9 REQUIRED)\nament_target_dependencies(x rclcpp)\n"
-                "add_executable(followed src/node.cpp)"),
-            "pkg/src/node.cpp": KINDS[6].content("followed"),
-        })  # fmt: skip
+        write(
+            place.outside,
+            {
+                "pkg/package.xml": manifest("followed", "libopencv-dev", "rclcpp", "std_msgs"),
+                "pkg/CMakeLists.txt": cmake(
+                    "followed",
+                    "find_package(OpenCV 9 REQUIRED)\nament_target_dependencies(x rclcpp)\n"
+                    "add_executable(followed src/node.cpp)",
+                ),
+                "pkg/src/node.cpp": KINDS[6].content("followed"),
+            },
+        )
         link(place.ws / "src/elsewhere", place.outside / "pkg")
         if command == "impact":
             commit(place.ws, "link")
 
     return Attack(
-        f"{command} --follow-links", GROUP, make, (*COMMANDS[command], "--follow-links"), (STATUS[command],),
-        git=command in NEEDS_GIT, words=() if command == "impact" else ("followed",) if command != "why" else ("elsewhere",),
-    )  # fmt: skip
+        f"{command} --follow-links",
+        GROUP,
+        make,
+        (*COMMANDS[command], "--follow-links"),
+        (STATUS[command],),
+        git=command in NEEDS_GIT,
+        words=() if command == "impact" else ("followed",) if command != "why" else ("elsewhere",),
+    )
 
 
 ATTACKS = rows()

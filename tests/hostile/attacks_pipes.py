@@ -55,18 +55,27 @@ def rows() -> list[Attack]:
             kind = next(kind for kind in KINDS if kind.name == name)
             found.append(
                 Attack(
-                    f"{command}: fifo as {name}", GROUP, making(kind, fifo), COMMANDS[command], (STATUS[command],),
+                    f"{command}: fifo as {name}",
+                    GROUP,
+                    making(kind, fifo),
+                    COMMANDS[command],
+                    (STATUS[command],),
                     git=command in NEEDS_GIT,
                 )
-            )  # fmt: skip
+            )
     for name in INSIDE_GIT:
         for way in (fifo, zero):
             found.append(
                 Attack(
-                    f"{way.__name__} as .git/{name}", GROUP, inside_git(name, way), (*CHECK, "--base", "HEAD~1"),
-                    status=(0, 1, 2), git=True, found="",
+                    f"{way.__name__} as .git/{name}",
+                    GROUP,
+                    inside_git(name, way),
+                    (*CHECK, "--base", "HEAD~1"),
+                    status=(0, 1, 2),
+                    git=True,
+                    found="",
                 )
-            )  # fmt: skip
+            )
     for name in ("index", "HEAD", "config", "refs/heads/main", "packed-refs"):
         found.append(
             Attack(f"fifo as .git/{name}, no revision asked for", GROUP, inside_git(name, fifo), CHECK, git=True)
@@ -80,41 +89,150 @@ def rows() -> list[Attack]:
         for way in (fifo, zero):
             found.append(
                 Attack(
-                    f"{way.__name__} as {what}", GROUP, at(place_of, way), command, status=(2,), found="",
+                    f"{way.__name__} as {what}",
+                    GROUP,
+                    at(place_of, way),
+                    command,
+                    status=(2,),
+                    found="",
                     words=(os.path.basename(place_of),),
                 )
-            )  # fmt: skip
+            )
     found += [
-        Attack("fifo as a library of an install space", GROUP, at("install/bad/lib/libbad.so", fifo), (*CHECK, "--install", "{ws}/install")),
-        Attack("/dev/zero as a library of an install space", GROUP, at("install/bad/lib/libbad.so", zero), (*CHECK, "--install", "{ws}/install")),
-        Attack("fifo as setup.sh of an install space", GROUP, at("install/bad/setup.sh", fifo), (*CHECK, "--install", "{ws}/install")),
-        Attack("fifo as the workspace", GROUP, at("pipe", fifo), ("check", "{ws}/pipe", "-t", "jazzy"), status=(2,), found=""),
+        Attack(
+            "fifo as a library of an install space",
+            GROUP,
+            at("install/bad/lib/libbad.so", fifo),
+            (*CHECK, "--install", "{ws}/install"),
+        ),
+        Attack(
+            "/dev/zero as a library of an install space",
+            GROUP,
+            at("install/bad/lib/libbad.so", zero),
+            (*CHECK, "--install", "{ws}/install"),
+        ),
+        Attack(
+            "fifo as setup.sh of an install space",
+            GROUP,
+            at("install/bad/setup.sh", fifo),
+            (*CHECK, "--install", "{ws}/install"),
+        ),
+        Attack(
+            "fifo as the workspace",
+            GROUP,
+            at("pipe", fifo),
+            ("check", "{ws}/pipe", "-t", "jazzy"),
+            status=(2,),
+            found="",
+        ),
         Attack("/dev/zero as the workspace", GROUP, {}, ("check", "/dev/zero", "-t", "jazzy"), status=(2,), found=""),
-        Attack("fifo as a report to triage", GROUP, at("report", fifo), ("triage", "{ws}/report"), status=(2,), found=""),
-        Attack("/dev/zero as a report to triage", GROUP, at("report", zero), ("triage", "{ws}/report"), status=(2,), found=""),
-        Attack("fifo as the labels", GROUP, at("labels.jsonl", fifo), ("corpus", "stats", "--labels", "{ws}/labels.jsonl"), status=(2,), found=""),
-        Attack("/dev/zero as the labels", GROUP, at("labels.jsonl", zero), ("corpus", "stats", "--labels", "{ws}/labels.jsonl"), status=(2,), found=""),
-        Attack("fifo as the corpus", GROUP, at("corpus.sqlite", fifo), ("corpus", "status", "--store", "{ws}/corpus.sqlite"), status=(2,), found=""),
-        Attack("/dev/zero as the corpus", GROUP, at("corpus.sqlite", zero), ("corpus", "status", "--store", "{ws}/corpus.sqlite"), status=(2,), found=""),
-        Attack("fifo as the texts of the corpus", GROUP, at("r.jsonl", fifo), ("corpus", "label", "--list", "--reports", "{ws}/r.jsonl"), status=(2,), found=""),
-        Attack("fifo as a model", GROUP, at("m", fifo), ("triage", "it fails", "--model", "{ws}/m"), status=(2,), found=""),
-        Attack("/dev/zero as a model", GROUP, at("m", zero), ("triage", "it fails", "--model", "{ws}/m"), status=(2,), found=""),
+        Attack(
+            "fifo as a report to triage", GROUP, at("report", fifo), ("triage", "{ws}/report"), status=(0, 2), found=""
+        ),
+        Attack(
+            "/dev/zero as a report to triage",
+            GROUP,
+            at("report", zero),
+            ("triage", "{ws}/report"),
+            status=(0, 2),
+            found="",
+        ),
+        Attack(
+            "fifo as the labels",
+            GROUP,
+            at("labels.jsonl", fifo),
+            ("corpus", "stats", "--labels", "{ws}/labels.jsonl"),
+            status=(2,),
+            found="",
+        ),
+        Attack(
+            "/dev/zero as the labels",
+            GROUP,
+            at("labels.jsonl", zero),
+            ("corpus", "stats", "--labels", "{ws}/labels.jsonl"),
+            status=(2,),
+            found="",
+        ),
+        Attack(
+            "fifo as the corpus",
+            GROUP,
+            at("corpus.sqlite", fifo),
+            ("corpus", "status", "--store", "{ws}/corpus.sqlite"),
+            status=(2,),
+            found="",
+        ),
+        Attack(
+            "/dev/zero as the corpus",
+            GROUP,
+            at("corpus.sqlite", zero),
+            ("corpus", "status", "--store", "{ws}/corpus.sqlite"),
+            status=(2,),
+            found="",
+        ),
+        Attack(
+            "fifo as the texts of the corpus",
+            GROUP,
+            at("r.jsonl", fifo),
+            ("corpus", "label", "--list", "--reports", "{ws}/r.jsonl"),
+            status=(2,),
+            found="",
+        ),
+        Attack(
+            "fifo as a model", GROUP, at("m", fifo), ("triage", "it fails", "--model", "{ws}/m"), status=(2,), found=""
+        ),
+        Attack(
+            "/dev/zero as a model",
+            GROUP,
+            at("m", zero),
+            ("triage", "it fails", "--model", "{ws}/m"),
+            status=(2,),
+            found="",
+        ),
         Attack("fifo as the cache", GROUP, at("cache", fifo), CHECK, environment={"ROSIMPACT_CACHE": "{ws}/cache"}),
         Attack("/dev/null as the cache", GROUP, {}, CHECK, environment={"ROSIMPACT_CACHE": "/dev/null"}),
-        Attack("stdin that never ends as rosimpact.toml", GROUP, at("rosimpact.toml", standard_input), CHECK, refusable="rosimpact.toml", stdin="/dev/zero"),
+        Attack(
+            "stdin that never ends as rosimpact.toml",
+            GROUP,
+            at("rosimpact.toml", standard_input),
+            CHECK,
+            refusable="rosimpact.toml",
+            stdin="/dev/zero",
+        ),
         Attack("/proc/kmsg as CMakeLists.txt", GROUP, at("src/bad/CMakeLists.txt", kernel), CHECK),
         Attack("/proc/kmsg as rosimpact.toml", GROUP, at("rosimpact.toml", kernel), CHECK, refusable="rosimpact.toml"),
         Attack("/dev/tty as .gitmodules", GROUP, at(".gitmodules", lambda path: link(path, "/dev/tty")), CHECK),
-        Attack("/dev/urandom as a source", GROUP, at("src/bad/src/a.cpp", lambda path: link(path, "/dev/urandom")), CHECK),
+        Attack(
+            "/dev/urandom as a source", GROUP, at("src/bad/src/a.cpp", lambda path: link(path, "/dev/urandom")), CHECK
+        ),
         Attack("a pipe for every kind at once", GROUP, all_pipes, CHECK),
         Attack("fifo as a git repository", GROUP, at("x.git", fifo), ("logic", "{ws}/x.git"), status=(2,), found=""),
-        Attack("installed command: fifo as rosimpact.toml", GROUP, at("rosimpact.toml", fifo), CHECK, refusable="rosimpact.toml", direct=True),
-    ]  # fmt: skip
+        Attack(
+            "installed command: fifo as rosimpact.toml",
+            GROUP,
+            at("rosimpact.toml", fifo),
+            CHECK,
+            refusable="rosimpact.toml",
+            direct=True,
+        ),
+    ]
     return found
 
 
-INSIDE_GIT = ("index", "HEAD", "config", "refs/heads/main", "packed-refs", "objects/info/alternates", "shallow",
-              "info/exclude", "commondir", "refs", "objects", "logs/HEAD", "FIRST")  # fmt: skip
+INSIDE_GIT = (
+    "index",
+    "HEAD",
+    "config",
+    "refs/heads/main",
+    "packed-refs",
+    "objects/info/alternates",
+    "shallow",
+    "info/exclude",
+    "commondir",
+    "refs",
+    "objects",
+    "logs/HEAD",
+    "FIRST",
+)
 ASKED = {
     "the baseline": ("known.json", (*CHECK, "--baseline", "{ws}/known.json")),
     "the configuration": ("other.toml", (*CHECK, "--config", "{ws}/other.toml")),

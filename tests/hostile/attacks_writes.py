@@ -39,7 +39,10 @@ def linked_folder(place: Place) -> None:
 
 def linked_package(place: Place) -> None:
     for name in ("package.xml", "CMakeLists.txt", "src/node.cpp"):
-        write(place.outside, {f"pkg/{name}": (place.ws / "src/healthy" / name).read_text().replace("healthy", "elsewhere")})
+        write(
+            place.outside,
+            {f"pkg/{name}": (place.ws / "src/healthy" / name).read_text().replace("healthy", "elsewhere")},
+        )
     link(place.ws / "src/elsewhere", place.outside / "pkg")
 
 
@@ -50,7 +53,9 @@ def linked_to_git(place: Place) -> None:
 
 def package_in_git(place: Place) -> None:
     for name in ("package.xml", "CMakeLists.txt", "src/node.cpp"):
-        write(place.ws, {f".git/pkg/{name}": (place.ws / "src/healthy" / name).read_text().replace("healthy", "hidden")})
+        write(
+            place.ws, {f".git/pkg/{name}": (place.ws / "src/healthy" / name).read_text().replace("healthy", "hidden")}
+        )
     link(place.ws / "src/hidden", "../.git/pkg")
 
 
@@ -113,13 +118,17 @@ def old_file(name: str) -> Callable[[Place], None]:
 
 
 OUTPUTS: dict[str, tuple[tuple[str, ...], str]] = {
-    **{f"{command} {format} --output": ((*COMMANDS[command], "-f", format, "-o", "PATH"), command) for command in ("check", "graph", "impact", "upgrade", "logic") for format in (FORMATS[command][0], FORMATS[command][-1])},
+    **{
+        f"{command} {format} --output": ((*COMMANDS[command], "-f", format, "-o", "PATH"), command)
+        for command in ("check", "graph", "impact", "upgrade", "logic")
+        for format in (FORMATS[command][0], FORMATS[command][-1])
+    },
     "env diff --output": ((*COMMANDS["env"], "-o", "PATH"), "env"),
     "env capture --output": (("env", "capture", "-o", "PATH"), ""),
     "check --write-baseline": ((*CHECK, "--write-baseline", "PATH"), ""),
     "surface show --output": (("surface", "show", "rclcpp@jazzy", "-o", "PATH"), ""),
     "surface diff --output": (("surface", "diff", "rclcpp", "humble", "jazzy", "-o", "PATH"), ""),
-}  # fmt: skip
+}
 
 
 def rows() -> list[Attack]:
@@ -130,21 +139,78 @@ def rows() -> list[Attack]:
         Attack("--fix through a link of a package", GROUP, linked_package, FIX, (0, 1), changes=(SOURCE,), after=fixed),
         Attack("--fix through a link of a manifest", GROUP, linked_manifest, FIX, (0, 1), changes=(SOURCE,), found=""),
         Attack("--fix into .git", GROUP, linked_to_git, FIX, (0, 1), git=True),
-        Attack("--fix into a package in .git", GROUP, package_in_git, FIX, (0, 1), git=True, changes=(SOURCE,), after=fixed),
-        Attack("--fix of a link in the tree keeps the link", GROUP, linked_in_the_tree, FIX, (0, 1), changes=("kept/node.cpp",)),
+        Attack(
+            "--fix into a package in .git", GROUP, package_in_git, FIX, (0, 1), git=True, changes=(SOURCE,), after=fixed
+        ),
+        Attack(
+            "--fix of a link in the tree keeps the link",
+            GROUP,
+            linked_in_the_tree,
+            FIX,
+            (0, 1),
+            changes=("kept/node.cpp",),
+        ),
         Attack("--fix of a hard link", GROUP, hard_link, FIX, (0, 1), changes=(SOURCE,)),
         Attack("--fix of a file that is read-only", GROUP, read_only, FIX, (0, 1), changes=(SOURCE,)),
-        Attack("--fix keeps carriage returns", GROUP, odd_source(str(LINES).replace("\n", "\r\n")), FIX, (0, 1), changes=(SOURCE,), after=keeps(b"\r\n")),
-        Attack("--fix keeps bytes that are no UTF-8", GROUP, odd_source(LINES.encode() + b"// caf\xe9\n"), FIX, (0, 1), changes=(SOURCE,), after=keeps(b"caf\xe9")),
-        Attack("--fix keeps a byte order mark", GROUP, odd_source(b"\xef\xbb\xbf" + LINES.encode()), FIX, (0, 1), changes=(SOURCE,), after=keeps(b"\xef\xbb\xbf")),
+        Attack(
+            "--fix keeps carriage returns",
+            GROUP,
+            odd_source(str(LINES).replace("\n", "\r\n")),
+            FIX,
+            (0, 1),
+            changes=(SOURCE,),
+            after=keeps(b"\r\n"),
+        ),
+        Attack(
+            "--fix keeps bytes that are no UTF-8",
+            GROUP,
+            odd_source(LINES.encode() + b"// caf\xe9\n"),
+            FIX,
+            (0, 1),
+            changes=(SOURCE,),
+            after=keeps(b"caf\xe9"),
+        ),
+        Attack(
+            "--fix keeps a byte order mark",
+            GROUP,
+            odd_source(b"\xef\xbb\xbf" + LINES.encode()),
+            FIX,
+            (0, 1),
+            changes=(SOURCE,),
+            after=keeps(b"\xef\xbb\xbf"),
+        ),
         Attack("--fix with a link of its temporary name", GROUP, temporary_links, FIX, (0, 1), changes=(SOURCE,)),
-        Attack("--fix on a full disk", GROUP, {SOURCE: LINES + "// x\n" * 100_000}, FIX, (0, 1, 2), limits={"RLIMIT_FSIZE": 100_000}, found="", after=whole_source, changes=(SOURCE,)),
+        Attack(
+            "--fix on a full disk",
+            GROUP,
+            {SOURCE: LINES + "// x\n" * 100_000},
+            FIX,
+            (0, 1, 2),
+            limits={"RLIMIT_FSIZE": 100_000},
+            found="",
+            after=whole_source,
+            changes=(SOURCE,),
+        ),
         Attack("--diff changes nothing", GROUP, {}, (*CHECK, "--diff"), (1,)),
         Attack("check changes nothing", GROUP, {}, CHECK, (1,), git=True),
         Attack("installed command: --fix through a link", GROUP, linked_source, FIX, (0, 1), direct=True),
-        Attack("--prune-baseline through a link", GROUP, linked_baseline, (*CHECK, "--baseline", "{ws}/known.json", "--prune-baseline"), (0, 1, 2), found=""),
-        Attack("--write-baseline over the healthy package", GROUP, {}, (*CHECK, "--write-baseline", "{ws}/src"), (2,), found=""),
-    ]  # fmt: skip
+        Attack(
+            "--prune-baseline through a link",
+            GROUP,
+            linked_baseline,
+            (*CHECK, "--baseline", "{ws}/known.json", "--prune-baseline"),
+            (0, 1, 2),
+            found="",
+        ),
+        Attack(
+            "--write-baseline over the healthy package",
+            GROUP,
+            {},
+            (*CHECK, "--write-baseline", "{ws}/src"),
+            (2,),
+            found="",
+        ),
+    ]
     for name, (command, kind) in OUTPUTS.items():
         status = (STATUS[kind],) if kind else (0,)
         git = kind in NEEDS_GIT
@@ -153,24 +219,106 @@ def rows() -> list[Attack]:
             return tuple(part.replace("PATH", path) for part in command)
 
         found += [
-            Attack(f"{name} over a link to a file outside", GROUP, link_at("{out}/report", "{outside}/secret.txt"), asked("{out}/report"), (2,), git=git, found=""),
-            Attack(f"{name} over a link of the workspace", GROUP, link_at("{ws}/report", "{outside}/new"), asked("{ws}/report"), (2,), git=git, found=""),
+            Attack(
+                f"{name} over a link to a file outside",
+                GROUP,
+                link_at("{out}/report", "{outside}/secret.txt"),
+                asked("{out}/report"),
+                (2,),
+                git=git,
+                found="",
+            ),
+            Attack(
+                f"{name} over a link of the workspace",
+                GROUP,
+                link_at("{ws}/report", "{outside}/new"),
+                asked("{ws}/report"),
+                (2,),
+                git=git,
+                found="",
+            ),
             Attack(f"{name} into .git", GROUP, {}, asked("{ws}/.git/report"), (2,), git=True, found=""),
             Attack(f"{name} over a pipe", GROUP, a_pipe, asked("{out}/report"), (2,), git=git, found=""),
-            Attack(f"{name} on a full disk", GROUP, old_file("{out}/report"), asked("{out}/report"), (2,), git=git, found="", limits={"RLIMIT_FSIZE": 20}, environment={"ROSIMPACT_CACHE": "/nowhere/cache"}, seconds=8, after=untouched("{out}/report", "old\n")),
-        ]  # fmt: skip
+            Attack(
+                f"{name} on a full disk",
+                GROUP,
+                old_file("{out}/report"),
+                asked("{out}/report"),
+                (2,),
+                git=git,
+                found="",
+                limits={"RLIMIT_FSIZE": 20},
+                environment={"ROSIMPACT_CACHE": "/nowhere/cache"},
+                seconds=8,
+                after=untouched("{out}/report", "old\n"),
+            ),
+        ]
         if kind in ("check", "") and "html" not in name:
             found += [
-                Attack(f"{name} through a folder that is a link of the workspace", GROUP, folder_link("{ws}/reports", "{outside}"), asked("{ws}/reports/new"), (2,), git=git, found=""),
-                Attack(f"{name} over a link to .git", GROUP, link_at("{ws}/report", ".git/config"), asked("{ws}/report"), (2,), git=True, found=""),
-                Attack(f"{name} through a link to .git", GROUP, link_at("{ws}/reports", ".git/hooks"), asked("{ws}/reports/pre-commit"), (2,), git=True, found=""),
-                Attack(f"{name} over a link that dangles", GROUP, link_at("{out}/report", "{outside}/new"), asked("{out}/report"), (2,), found=""),
-                Attack(f"{name} over a link that loops", GROUP, link_at("{out}/report", "report"), asked("{out}/report"), (2,), found=""),
+                Attack(
+                    f"{name} through a folder that is a link of the workspace",
+                    GROUP,
+                    folder_link("{ws}/reports", "{outside}"),
+                    asked("{ws}/reports/new"),
+                    (2,),
+                    git=git,
+                    found="",
+                ),
+                Attack(
+                    f"{name} over a link to .git",
+                    GROUP,
+                    link_at("{ws}/report", ".git/config"),
+                    asked("{ws}/report"),
+                    (2,),
+                    git=True,
+                    found="",
+                ),
+                Attack(
+                    f"{name} through a link to .git",
+                    GROUP,
+                    link_at("{ws}/reports", ".git/hooks"),
+                    asked("{ws}/reports/pre-commit"),
+                    (2,),
+                    git=True,
+                    found="",
+                ),
+                Attack(
+                    f"{name} over a link that dangles",
+                    GROUP,
+                    link_at("{out}/report", "{outside}/new"),
+                    asked("{out}/report"),
+                    (2,),
+                    found="",
+                ),
+                Attack(
+                    f"{name} over a link that loops",
+                    GROUP,
+                    link_at("{out}/report", "report"),
+                    asked("{out}/report"),
+                    (2,),
+                    found="",
+                ),
                 Attack(f"{name} into a path with a null byte", GROUP, {}, asked("{out}/a\\x00b"), status, found=""),
-            ]  # fmt: skip
+            ]
     for format in FORMATS["check"]:
-        found.append(Attack(f"check {format}: killed while it writes", GROUP, old_file("{out}/report"), (*CHECK, "-f", format, "-o", "{out}/report"), (1, -9), found="", signal=(9, 0.3, "group"), after=old_or_whole))
-    for name, path in {"/dev/full": "/dev/full", "/dev/null": "/dev/null", "/dev/stdout": "/dev/stdout", "/proc/self/mem": "/proc/self/mem"}.items():
+        found.append(
+            Attack(
+                f"check {format}: killed while it writes",
+                GROUP,
+                old_file("{out}/report"),
+                (*CHECK, "-f", format, "-o", "{out}/report"),
+                (1, -9),
+                found="",
+                signal=(9, 0.3, "group"),
+                after=old_or_whole,
+            )
+        )
+    for name, path in {
+        "/dev/full": "/dev/full",
+        "/dev/null": "/dev/null",
+        "/dev/stdout": "/dev/stdout",
+        "/proc/self/mem": "/proc/self/mem",
+    }.items():
         found.append(Attack(f"check --output {name}", GROUP, {}, (*CHECK, "-o", path), (1, 2), found=""))
     return found
 
@@ -203,7 +351,11 @@ def a_pipe(place: Place) -> None:
 
 def old_or_whole(place: Place, ended: Ended) -> list[str]:
     data = (place.out / "report").read_text()
-    return [] if data == "old\n" or "asks for 9" in data and len(data) > 300 else [f"the report is cut: {len(data)} bytes"]
+    return (
+        []
+        if data == "old\n" or ("asks for 9" in data and len(data) > 300)
+        else [f"the report is cut: {len(data)} bytes"]
+    )
 
 
 ATTACKS = rows()

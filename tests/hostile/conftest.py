@@ -12,7 +12,9 @@ from .table import attacks, sample
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--attacks", choices=("sample", "all"), default=None, help="a sample of the attacks, or all of them")
+    parser.addoption(
+        "--attacks", choices=("sample", "all"), default=None, help="a sample of the attacks, or all of them"
+    )
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -22,7 +24,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     groups = metafunc.module.GROUPS
     chosen = metafunc.config.getoption("--attacks") or os.environ.get("ROSIMPACT_ATTACKS", "sample")
     rows = [row for row in (attacks() if chosen == "all" else sample()) if row.group in groups]
-    metafunc.parametrize("attack", rows, ids=[f"{row.group}: {row.name}".encode("ascii", "backslashreplace").decode() for row in rows])
+    metafunc.parametrize(
+        "attack", rows, ids=[f"{row.group}: {row.name}".encode("ascii", "backslashreplace").decode() for row in rows]
+    )
 
 
 @pytest.fixture(scope="session")

@@ -162,8 +162,11 @@ class Attack(NamedTuple):
     are right. found: what has to be in the output; by default what the command says of the healthy package; empty when
     nothing has to. refusable: the status 2 is right as well, when this word is in one line on standard error. words,
     absent: further texts that must, must not be in the output. git: the workspace has two commits, what make gives is
-    committed too. dear: takes long, and is no part of the sample. changes: what may change in the workspace. environment: added to the usual one. direct: run as the
-    installed command, not in a warm process. after: a further check; it gives what is wrong.
+    committed too. changes: what may change in the workspace. environment: added to the usual one; the value UNSET takes
+    away. direct: run as the installed command, not in a warm process; program: as this program. before: what else
+    happens to the place, the cache for instance. after: a further check; it gives what is wrong. limits: of resources, by
+    their names. signal: its number, the seconds after which it is sent, and to whom. dear: takes long, and is no part of
+    the sample.
     """
 
     name: str
@@ -178,7 +181,7 @@ class Attack(NamedTuple):
     git: bool = False
     bad: bool = True
     changes: tuple[str, ...] = ()
-    environment: Mapping[str, str] = {}  # noqa: RUF012
+    environment: Mapping[str, str] = {}
     direct: bool = False
     program: tuple[str, ...] = ()
     before: Callable[[Place], Any] | None = None
@@ -187,7 +190,7 @@ class Attack(NamedTuple):
     stdin: str = ""
     stdout: str = ""
     stderr: str = ""
-    limits: Mapping[str, int] = {}  # noqa: RUF012
+    limits: Mapping[str, int] = {}
     signal: tuple = ()
     seconds: float = 5.0
     memory: int = 1_000_000_000
@@ -365,10 +368,17 @@ class Range:
         self.url = f"http://127.0.0.1:{self._web.server_address[1]}"
         reading, writing = os.pipe()
         self._process = subprocess.Popen(
-            [self.interpreter, "-P" if sys.version_info >= (3, 11) else "-B", str(Path(__file__).with_name("server.py")),
-             str(writing)],
-            stdin=subprocess.PIPE, pass_fds=(writing,), text=True, encoding="utf-8",
-        )  # fmt: skip
+            [
+                self.interpreter,
+                "-P" if sys.version_info >= (3, 11) else "-B",
+                str(Path(__file__).with_name("server.py")),
+                str(writing),
+            ],
+            stdin=subprocess.PIPE,
+            pass_fds=(writing,),
+            text=True,
+            encoding="utf-8",
+        )
         os.close(writing)
         self._answers = os.fdopen(reading, encoding="utf-8")
         self._warm()
@@ -394,7 +404,11 @@ class Range:
         script = "import sys, atexit; atexit.register(lambda: open({!r}, 'w').write(' '.join(sys.modules))); "
         for command, arguments in COMMANDS.items():
             listing = place.out / command
-            program = (self.interpreter, "-c", script.format(str(listing)) + "from rosimpact.impact.cli import main; main()")
+            program = (
+                self.interpreter,
+                "-c",
+                script.format(str(listing)) + "from rosimpact.impact.cli import main; main()",
+            )
             ended = self._run(
                 Attack("warm", "", {}, (), direct=True, program=program), place, [place.filled(a) for a in arguments]
             )
@@ -420,14 +434,18 @@ class Range:
             "XDG_CACHE_HOME": str(place.home / ".cache"),
             "ROSIMPACT_CACHE": str(place.cache),
             "CANARY": place.secret,
-            "PYTHONDONTWRITEBYTECODE": "1",
             **{name: self.url for name in ("http_proxy", "https_proxy", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")},
             **{name: place.filled(value) for name, value in attack.environment.items()},
         }
         program = attack.program or (
-            (self.interpreter, "-c", "from rosimpact.impact.cli import main; main()") if attack.direct else ("rosimpact",)
+            (self.interpreter, "-c", "from rosimpact.impact.cli import main; main()")
+            if attack.direct
+            else ("rosimpact",)
         )
-        program = tuple(place.filled(part).replace("{python}", self.interpreter).replace("{script}", self.script) for part in program)
+        program = tuple(
+            place.filled(part).replace("{python}", self.interpreter).replace("{script}", self.script)
+            for part in program
+        )
         streams = {"stdout": place.root / "stdout", "stderr": place.root / "stderr"}
         answer = self._ask(
             {
@@ -473,7 +491,7 @@ class Range:
 
     def _judged(self, attack: Attack, place: Place, ended: Ended, before: dict[str, tuple]):
         if ended.killed:
-            yield f"hangs: killed for {ended.killed} after {ended.cpu:.1f} s of processor time, {ended.wall:.1f} s in all"
+            yield f"hangs: killed for {ended.killed} after {ended.cpu:.1f} s of the processor, {ended.wall:.1f} s in all"
         elif ended.cpu > attack.seconds + 0.5:
             yield f"slow: {ended.cpu:.1f} s of processor time"
         if ended.rss > attack.memory:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from .harness import CMAKE, MANIFEST, NODE, cmake, manifest
+from .harness import MANIFEST, NODE, cmake, manifest
 
 
 class Kind(NamedTuple):
@@ -16,7 +16,7 @@ class Kind(NamedTuple):
     name: str
     path: str
     text: str
-    beside: Mapping[str, str] = {}  # noqa: RUF012
+    beside: Mapping[str, str] = {}
     shown: bool = True
     setting: str = ""
 
@@ -50,7 +50,8 @@ _COMPILED = {
     "src/bad/package.xml": manifest("bad", "tf2_geometry_msgs"),
     "src/bad/CMakeLists.txt": cmake(
         "bad",
-        "find_package(tf2_geometry_msgs REQUIRED)\ninclude_directories(include)\nadd_executable(bad_node src/node.cpp)\n"
+        "find_package(tf2_geometry_msgs REQUIRED)\ninclude_directories(include)\nadd_executable(bad_node "
+        "src/node.cpp)\n"
         "target_link_libraries(bad_node tf2_geometry_msgs::tf2_geometry_msgs)",
     ),
 }
@@ -60,39 +61,71 @@ KINDS = [
     Kind("manifest", "src/bad/package.xml", manifest("bad", "rclcpp", "WORD"), _PACKAGE),
     Kind("cmake", "src/bad/CMakeLists.txt", cmake("bad", OLD)),
     Kind(
-        "cmake-include", "src/bad/cmake/more.cmake", OLD + "\n",
+        "cmake-include",
+        "src/bad/cmake/more.cmake",
+        OLD + "\n",
         {"src/bad/CMakeLists.txt": cmake("bad", "include(cmake/more.cmake)")},
     ),
     Kind(
-        "cmake-subdirectory", "src/bad/sub/CMakeLists.txt", OLD,
+        "cmake-subdirectory",
+        "src/bad/sub/CMakeLists.txt",
+        OLD,
         {"src/bad/CMakeLists.txt": cmake("bad", "add_subdirectory(sub)")},
     ),
     Kind("cpp", "src/bad/src/node.cpp", GONE, _COMPILED),
-    Kind("header", "src/bad/include/bad/a.hpp", GONE, {**_COMPILED, "src/bad/src/node.cpp": '#include "bad/a.hpp"\nint main() {}\n'}),
     Kind(
-        "node", "src/bad/src/talker.cpp",
+        "header",
+        "src/bad/include/bad/a.hpp",
+        GONE,
+        {**_COMPILED, "src/bad/src/node.cpp": '#include "bad/a.hpp"\nint main() {}\n'},
+    ),
+    Kind(
+        "node",
+        "src/bad/src/talker.cpp",
         NODE.format(Class="Bad", node="bad_node", topic="WORD", bound=1).replace("msgs.h>", "msgs.h>  // WORD"),
         {"src/bad/CMakeLists.txt": cmake("bad", "add_executable(bad_node src/talker.cpp)")},
     ),
     Kind("python", "src/bad/scripts/node.py", "from launch_ros.actions import Node  # WORD\n"),
     Kind("python-module", "src/bad/bad/node.py", "from launch_ros.actions import Node  # WORD\n", _PYTHON),
-    Kind("setup.py", "src/bad/setup.py", "from distutils.core import setup  # WORD\nsetup(name='bad')\n", _PYTHON, shown=False),
+    Kind(
+        "setup.py",
+        "src/bad/setup.py",
+        "from distutils.core import setup  # WORD\nsetup(name='bad')\n",
+        _PYTHON,
+        shown=False,
+    ),
     Kind("setup.cfg", "src/bad/setup.cfg", "[metadata\nname = WORD\n= y\n", _PYTHON, shown=False),
     Kind("pyproject", "src/bad/pyproject.toml", "[project\nname = 'WORD'\n", _PYTHON, shown=False),
     Kind(
-        "launch.py", "src/bad/launch/a.launch.py",
-        "from launch import LaunchDescription\nfrom launch_ros.actions import Node  # WORD\n\n\ndef generate_launch_description():\n"
+        "launch.py",
+        "src/bad/launch/a.launch.py",
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node  # WORD\n\n\n"
+        "def generate_launch_description():\n"
         "    return LaunchDescription([Node(package='bad', executable='WORD')])\n",
     ),
     Kind("launch.xml", "src/bad/launch/a.launch.xml", "<launch><node pkg='tf2_ros' exec='x' name='WORD'/></launch>\n"),
-    Kind("launch", "src/bad/launch/a.launch", "<launch><node pkg='tf2_ros' exec='x' name='WORD'/></launch>\n", shown=False),
+    Kind(
+        "launch",
+        "src/bad/launch/a.launch",
+        "<launch><node pkg='tf2_ros' exec='x' name='WORD'/></launch>\n",
+        shown=False,
+    ),
     Kind("launch.yaml", "src/bad/launch/a.launch.yaml", "launch:\n- node: {pkg: tf2_ros, exec: WORD}\n"),
     Kind("parameters", "src/bad/config/a.yaml", "/bad_node:\n  ros__parameters:\n    WORD: 1\n", shown=False),
     Kind("msg", "src/bad/msg/Bad.msg", "WORD/Word word\n", _INTERFACES),
     Kind("srv", "src/bad/srv/Bad.srv", "WORD/Word word\n---\n", _INTERFACES),
     Kind("action", "src/bad/action/Bad.action", "WORD/Word word\n---\n---\n", _INTERFACES),
-    Kind("xacro", "src/bad/urdf/a.urdf.xacro", "<robot xmlns:xacro='x'><xacro:include filename='$(find tf2_ros)/WORD'/></robot>\n"),
-    Kind("plugins", "src/bad/plugins.xml", "<library path='WORD'><class type='WORD' base_class_type='WORD'/></library>\n", shown=False),
+    Kind(
+        "xacro",
+        "src/bad/urdf/a.urdf.xacro",
+        "<robot xmlns:xacro='x'><xacro:include filename='$(find tf2_ros)/WORD'/></robot>\n",
+    ),
+    Kind(
+        "plugins",
+        "src/bad/plugins.xml",
+        "<library path='WORD'><class type='WORD' base_class_type='WORD'/></library>\n",
+        shown=False,
+    ),
     Kind("shell", "src/bad/scripts/run.sh", "#!/bin/sh\nros2 run bad WORD\n", shown=False),
     Kind("toml", "rosimpact.toml", "[check]\nselect = ['WORD']\n", setting="rosimpact.toml"),
     Kind("gitmodules", ".gitmodules", '[submodule "WORD"]\n\tpath = src/WORD\n\turl = x\n', shown=False),
@@ -102,4 +135,4 @@ KINDS = [
     Kind("dot-defaults.yaml", ".colcon/defaults.yaml", "build:\n  packages-skip: [WORD]\n", shown=False),
     Kind("manifest.xml", "src/old/manifest.xml", "<package><depend package='WORD'/></package>\n", shown=False),
     Kind("CHANGELOG", "src/bad/CHANGELOG.rst", "WORD\n", shown=False),
-]  # fmt: skip
+]

@@ -1,4 +1,4 @@
-"""What must hold for every output: of its characters, its lines, and its format, each read with a parser of that format.
+"""What must hold for every output: of its characters, its lines, and its format, read with a parser of that format.
 
 Names of hostile workspaces hold the word `evil`, so that it is known what came from there.
 """
@@ -17,13 +17,23 @@ import markdown_it
 # Control characters but line feed and tab, directions, and what breaks a line elsewhere.
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 _COLOUR = re.compile(r"\x1b\[[0-9;]{0,20}m")
-_OURS = re.compile(r"::(error|warning|notice)( (file|title|line|col|endLine|endColumn)=[^,:\n]*(,(file|title|line|col|endLine|endColumn)=[^,:\n]*)*)?::")
-_FAULTS = ("Traceback (most recent call last)", "this is a fault of rosimpact", "Exception ignored", "Error in sys.excepthook")
+_OURS = re.compile(
+    r"::(error|warning|notice)( (file|title|line|col|endLine|endColumn)=[^,:\n]*"
+    r"(,(file|title|line|col|endLine|endColumn)=[^,:\n]*)*)?::"
+)
+_FAULTS = (
+    "Traceback (most recent call last)",
+    "this is a fault of rosimpact",
+    "Exception ignored",
+    "Error in sys.excepthook",
+)
 _HANDLER = re.compile(r"on[a-z]+", re.I)
 
 
 def plain_failures(name: str, data: bytes, command: Sequence[str], colours: bool, encoding: str) -> Iterator[str]:
     """What is wrong with an output as a text for terminals and CI systems."""
+    if _format(command) == "html" and name != "errors" and _is_utf8(data):
+        encoding = "utf-8"  # a page says so itself, whatever the terminal's encoding is
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError as error:
@@ -46,6 +56,14 @@ def plain_failures(name: str, data: bytes, command: Sequence[str], colours: bool
     match = re.search(r"##(vso|[a-z]*)\[", shown)
     if match:
         yield f"{name} speaks to CI: {shown[max(0, match.start() - 30) : match.end() + 20]!r}"
+
+
+def _is_utf8(data: bytes) -> bool:
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 def _format(command: Sequence[str]) -> str:
@@ -111,7 +129,8 @@ def _markdown(text: str) -> Iterator[str]:
             elif child.type == "text":
                 match = re.search(r"(?<![\w`])@[A-Za-z]|(https?://|www\.)\S*evil|evil\S*#\d", child.content)
                 if match:
-                    yield f"markdown: a mention or link: {child.content[max(0, match.start() - 30) : match.end() + 30]!r}"
+                    around = child.content[max(0, match.start() - 30) : match.end() + 30]
+                    yield f"markdown: a mention or link: {around!r}"
     for token in parsed:
         if token.type == "heading_open" and token.map and "evil" in text.splitlines()[token.map[0]]:
             yield f"markdown: a heading: {text.splitlines()[token.map[0]][:100]!r}"
@@ -202,6 +221,11 @@ def _mermaid(text: str) -> Iterator[str]:
 
 
 _CHECKS = {
-    "json": _json, "sarif": _sarif, "markdown": _markdown, "html": _html, "graphml": _graphml, "dot": _dot,
+    "json": _json,
+    "sarif": _sarif,
+    "markdown": _markdown,
+    "html": _html,
+    "graphml": _graphml,
+    "dot": _dot,
     "mermaid": _mermaid,
-}  # fmt: skip
+}

@@ -27,7 +27,11 @@ def main() -> int:
     parser.add_argument("--sample", action="store_true", help="only the sample that CI takes")
     parser.add_argument("--resume", action="store_true", help="leave out what --out holds already, and add to it")
     asked = parser.parse_args()
-    rows = [row for row in (sample() if asked.sample else attacks()) if asked.only in ("", row.group) and asked.name in row.name]
+    rows = [
+        row
+        for row in (sample() if asked.sample else attacks())
+        if asked.only in ("", row.group) and asked.name in row.name
+    ]
     if asked.from_failures:
         with open(asked.from_failures) as file:
             failed = {row["name"] for row in map(json.loads, file) if not row["ok"]}
@@ -40,15 +44,16 @@ def main() -> int:
     names = [row.name for row in sorted(rows, key=order) if row.name not in done]
     good: Counter[str] = Counter()
     every: Counter[str] = Counter()
-    out = open(asked.out, "a" if asked.resume else "w") if asked.out else None
-    with ProcessPoolExecutor(asked.jobs, initializer=_start, initargs=(asked.python,)) as pool:
+    with (
+        open(asked.out or os.devnull, "a" if asked.resume else "w") as out,
+        ProcessPoolExecutor(asked.jobs, initializer=_start, initargs=(asked.python,)) as pool,
+    ):
         for future in as_completed([pool.submit(_attempt, name) for name in names]):
             result = future.result()
             every[result["class"]] += 1
             good[result["class"]] += result["ok"]
-            if out:
-                out.write(json.dumps(result) + "\n")
-                out.flush()
+            out.write(json.dumps(result) + "\n")
+            out.flush()
             if not result["ok"]:
                 print(f"{result['class']}: {result['name']}: {'; '.join(result['failures'])}", flush=True)
     for group in sorted(every):
@@ -67,11 +72,22 @@ def _attempt(name: str) -> dict[str, object]:
         result = _RANGE[0].attempt(attack)
     except Exception as error:
         text = traceback.format_exc().splitlines()
-        return {"name": name, "class": attack.group, "ok": False, "failures": [f"HARNESS {error!r} {text[-3:]}"], "cpu": 0, "rss": 0}
+        return {
+            "name": name,
+            "class": attack.group,
+            "ok": False,
+            "failures": [f"HARNESS {error!r} {text[-3:]}"],
+            "cpu": 0,
+            "rss": 0,
+        }
     return {
-        "name": name, "class": attack.group, "ok": not result.failures, "failures": result.failures,
-        "cpu": round(result.cpu, 2), "rss": result.rss,
-    }  # fmt: skip
+        "name": name,
+        "class": attack.group,
+        "ok": not result.failures,
+        "failures": result.failures,
+        "cpu": round(result.cpu, 2),
+        "rss": result.rss,
+    }
 
 
 if __name__ == "__main__":

@@ -4,13 +4,13 @@ A line of JSON on standard input asks for one run (see `Run` in harness.py), a l
 tells how it ended. This file is run by the interpreter that has rosimpact, and needs nothing else.
 """
 
+import contextlib
 import gc
 import importlib
 import json
 import os
 import resource
 import signal
-import socket
 import sys
 import time
 
@@ -44,7 +44,7 @@ def start(job):
     os.setsid()
     os.chdir(job["cwd"])
     if job["stdin"] == "tty":
-        master, slave = os.openpty()
+        slave = os.openpty()[1]
         os.dup2(slave, 0)
     else:
         os.dup2(os.open(job["stdin"] or "/dev/null", os.O_RDONLY), 0)
@@ -124,15 +124,13 @@ def watch(child, job):
 
 
 def end(pid):
-    try:
+    with contextlib.suppress(OSError):
         os.kill(pid, signal.SIGKILL)
-    except OSError:
-        pass
 
 
 def warm(names):
     for name in names:
-        if name.startswith("_") and "." not in name or "__main__" in name:
+        if (name.startswith("_") and "." not in name) or "__main__" in name:
             continue
         try:
             importlib.import_module(name)
@@ -162,5 +160,5 @@ def main():
 if __name__ == "__main__" and main():
     from rosimpact.impact.cli import main as run
 
-    sys.stdin = open(0, closefd=False)
+    sys.stdin = os.fdopen(0, closefd=False)
     run()

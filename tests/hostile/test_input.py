@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from .harness import Attack, Range
 
-GROUPS = ("links", "pipes", "files",)
+GROUPS = (
+    "links",
+    "pipes",
+    "files",
+)
 
 
 def test_attack(shooting_range: Range, attack: Attack) -> None:

@@ -24,10 +24,23 @@ def document(format: str, text: str) -> list[str]:
 @pytest.mark.parametrize(
     "text",
     [
-        "::error::x", "  ::error::x", "\u3000::x", "a\r::x", "a ##[group]b", "##vso[x]", "##teamcity[x]", "a\x1b[31m", "a\x9bb", "a\u202eb",
-        "a\u2028b", "a\0b", "\udcff", "Traceback (most recent call last)", "this is a fault of rosimpact",
+        "::error::x",
+        "  ::error::x",
+        "\u3000::x",
+        "a\r::x",
+        "a ##[group]b",
+        "##vso[x]",
+        "##teamcity[x]",
+        "a\x1b[31m",
+        "a\x9bb",
+        "a\u202eb",
+        "a\u2028b",
+        "a\0b",
+        "\udcff",
+        "Traceback (most recent call last)",
+        "this is a fault of rosimpact",
     ],
-)  # fmt: skip
+)
 def test_what_speaks_is_heard(text):
     assert plain(text)
 
@@ -40,10 +53,14 @@ def test_what_is_harmless_is_let_be(text):
 @pytest.mark.parametrize(
     ("line", "good"),
     [
-        ("::error file=a,line=1,title=x::text", True), ("::notice::text", True), ("::add-mask::x", False), ("::error file=a:b::x", False),
-        ("::error evil=1::x", False), (" ::error::x", False),
+        ("::error file=a,line=1,title=x::text", True),
+        ("::notice::text", True),
+        ("::add-mask::x", False),
+        ("::error file=a:b::x", False),
+        ("::error evil=1::x", False),
+        (" ::error::x", False),
     ],
-)  # fmt: skip
+)
 def test_workflow_commands(line, good):
     assert (not plain(line + "\n", "check", "-f", "github")) is good
 
@@ -51,16 +68,32 @@ def test_workflow_commands(line, good):
 @pytest.mark.parametrize(
     ("format", "text"),
     [
-        ("json", "{"), ("markdown", "- ![x](y)"), ("markdown", "- [a](https://evil.example)"), ("markdown", "a <img src=x>"),
-        ("markdown", "by @evil"), ("markdown", "`a` @evil ``b"), ("markdown", "https://evil.example"), ("html", "<p>x</p>"),
+        ("json", "{"),
+        ("markdown", "- ![x](y)"),
+        ("markdown", "- [a](https://evil.example)"),
+        ("markdown", "a <img src=x>"),
+        ("markdown", "by @evil"),
+        ("markdown", "`a` @evil ``b"),
+        ("markdown", "https://evil.example"),
+        ("html", "<p>x</p>"),
         ("html", "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'\"><p onclick=x>"),
-        ("html", "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'\"><script>a</script><script>b</script><script>c</script>"),
-        ("html", "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'\"><img src=x>"), ("graphml", "<a><b></a>"),
-        ("graphml", "<!DOCTYPE a><a/>"), ("dot", 'digraph { "a" -> evil; }'), ("dot", 'digraph { "a" [URL="x"]; }'), ("dot", 'digraph { "a" [label=<b>]; }'),
-        ("dot", 'digraph { "a"'), ("mermaid", 'a["x"]\nclick evil "y"'), ("mermaid", 'a["<img src=evil>"]'),
+        (
+            "html",
+            "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'\"><script>a</script><script>"
+            "b</script><script>c</script>",
+        ),
+        ("html", "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'\"><img src=x>"),
+        ("graphml", "<a><b></a>"),
+        ("graphml", "<!DOCTYPE a><a/>"),
+        ("dot", 'digraph { "a" -> evil; }'),
+        ("dot", 'digraph { "a" [URL="x"]; }'),
+        ("dot", 'digraph { "a" [label=<b>]; }'),
+        ("dot", 'digraph { "a"'),
+        ("mermaid", 'a["x"]\nclick evil "y"'),
+        ("mermaid", 'a["<img src=evil>"]'),
         ("sarif", '{"message": {"text": "[evil](https://x)"}}'),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_in_a_format_is_seen(format, text):
     assert document(format, text)
 
@@ -68,10 +101,13 @@ def test_what_is_wrong_in_a_format_is_seen(format, text):
 @pytest.mark.parametrize(
     ("format", "text"),
     [
-        ("json", "{}"), ("markdown", "- `@evil` ``a`b`` `<img>`\n\n<sub>x</sub>\n<details><summary>x</summary>\n\n</details>"),
-        ("graphml", "<a><b/></a>"), ("dot", 'digraph g {\n  rankdir=LR;\n  "evil" -> "a\\"b" [label="x\\n"];\n}'), ("mermaid", 'flowchart LR\n  n0["evil"]\n  n0 --> n1'),
+        ("json", "{}"),
+        ("markdown", "- `@evil` ``a`b`` `<img>`\n\n<sub>x</sub>\n<details><summary>x</summary>\n\n</details>"),
+        ("graphml", "<a><b/></a>"),
+        ("dot", 'digraph g {\n  rankdir=LR;\n  "evil" -> "a\\"b" [label="x\\n"];\n}'),
+        ("mermaid", 'flowchart LR\n  n0["evil"]\n  n0 --> n1'),
         ("sarif", '{"message": {"text": "\\\\[evil\\\\](x)"}}'),
     ],
-)  # fmt: skip
+)
 def test_what_is_right_in_a_format_is_let_be(format, text):
     assert document(format, text) == []

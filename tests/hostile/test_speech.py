@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from .harness import Attack, Range
 
-GROUPS = ("output", "writes", "network",)
+GROUPS = (
+    "output",
+    "writes",
+    "network",
+)
 
 
 def test_attack(shooting_range: Range, attack: Attack) -> None:

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from .harness import Attack, Range
 
-GROUPS = ("git", "cache", "environment",)
+GROUPS = (
+    "git",
+    "cache",
+    "environment",
+)
 
 
 def test_attack(shooting_range: Range, attack: Attack) -> None:
