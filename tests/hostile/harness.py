@@ -163,10 +163,10 @@ class Attack(NamedTuple):
     nothing has to. refusable: the status 2 is right as well, when this word is in one line on standard error. words,
     absent: further texts that must, must not be in the output. git: the workspace has two commits, what make gives is
     committed too. changes: what may change in the workspace. environment: added to the usual one; the value UNSET takes
-    away. direct: run as the installed command, not in a warm process; program: as this program. before: what else
-    happens to the place, the cache for instance. after: a further check; it gives what is wrong. limits: of resources, by
-    their names. signal: its number, the seconds after which it is sent, and to whom. dear: takes long, and is no part of
-    the sample.
+    away. direct: run as the installed command, not in a warm process; program: as this program. before: what else is
+    done to the place, its cache for instance. after: a further check; it gives what is wrong. limits: of resources, by
+    their names. signal: its number, the seconds after which it is sent, and to whom. dear: takes long, and is no part
+    of the sample.
     """
 
     name: str
@@ -491,7 +491,7 @@ class Range:
 
     def _judged(self, attack: Attack, place: Place, ended: Ended, before: dict[str, tuple]):
         if ended.killed:
-            yield f"hangs: killed for {ended.killed} after {ended.cpu:.1f} s of the processor, {ended.wall:.1f} s in all"
+            yield f"hangs: killed for {ended.killed} after {ended.cpu:.1f} s of work, {ended.wall:.1f} s in all"
         elif ended.cpu > attack.seconds + 0.5:
             yield f"slow: {ended.cpu:.1f} s of processor time"
         if ended.rss > attack.memory:
