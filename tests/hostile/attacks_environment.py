@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 
-from .attacks_output import NAMES, folders
+from .attacks_output import folder_of_bytes, folders
 from .harness import COMMANDS, FORMATS, NEEDS_GIT, STATUS, Attack, Ended, Place, write
 
 GROUP = "environment"
@@ -179,7 +179,7 @@ def rows() -> list[Attack]:
                 Attack(
                     f"{command} {format}: names of all kinds, {name}",
                     GROUP,
-                    folders(),
+                    folders() | folder_of_bytes(),
                     (*COMMANDS[command], "-f", format),
                     (STATUS[command],),
                     environment=environment,
@@ -201,19 +201,20 @@ def rows() -> list[Attack]:
                 direct=True,
             )
         )
-        found.append(
-            Attack(
-                f"output to a file, {name}",
-                GROUP,
-                folders(),
-                (*CHECK, "-o", "{out}/r.txt"),
-                (1,),
-                environment=environment,
-                encoding="utf-8",
-                direct=True,
-                snapshot=False,
+        if encoding != "utf-16-le":  # which the errors would be in, and the file not
+            found.append(
+                Attack(
+                    f"output to a file, {name}",
+                    GROUP,
+                    folders() | folder_of_bytes(),
+                    (*CHECK, "-o", "{out}/r.txt"),
+                    (1,),
+                    environment=environment,
+                    encoding="utf-8",
+                    direct=True,
+                    snapshot=False,
+                )
             )
-        )
     for seconds in (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.5, 2.5):
         found.append(
             Attack(
@@ -593,7 +594,6 @@ def rows() -> list[Attack]:
             direct=True,
         ),
     ]
-    assert NAMES
     return found
 
 

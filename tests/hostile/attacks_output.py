@@ -44,8 +44,9 @@ SPEECH = {
     "bytes": "evil\udcff\udcfe",
     "percent": "evil%0A::error::evil,file=evil",
 }
-NAMES = {name: text for name, text in SPEECH.items() if "/" not in text}  # a folder's name holds no slash
+BYTES = SPEECH["bytes"]
 TEXTS = {name: text for name, text in SPEECH.items() if name != "bytes"}  # a text of XML or TOML is Unicode
+NAMES = {name: text for name, text in TEXTS.items() if "/" not in text}  # a folder's name holds no slash
 
 
 def xml_text(text: str) -> str:
@@ -105,6 +106,21 @@ def node(number: int, name: str = "", topic: str = "") -> str:
 
 def folders() -> dict[str, str | bytes]:
     return each(NAMES, lambda n, text: {**a_package(text, n, OLD, "rclcpp"), f"src/{text}/src/n.cpp": node(n)})
+
+
+def folder_of_bytes() -> dict[str, str | bytes]:
+    return {**a_package(BYTES, 0, OLD, "rclcpp"), f"src/{BYTES}/src/n.cpp": node(0)}
+
+
+def files_of_bytes() -> dict[str, str | bytes]:
+    found: dict[str, str | bytes] = {
+        f"src/bad/src/{BYTES}.cpp": node(0),
+        f"src/bad/include/{BYTES}/a.hpp": "int a();\n",
+    }
+    found |= {f"src/bad/{folder}/{BYTES}.{folder}": "int32\n" for folder in ("msg", "srv", "action")}
+    found |= {f"src/bad/launch/{BYTES}.launch.{kind}": "(" for kind in ("py", "xml", "yaml")}
+    found["src/bad/CMakeLists.txt"] = cmake("bad", f"add_executable(n src/{BYTES}.cpp)\nadd_subdirectory({BYTES})")
+    return found
 
 
 def package_names() -> dict[str, str | bytes]:
@@ -339,12 +355,16 @@ PLACES: dict[str, Callable[[], dict[str, str | bytes]]] = {
     "targets of rosimpact.toml": settings,
     "settings of colcon": colcon_settings,
     "suppressions": suppressions,
+    "folder of bytes": folder_of_bytes,
+    "files of bytes": files_of_bytes,
 }
 FITTING = {
     "graph": (
         "folders",
         "package names",
         "file names",
+        "folder of bytes",
+        "files of bytes",
         "topics and nodes",
         "conditions",
         "topics in Python",
@@ -357,6 +377,8 @@ FITTING = {
         "folders",
         "package names",
         "file names",
+        "folder of bytes",
+        "files of bytes",
         "topics and nodes",
         "conditions",
         "topics in Python",
@@ -364,7 +386,16 @@ FITTING = {
         "launch files",
         "malformed files",
     ),
-    "logic": ("folders", "topics and nodes", "conditions", "topics in Python", "file names", "package names"),
+    "logic": (
+        "folders",
+        "topics and nodes",
+        "conditions",
+        "topics in Python",
+        "file names",
+        "folder of bytes",
+        "files of bytes",
+        "package names",
+    ),
     "upgrade": (
         "folders",
         "package names",
@@ -373,11 +404,31 @@ FITTING = {
         "malformed files",
         "CMake names",
         "file names",
+        "folder of bytes",
+        "files of bytes",
         "quoted lines",
         "submodules",
     ),
-    "why": ("folders", "package names", "file names", "CMake names", "malformed files", "quoted lines"),
-    "env": ("folders", "package names", "dependencies", "file names", "malformed files", "quoted lines"),
+    "why": (
+        "folders",
+        "package names",
+        "file names",
+        "folder of bytes",
+        "files of bytes",
+        "CMake names",
+        "malformed files",
+        "quoted lines",
+    ),
+    "env": (
+        "folders",
+        "package names",
+        "dependencies",
+        "file names",
+        "folder of bytes",
+        "files of bytes",
+        "malformed files",
+        "quoted lines",
+    ),
 }
 
 
@@ -409,8 +460,12 @@ def rows() -> list[Attack]:
         )
     )
     found.append(Attack("installed command: folders", GROUP, folders(), COMMANDS["check"], direct=True))
-    found.append(Attack("check --diff: file names", GROUP, file_names(), (*COMMANDS["check"], "--diff")))
-    found.append(Attack("check --diff: quoted lines", GROUP, fixable(), (*COMMANDS["check"], "--diff")))
+    found.append(
+        Attack("check --diff: file names", GROUP, file_names(), (*COMMANDS["check"], "--diff"), (0, 1, 2), found="")
+    )
+    found.append(
+        Attack("check --diff: quoted lines", GROUP, fixable(), (*COMMANDS["check"], "--diff"), (0, 1, 2), found="")
+    )
     found.append(Attack("check with progress: folders", GROUP, folders(), ("check", "{ws}", "-t", "jazzy")))
     found.append(
         Attack("upgrade --packages: folders", GROUP, folders(), (*COMMANDS["upgrade"], "--packages", "healthy"))

@@ -139,21 +139,21 @@ def warm(names):
 
 
 def main():
-    answers = os.fdopen(int(sys.argv[1]), "w", buffering=1)
+    answers = int(sys.argv[1])  # no object, which would close what has its number in a child
     for line in sys.stdin:
         job = json.loads(line)
         if "warm" in job:
             warm(job["warm"])
             gc.collect()
             gc.freeze()
-            answers.write("{}\n")
+            os.write(answers, b"{}\n")
             continue
         sys.stdout.flush()
         child = os.fork()
         if not child:
             start(job)
             return True
-        answers.write(json.dumps(watch(child, job)) + "\n")
+        os.write(answers, json.dumps(watch(child, job)).encode() + b"\n")
     return False
 
 
