@@ -79,7 +79,7 @@ PLACES: dict[str, dict[str, str]] = {
         "src/bad/pyproject.toml": "[project]\nname = 'bad'\nversion = '1'\ndependencies = ['x @ {url}/x.whl']\n",
     },
     "colcon mixins": {
-        "defaults.yaml": "build:\n  mixin: ['{url}/m']\n  metas: ['{url}/meta']\n  base-paths: ['{url}/x']\n"
+        "defaults.yaml": "build:\n  mixin: ['{url}/m']\n  metas: ['{url}/meta']\n  base-paths: ['.', '{url}/x']\n"
     },
     "UNC paths": toml("[workspace]\nunderlays = ['//127.0.0.1/share']\nrepos = ['\\\\127.0.0.1\\share']\n"),
 }
