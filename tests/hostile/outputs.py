@@ -75,7 +75,7 @@ def _format(command: Sequence[str]) -> str:
 
 def format_failures(command: Sequence[str], ended: Any, texts: Mapping[str, bytes]) -> Iterator[str]:
     """What is wrong with an output as a document of the format asked for."""
-    check = _CHECKS.get(_format(command))
+    check = _json_lines if "--jsonl" in command else _CHECKS.get(_format(command))
     if check is None or ended.status not in (0, 1):
         return
     written = [data for name, data in texts.items() if name not in ("output", "errors")]
@@ -88,6 +88,12 @@ def format_failures(command: Sequence[str], ended: Any, texts: Mapping[str, byte
 
 def _json(text: str) -> Iterator[str]:
     json.loads(text)
+    yield from ()
+
+
+def _json_lines(text: str) -> Iterator[str]:
+    for line in text.splitlines():
+        json.loads(line)
     yield from ()
 
 
