@@ -65,7 +65,9 @@ HEALTHY = {
     "src/start/CMakeLists.txt": (
         "cmake_minimum_required(VERSION 3.8)\nproject(start)\nfind_package(ament_cmake REQUIRED)\nament_package()\n"
     ),
-    "src/start/launch/a.launch.xml": "<launch><node pkg='speech' exec='shout'/><node pkg='nav2_amcl' exec='amcl'/></launch>\n",
+    "src/start/launch/a.launch.xml": (
+        "<launch><node pkg='speech' exec='shout'/><node pkg='nav2_amcl' exec='amcl'/></launch>\n"
+    ),
 }
 PACKAGES = frozenset(("camera", "speech", "start"))
 
