@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..edges.console import any_sign, counted, run_command, say
+from ..edges.console import counted, run_command, say
 from .report import LABELS_FILE, SOURCES, CorpusError, Report
 
 FORMATS = ("text", "json")
@@ -37,7 +37,6 @@ def _label(
         from .label_screen import need_terminal
 
         need_terminal()
-    any_sign()
     texts = chosen(_reports(reports), sources, repositories)
     if listed:
         found = current_labels(file)
@@ -133,7 +132,6 @@ def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path |
     if format == "json":
         print(as_json(numbers))
     else:
-        any_sign()
         print_text(numbers)
     if plots is not None:
         from .plots import draw

@@ -2,30 +2,46 @@
 
 What comes from a workspace (names, paths, lines of code, values of settings) must not speak for us: not to a terminal
 (escape sequences, direction marks), not to the CI system that reads our output (`::error::` at the beginning of a line,
-`##[...]` anywhere), not to the reader (a second line that looks like ours). visible() shows such characters escaped.
-Everything that is printed passes through write() or say(), which look once more.
+`##[...]` anywhere), not to the reader (a second line that looks like ours). visible() shows such characters escaped,
+escape_json() writes them as JSON does. Everything that is printed passes through write(), write_json(), write_exactly()
+or say(); the first and the last look once more.
 """
 
 from __future__ import annotations
 
-import io
+import codecs
+import contextlib
+import errno
+import json
 import os
 import re
 import sys
 from collections.abc import Callable
-from typing import TextIO
+from typing import Any, TextIO
 
 DEBUG = "ROSIMPACT_DEBUG"
 """Set by people who work on rosimpact itself: an unforeseen error then comes with its traceback."""
 
-_MARKS = "\u061c\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\U000e0000-\U000e007f"
-# Control, direction and invisible characters, bytes that are no UTF-8, and what CI systems take for a command: the
-# runners of GitHub and Azure look for `##[`, `##vso[` and the like anywhere in a line, TeamCity for `##teamcity[`.
-_UNSAFE = re.compile(f"[\x00-\x1f\x7f-\x9f\xad\ud800-\udfff{_MARKS}]|#(?=#[A-Za-z]{{0,20}}\\[)")
-_UNSAFE_IN_BLOCK = re.compile(f"[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\ud800-\udfff{_MARKS}]|#(?=#[A-Za-z]{{0,20}}\\[)")
+_HIDDEN = (
+    "\x7f-\x9f\xad\u034f\u061c\u115f\u1160\u17b4\u17b5\u180b-\u180f\u200b-\u200f\u2028-\u202e\u2060-\u206f\u3164"
+    "\ud800-\udfff\ufeff\uffa0\ufff9-\ufffb\ufffe\uffff\U000e0000-\U000e01ef"
+)
+"""Control, direction and invisible characters above ASCII, bytes that are no UTF-8, and what XML cannot hold."""
+# What CI systems take for a command: the runners of GitHub and Azure look for `##[`, `##vso[` and the like anywhere in
+# a line, TeamCity for `##teamcity[`.
+_FOR_CI = "#(?=#[A-Za-z]{0,20}\\[)"
+_UNSAFE = re.compile(f"[\x00-\x1f{_HIDDEN}]|{_FOR_CI}")
+_UNSAFE_IN_BLOCK = re.compile(f"[\x00-\x08\x0b-\x1f{_HIDDEN}]|{_FOR_CI}")
+_UNSAFE_IN_PAGE = re.compile(f"[\x00-\x08\x0b-\x1f{_HIDDEN}]")
+_UNSAFE_IN_JSON = re.compile(f"[{_HIDDEN}]|{_FOR_CI}")
+_NOT_UTF8 = re.compile("[\ud800-\udfff]")
 _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 # GitHub's runner strips white space before it looks for `::`.
 _COMMAND = re.compile(r"(?m)^([^\S\n]*):(?=:)")
+_OBEYED = re.compile(
+    "(?m)[\x00-\x08\x0b\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]|\r(?!\n)"
+    "|##[A-Za-z]{0,20}\\[|^[^\\S\n]*::"
+)
 # In our own output colours are the only escape sequences.
 _COLOUR = re.compile(r"\x1b\[[0-9;]{0,20}m")
 
@@ -43,6 +59,30 @@ def visible_lines(text: str) -> str:
     return _UNSAFE_IN_BLOCK.sub(_escaped, text)
 
 
+def visible_in_page(text: str) -> str:
+    """The same for HTML and XML, which have their own way to write what CI systems take for a command."""
+    return _UNSAFE_IN_PAGE.sub(_escaped, text)
+
+
+def cut_visibly(text: str, *offsets: int) -> list[str]:
+    """visible_lines() of a text, cut where these ascending offsets of the text itself have come to lie."""
+    pieces: list[str] = [""]
+    cuts, last = list(offsets), 0
+    for match in _UNSAFE_IN_BLOCK.finditer(text):
+        while cuts and cuts[0] <= match.start():
+            pieces[-1] += text[last : cuts[0]]
+            pieces.append("")
+            last = max(last, cuts.pop(0))
+        pieces[-1] += text[last : match.start()] + _escaped(match)
+        last = match.end()
+    for cut in cuts:
+        pieces[-1] += text[last:cut]
+        pieces.append("")
+        last = max(last, cut)
+    pieces[-1] += text[last:]
+    return pieces
+
+
 def _escaped(match: re.Match[str]) -> str:
     character = match[0]
     code = ord(character)
@@ -55,9 +95,52 @@ def _escaped(match: re.Match[str]) -> str:
     return f"\\u{code:04x}" if code <= 0xFFFF else f"\\U{code:08x}"
 
 
+def json_text(value: Any, indent: int | None = 1) -> str:
+    """A value as JSON text that can be shown anywhere, see escape_json(). indent: None for all on one line."""
+    separators = (",", ":") if indent is None else None
+    return escape_json(json.dumps(value, ensure_ascii=False, indent=indent, separators=separators))
+
+
+def escape_json(text: str) -> str:
+    """JSON text that says the same and hides nothing: what visible() would escape is written as `\\u202e`.
+
+    Bytes of names that are no UTF-8 are lone surrogates, such as `\\udcff` for 0xff, which Python's json reads back as
+    os.fsdecode() gives them.
+    """
+    if text.isascii() and "##" not in text and "\x7f" not in text:
+        return text
+    return _UNSAFE_IN_JSON.sub(lambda match: _json_escape(match[0]), text)
+
+
+def visible_bytes_in_json(text: str) -> str:
+    """JSON text in which bytes that are no UTF-8 are shown as visible() does: many readers refuse lone surrogates."""
+    return text if text.isascii() else _NOT_UTF8.sub(lambda match: "\\" + _escaped(match), text)
+
+
+def _json_escape(text: str) -> str:
+    return "".join(
+        f"\\u{code:04x}" if code <= 0xFFFF else f"\\u{0xD7C0 + (code >> 10):04x}\\u{0xDC00 + (code & 0x3FF):04x}"
+        for code in map(ord, text)
+    )
+
+
+def _json_errors(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return _json_escape(error.object[error.start : error.end]), error.end
+
+
+codecs.register_error("rosimpact.json", _json_errors)
+
+
+def is_obeyed(text: str) -> bool:
+    """Whether a terminal or CI would obey something in a document that has to be printed as it is, such as a patch."""
+    return _OBEYED.search(text) is not None
+
+
 def without_commands(text: str) -> str:
-    """Text of which no line begins with `::`, which GitHub's runner obeys, and in which nothing else is a command."""
-    return _COMMAND.sub(r"\1\\x3a", text)
+    """Text of which no line begins with `::`, which GitHub's runner obeys."""
+    return _COMMAND.sub(r"\1\\x3a", text) if "::" in text else text
 
 
 def _finished(text: str) -> str:
@@ -73,37 +156,101 @@ def _finished(text: str) -> str:
 
 def write(text: str, stream: TextIO | None = None) -> None:
     """Prints a text for people on standard output, ended by a line end; what the stream's encoding cannot say is
-    escaped. Raises OSError, BrokenPipeError when nobody reads any longer."""
-    _put(_finished(text), stream or sys.stdout)
+    escaped. Raises UserError where it cannot be written, BrokenPipeError when nobody reads any longer."""
+    _put(_finished(text), stream or sys.stdout, "backslashreplace")
+
+
+def write_json(text: str) -> None:
+    """Prints JSON on standard output; what the stream's encoding cannot say is escaped as JSON does. Raises as write()
+    does."""
+    _put(text, sys.stdout, "rosimpact.json")
 
 
 def write_exactly(text: str) -> None:
-    """Prints a document for programs (JSON, SARIF, HTML, workflow commands), whose maker has escaped what it holds."""
-    _put(text, sys.stdout)
-
-
-def _put(text: str, stream: TextIO) -> None:
-    if text and not text.endswith("\n"):
-        text += "\n"
-    buffer = getattr(stream, "buffer", None)
-    if buffer is None:
-        stream.write(text)
+    """Prints a document for programs (HTML, SVG, GraphML, a patch, workflow commands), whose maker has escaped what it
+    holds, in UTF-8 whatever the stream's encoding is: that is what such documents say of themselves. Raises as write()
+    does."""
+    try:
+        data = _ended(text).encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError:
+        data = _ended(text).encode("utf-8", "backslashreplace")
+    stream = sys.stdout
+    with _told_failures(stream):
+        buffer = getattr(stream, "buffer", None)
+        if buffer is None:
+            stream.write(_ended(text))
+        else:
+            stream.flush()
+            buffer.write(data)
         stream.flush()
-        return
-    stream.flush()
-    buffer.write(text.encode(getattr(stream, "encoding", None) or "utf-8", "backslashreplace"))
-    stream.flush()
+
+
+def _put(text: str, stream: TextIO | None, errors: str) -> None:
+    """Writes a text in the encoding of a stream. errors: how to encode what that cannot say."""
+    with _told_failures(stream):
+        assert stream is not None
+        encoding = getattr(stream, "encoding", None) or "utf-8"
+        # The stream encodes, since it alone knows whether a byte-order mark was written yet.
+        stream.write(_ended(text).encode(encoding, errors).decode(encoding))
+        stream.flush()
+
+
+def _ended(text: str) -> str:
+    return text + "\n" if text and not text.endswith("\n") else text
+
+
+@contextlib.contextmanager
+def _told_failures(stream: TextIO | None):
+    """What a stream that cannot be written raises as UserError; it is let alone from then on, so that Python does not
+    complain of it once more at its end."""
+    if stream is None:
+        raise UserError(_unwritable(None))
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        _silence(stream)
+        if isinstance(error, BrokenPipeError):
+            raise
+        raise UserError(_unwritable(error)) from None
+
+
+def _unwritable(error: OSError | ValueError | None) -> str:
+    closed = error is None or (isinstance(error, OSError) and error.errno == errno.EBADF)
+    reason = "it is closed" if closed else getattr(error, "strerror", None) or error
+    return f"standard output cannot be written: {reason}; check where it goes, or name a file with --output"
+
+
+def _silence(stream: TextIO) -> None:
+    """Lets a stream end in nothing."""
+    with contextlib.suppress(OSError, ValueError):
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, stream.fileno())
+        os.close(null)
+
+
+def output_failed(error: OSError) -> int:
+    """Says that standard output cannot be written and gives the exit status; nothing more is written there."""
+    _silence(sys.stdout)
+    return _failed(_unwritable(error))
+
+
+def hold_streams() -> None:
+    """Keeps the places of standard streams that are closed, so that no file that is opened gets its place and with it
+    what is printed; a closed standard output fails at the first text."""
+    for place, way in enumerate((os.O_RDONLY, os.O_RDONLY, os.O_WRONLY)):
+        try:
+            os.fstat(place)
+        except OSError:
+            os.open(os.devnull, way)
+    if sys.stdout is None:
+        sys.stdout = os.fdopen(1, "w", encoding="utf-8", closefd=False)
 
 
 def say(text: str) -> None:
     """A line for people, on standard error, whatever signs it can show. A stream that is closed or full is let alone:
     there is nobody to tell."""
-    if sys.stderr is None:
-        return
-    try:
-        _put(_finished(text), sys.stderr)
-    except (OSError, ValueError):
-        return
+    with contextlib.suppress(UserError, BrokenPipeError):
+        _put(without_commands(visible(text)), sys.stderr, "backslashreplace")
 
 
 class UserError(Exception):
@@ -141,15 +288,23 @@ def steps() -> Callable[[str, int, int], None]:
 
     def show(what: str, done: int, total: int) -> None:
         nonlocal last
-        if sys.stderr.isatty():
+        if sys.stderr is not None and sys.stderr.isatty():
             count = f" {done}/{total}" if total else ""
-            sys.stderr.write(f"\r\x1b[K{visible(what)}{count}" + ("\n" if 0 < total <= done else ""))
-            sys.stderr.flush()
+            rewrite(f"{what}{count}", ended=0 < total <= done)
         elif what != last:
             say(what)
         last = what
 
     return show
+
+
+def rewrite(text: str, *, ended: bool) -> None:
+    """Writes the line of standard error anew that says how far the work is. ended: the next text goes below it."""
+    with contextlib.suppress(OSError, ValueError):
+        encoding = sys.stderr.encoding or "utf-8"
+        line = visible(text).encode(encoding, "backslashreplace").decode(encoding)
+        sys.stderr.write(f"\r\x1b[K{line}" + ("\n" if ended else ""))
+        sys.stderr.flush()
 
 
 def counted(number: int, noun: str) -> str:
@@ -158,12 +313,6 @@ def counted(number: int, noun: str) -> str:
         return f"1 {noun}"
     plural = noun[:-1] + "ies" if noun.endswith("y") and noun[-2:-1] not in "aeiou" else noun + "s"
     return f"{number:,} {plural}"
-
-
-def any_sign() -> None:
-    """Lets standard output show what its encoding cannot say as `?`, so that no text of a report ends a command."""
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")
 
 
 def unforeseen(error: BaseException) -> str:

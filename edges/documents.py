@@ -126,7 +126,8 @@ def load_toml(text: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, ValueError) as error:
         line = re.search(r"at line (\d+)", str(error))
-        raise DocumentError(_clause(error), int(line[1]) if line else 0) from None
+        last = text.rstrip("\n").count("\n") + 1 if "at end of document" in str(error) else 0
+        raise DocumentError(_clause(error), int(line[1]) if line else last) from None
     except RecursionError:
         raise DocumentError("nested too deeply") from None
 

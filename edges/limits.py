@@ -9,8 +9,8 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from functools import cache
-from typing import NamedTuple
 
 VARIABLE = "ROSIMPACT_LIMITS"
 KB, MB, GB = 1 << 10, 1 << 20, 1 << 30
@@ -20,14 +20,15 @@ class LimitError(ValueError):
     """ROSIMPACT_LIMITS cannot be read; the text says how to write it."""
 
 
-class Limits(NamedTuple):
+@dataclass(frozen=True)
+class Limits:
     """Bytes of one file, by what it is; then other limits, in the unit that each says.
 
     Sizes: manifest (package.xml), cmake, interface (msg, srv, action, idl), cpp, python, launch (launch, xacro, urdf,
     other XML), parameters (YAML), script, settings (rosimpact.toml, colcon.meta, colcon.pkg, defaults.yaml, setup.cfg,
     .gitmodules, .repos), text (whatever a pattern is looked for in), baseline, capture, listing (dpkg -l), library
     (ELF files), deb (a Debian package as downloaded, and unpacked), index (of git), object (a git object), report (bug
-    reports, models).
+    reports, models), row (of the cache).
     """
 
     manifest: int = 1 * MB
@@ -48,10 +49,11 @@ class Limits(NamedTuple):
     index: int = 256 * MB
     object: int = 16 * MB
     report: int = 512 * MB
+    row: int = 512 * MB
     entries: int = 2_000_000  # files and folders of one tree
     depth: int = 200  # folders, or nested nodes of a document
     nodes: int = 200_000  # of one YAML document, aliases expanded
-    seconds: int = 20  # of processor time that the extraction of one file may take
+    seconds: int = 3  # of processor time that the extraction of one file may take, and as many more for each MB
     memory: int = 768 * MB  # that extraction may need beyond what the process has
 
 
@@ -60,13 +62,14 @@ _UNITS = {"": 1, "k": KB, "kb": KB, "m": MB, "mb": MB, "g": GB, "gb": GB}
 
 def parse(text: str) -> Limits:
     """Limits from `name=value` pairs separated by commas; sizes in bytes, or with KB, MB or GB. Raises LimitError."""
+    known = [field.name for field in fields(Limits)]
     changed: dict[str, int] = {}
     for pair in filter(None, (part.strip() for part in text.split(","))):
         name, _, value = (part.strip() for part in pair.partition("="))
         match = re.fullmatch(r"([0-9]{1,12})\s*([kmg]?b?)", value.lower())
-        if name not in Limits._fields or match is None or match[2] not in _UNITS or not int(match[1]):
-            known = ", ".join(Limits._fields)
-            raise LimitError(f"{VARIABLE}: `{pair}` is no limit; write such as cpp=32MB; known are {known}")
+        if name not in known or match is None or match[2] not in _UNITS or not int(match[1]):
+            names = ", ".join(known)
+            raise LimitError(f"{VARIABLE}: `{pair}` is not a limit; write for example cpp=32MB; known are {names}")
         changed[name] = int(match[1]) * _UNITS[match[2]]
     return Limits(**changed)
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import gc
-import os
+import io
 import sys
+from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -14,6 +15,7 @@ from ..classifier.cli import app as classifier_app
 from ..classifier.cli import triage
 from ..corpus.cli import app as corpus_app
 from ..corpus.study_cli import app as study_app
+from ..edges.console import UserError, hold_streams, output_failed, say, visible, write
 
 app = typer.Typer(
     name="rosimpact",
@@ -476,7 +478,7 @@ def _version(value: bool) -> None:
     if value:
         from ..corpus import __version__
 
-        typer.echo(f"rosimpact {__version__}")
+        write(f"rosimpact {__version__}")
         raise typer.Exit()
 
 
@@ -493,21 +495,49 @@ def _names(values: list[str] | None) -> tuple[str, ...]:
     return tuple(name.strip() for value in values or () for name in value.split(",") if name.strip())
 
 
+_UsageError: Any = typer.BadParameter.__mro__[2]
+"""What is wrong with the arguments; where it is to be imported from differs between versions of typer."""
+
+
+def _print_usage_error(error: Any) -> None:
+    """Prints what is wrong with the arguments, which are shown on one line: in CI they may hold names of branches."""
+    context = getattr(error, "ctx", None)
+    if context is None or error.message != context.get_help():
+        error.message = visible(error.message)
+    text = io.StringIO()
+    error.show(file=text)
+    if sys.stderr is not None:
+        with suppress(UserError, OSError):
+            write(text.getvalue(), sys.stderr)
+
+
 def main() -> None:
     """Entry point."""
+    hold_streams()
     for argument in sys.argv[1:]:
         if "\0" in argument:
             # No shell can pass one; who calls from Python can, and the system's calls would end in a ValueError.
-            typer.echo(f"rosimpact: {argument!r}: holds a null byte, which no path or name can; leave it out", err=True)
+            say(f"rosimpact: {argument!r}: holds a null byte, which no path or name can; leave it out")
             raise SystemExit(2)
     # What a command reads it keeps, and there are no cycles in it: looking for some often costs a tenth of the time.
     gc.set_threshold(200_000, 20, 100)
     try:
-        app()
+        raise SystemExit(app(standalone_mode=False))
+    except _UsageError as error:
+        _print_usage_error(error)
+        raise SystemExit(error.exit_code) from None
+    except typer.Abort:
+        say("rosimpact: aborted")
+        raise SystemExit(1) from None
     except BrokenPipeError:
-        # Whoever read has read enough; Python would complain once more when it closes the stream.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        # Whoever read has read enough.
         raise SystemExit(0) from None
+    except UserError as error:
+        say(f"rosimpact: {error}")
+        raise SystemExit(2) from None
+    except OSError as error:
+        # The commands tell of their own; what is left is help that cannot be printed.
+        raise SystemExit(output_failed(error)) from None
 
 
 if __name__ == "__main__":

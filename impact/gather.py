@@ -14,17 +14,16 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import closing
 from functools import cache
 from itertools import chain, islice
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 
+from ..edges.limits import size_text
 from . import processes
 from .facts import kinds
+from .facts.place import Problem
 from .facts.store import Store, fact_key, pack, unpack
 from .tree import PathProblem, Tree
-
-if TYPE_CHECKING:
-    from concurrent.futures import Future
 
 # Starting workers and importing the parsers in each costs about as much as parsing this many bytes here.
 ALONE_BYTES = 400_000
@@ -103,9 +102,11 @@ class Gathered:
                 pass
         # The store lost it, or holds something else under its name: the file is still there.
         data, content = self.tree.read_with_id(path)
-        facts = kinds.extract(key[1], data)
-        self.store.put([(_key(content, key[1]), pack(kinds.encode(facts)))])
-        return facts
+        ((_, ((_, kind, made, failure),)),) = _extracted(iter([[(path, content, (key[1],), data)]]), 1)
+        if failure:
+            return kinds.FileFacts(kind, kinds.empty(kind, Problem(1, failure)))
+        self.store.put([(_key(content, kind), made)])
+        return kinds.decode(kind, unpack(made))
 
 
 def gather(
@@ -143,8 +144,9 @@ def gather(
         other = second(path) if second is not None else None
         if kind is None and other is None:
             continue
-        if size > kinds.LARGEST:
-            message = f"larger than {kinds.LARGEST >> 20} MB ({size >> 20} MB), taken for generated and not read"
+        largest = max(_largest(each) for each in (kind, other) if each is not None)
+        if size > largest:
+            message = f"larger than {size_text(largest)} ({size_text(size)}), taken for generated and not read"
             gathered.problems.append(PathProblem(path, message))
             continue
         content = known_id(path)
@@ -176,6 +178,9 @@ def gather(
 
 def _key(content: str, kind: str) -> bytes:
     return fact_key(content, _version(kind))
+
+
+_largest = cache(kinds.largest)
 
 
 @cache
@@ -312,10 +317,15 @@ def _drop(gathered: Gathered, path: str, message: str) -> None:
 def _extract(chunk: list[_Item]) -> list[_Result]:
     """What a worker does: bytes to packed facts, a file that its extractor fails on named and not fatal."""
     results: list[_Result] = []
+    part = 0
     for _, content, those, data in chunk:
         for kind in those:
+            processes.begin_part(part, len(data))
+            part += 1
             try:
                 results.append((content, kind, pack(kinds.encode(kinds.extract(kind, data))), ""))
+            except MemoryError:
+                raise
             except Exception as error:
                 reason = f"the {kind} extractor failed: {type(error).__name__}: {error}"
                 results.append((content, kind, b"", reason[:300]))
@@ -323,7 +333,7 @@ def _extract(chunk: list[_Item]) -> list[_Result]:
 
 
 def _extracted(chunks: Iterator[list[_Item]], jobs: int) -> Generator[tuple[list[_Item], list[_Result]], None, None]:
-    """Chunks with their results, here when there is little to do, else in processes."""
+    """Chunks with their results, from one process when there is little to do, else from several."""
     first: list[list[_Item]] = []
     size = 0
     for chunk in chunks:
@@ -332,15 +342,16 @@ def _extracted(chunks: Iterator[list[_Item]], jobs: int) -> Generator[tuple[list
         if size > ALONE_BYTES and jobs > 1:
             break
     else:
-        for chunk in first:
+        jobs = 1
+    everything = chain(first, chunks)
+    if processes.may_fork() and not (jobs > 1 and _scheduler_chosen()):
+        yield from _in_workers(everything, jobs)
+    elif jobs > 1:
+        yield from _by_joblib(everything, jobs)
+    else:
+        for chunk in everything:
             for item in chunk:
                 yield [item], _extract([item])
-        return
-    everything = chain(first, chunks)
-    if processes.may_fork() and not _scheduler_chosen():
-        yield from _in_forks(everything, jobs)
-    else:
-        yield from _by_joblib(everything, jobs)
 
 
 def _scheduler_chosen() -> bool:
@@ -365,57 +376,48 @@ def _by_joblib(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[
             yield from zip(wave, results, strict=True)
 
 
-def _in_forks(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_Item], list[_Result]]]:
-    """Chunks in forked processes. A file that kills its process is found, named and left out."""
-    from concurrent.futures import FIRST_COMPLETED, wait
-    from concurrent.futures.process import BrokenProcessPool
-
+def _in_workers(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_Item], list[_Result]]]:
+    """Chunks in forked processes. A file that kills its process, or that takes too much time or memory, is found, named
+    and left out."""
     waiting: deque[list[_Item]] = deque()
-    running: dict[Future, list[_Item]] = {}
-    pool = processes.pool(jobs)
-    try:
+    alone: deque[list[_Item]] = deque()
+    with processes.Workers(_extract, jobs) as workers:
         while True:
-            while len(running) < 2 * jobs:
+            while workers.free:
                 chunk = waiting.popleft() if waiting else next(chunks, None)
                 if chunk is None:
                     break
-                running[pool.submit(_extract, chunk)] = chunk
-            if not running:
+                workers.give(chunk)
+            while workers.free and alone and not waiting:
+                workers.give(alone.popleft(), fresh=True)
+            if not workers.busy:
                 return
-            finished, _ = wait(running, return_when=FIRST_COMPLETED)
-            suspects = []
-            for future in finished:
-                chunk = running.pop(future)
-                try:
-                    results = future.result()
-                except BrokenProcessPool:
-                    suspects.append(chunk)
+            for chunk, results in workers.finished():
+                if not isinstance(results, processes.Died):
+                    yield chunk, results
                     continue
-                yield chunk, results
-            if suspects:
-                suspects.extend(running.values())
-                running.clear()
-                pool.shutdown(wait=False)
-                for chunk in suspects:
-                    yield chunk, _one_by_one(chunk)
-                pool = processes.pool(jobs)
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+                parts = [(item, kind) for item in chunk for kind in item[2]]
+                if not 0 <= results.part < len(parts) or (results.memory and not results.fresh):
+                    suspects = parts if results.part < 0 else parts[results.part : results.part + 1]
+                    if len(parts) == 1 and results.fresh:
+                        yield chunk, [_failure(*parts[0], results.why)]
+                        continue
+                    alone.extend([(*item[:2], (kind,), item[3])] for item, kind in suspects)
+                else:
+                    suspects = parts[results.part : results.part + 1]
+                    item, kind = suspects[0]
+                    yield [(*item[:2], (kind,), b"")], [_failure(item, kind, results.why)]
+                rest = _without(chunk, suspects)
+                if rest:
+                    waiting.append(rest)
 
 
-def _one_by_one(chunk: list[_Item]) -> list[_Result]:
-    """Each kind of facts in a process of its own turn; one that dies takes only its file with it."""
-    from concurrent.futures.process import BrokenProcessPool
+def _failure(item: _Item, kind: str, why: str) -> _Result:
+    return item[1], kind, b"", f"the {kind} extractor {why} on this file"
 
-    results: list[_Result] = []
-    pool = processes.pool(1)
-    for path, content, those, data in chunk:
-        for kind in those:
-            try:
-                results.extend(pool.submit(_extract, [(path, content, (kind,), data)]).result())
-            except BrokenProcessPool:
-                results.append((content, kind, b"", f"the {kind} extractor crashed on this file"))
-                pool.shutdown(wait=False)
-                pool = processes.pool(1)
-    pool.shutdown(wait=False)
-    return results
+
+def _without(chunk: list[_Item], parts: list[tuple[_Item, str]]) -> list[_Item]:
+    """A chunk without some kinds of facts of its files."""
+    done = {(item[1], kind) for item, kind in parts}
+    rest = ((*item[:2], tuple(kind for kind in item[2] if (item[1], kind) not in done), item[3]) for item in chunk)
+    return [item for item in rest if item[2]]

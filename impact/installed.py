@@ -206,7 +206,13 @@ def _read_all(
         return
     store.close()  # no other process may go on with a connection of this one
     for place, rows in processes.forked(_of_part, range(len(parts)), jobs, parts):
-        yield from rows if rows is not None else _extracted(parts[place])
+        if not isinstance(rows, processes.Died):
+            yield from rows
+            continue
+        # A file on which reading ends its process is left out.
+        singles = [[item] for item in parts[place]]
+        for _, row in processes.forked(_of_part, range(len(singles)), 1, singles):
+            yield from () if isinstance(row, processes.Died) else row
 
 
 def _of_part(parts: list[list[tuple[bytes, str]]], place: int) -> list[tuple[bytes, bytes]]:

@@ -80,7 +80,7 @@ def _judged(
     done = {}
     opened.store.close()  # no other process may go on with a connection of this one
     for task, result in processes.forked(_part, tasks, jobs, opened, rules, packages, size):
-        done[task] = result if result is not None else _part(opened, rules, packages, size, task)
+        done[task] = _one_by_one(opened, rules, packages, size, task) if isinstance(result, processes.Died) else result
     for place, tasks_of_view in groupby(tasks, key=lambda task: task[0]):
         view = opened.views[place]
         said: dict[str, list[tuple[str, Hit]]] = {}
@@ -107,6 +107,29 @@ def _part(
         return list(_all(rules, view, crashed)), view.unresolved, crashed
     finally:
         view.part = None
+
+
+def _one_by_one(
+    opened: Opened, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
+) -> tuple[list[tuple[str, Hit]], dict[str, set[str]], Crashes]:
+    """As _part, package by package, where the rules end the process on one of them: that one is named."""
+    place, at = task
+    singles = [(place, each) for each in range(at, min(at + size, len(packages)))]
+    hits: list[tuple[str, Hit]] = []
+    unresolved: dict[str, set[str]] = {}
+    crashed: Crashes = {}
+    found = dict(processes.forked(_part, singles, 1, opened, rules, packages, 1))
+    for single in singles:
+        result = found[single]
+        if isinstance(result, processes.Died):
+            failure = (", ".join(rule.name for rule in rules), f"the check of `{packages[single[1]]}` {result.why}")
+            crashed.setdefault(failure, [])
+            continue
+        hits += result[0]
+        for kind, unknown in result[1].items():
+            unresolved.setdefault(kind, set()).update(unknown)
+        crashed.update(result[2])
+    return hits, unresolved, crashed
 
 
 def _all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[tuple[str, Hit]]:

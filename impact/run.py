@@ -5,11 +5,25 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..corpus import __version__
-from ..edges.console import DEBUG, counted, say, steps, unforeseen
+from ..edges.console import (
+    DEBUG,
+    UserError,
+    counted,
+    escape_json,
+    is_obeyed,
+    json_text,
+    rewrite,
+    say,
+    steps,
+    unforeseen,
+    write,
+    write_exactly,
+    write_json,
+)
 from .check import Checked, CheckError, Options
 from .check import run as run_check
 from .config import ConfigError
@@ -24,7 +38,7 @@ from .tree import TreeError, WorkingTree, shown
 FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
 FAIL_ON = ("error", "warning", "note", "never")
 _TEXT_OR_JSON = ("text", "json")
-_OUR_ERRORS = (CheckError, ConfigError, SettingsError, TargetError, SnapshotError, TreeError, InstallError)
+_OUR_ERRORS = (UserError, CheckError, ConfigError, SettingsError, TargetError, SnapshotError, TreeError, InstallError)
 
 
 class Failed(Exception):
@@ -55,10 +69,11 @@ def failed(message: str, format: str = "text", output: Path | None = None) -> in
     say(f"rosimpact: {message}")
     if format in FORMATS and format != "text":
         text = render(Report(__version__, "", (), (), Coverage(), failure=message), format, notes=False)
-        try:
-            _deliver(text, output)
-        except Failed:
-            _write(text)
+        with suppress(UserError):
+            try:
+                _deliver(text, output, format)
+            except Failed:
+                _print(text, format)
     return 2
 
 
@@ -77,7 +92,7 @@ def _answered(
     try:
         with told(path):
             _one_of("--format", format, known)
-            _deliver(answer(), output)
+            _deliver(answer(), output, format)
     except Failed as error:
         return failed(str(error))
     except KeyboardInterrupt:
@@ -122,7 +137,11 @@ def check(
                 _prune(baseline, known, report)
             if write_baseline:
                 return _new_baseline(write_baseline, report)
-            _deliver(_patch(checked) if diff else render(report, format, notes, output, _prefix(path, checked)), output)
+            if diff:
+                patch, incomplete = _patch(checked, output)
+                _deliver(patch, output, "patch")
+            else:
+                _deliver(render(report, format, notes, output, _prefix(path, checked)), output, format)
             if format == "github" and not diff:
                 from .report.github import write_step_summary
 
@@ -161,7 +180,7 @@ def _new_baseline(file: Path, report: Report) -> int:
         raise Failed(f"{file}: not written, since nothing was analysed")
     found = in_order([*report.findings, *report.known])
     _save(file, baseline(found))
-    say(f"{file}: {counted(len(found), 'finding')}")
+    say(f"rosimpact: {file}: {counted(len(found), 'finding')}")
     return 2 if report.failure else 0
 
 
@@ -172,7 +191,7 @@ def _prune(file: Path, known: str, report: Report) -> None:
     text, gone = pruned(known_from(known), [*report.findings, *report.known])
     if gone:
         _save(file, text)
-    say(f"{file}: {gone} cured, taken out")
+    say(f"rosimpact: {file}: {gone} cured, taken out")
 
 
 def _fixed(path: Path, checked: Checked) -> bool:
@@ -202,8 +221,9 @@ def _applied(checked: Checked):
     return fix.apply(fix.fixes(finding for finding in checked.report.findings if finding.new), reader(checked.tree))
 
 
-def _patch(checked: Checked) -> str:
-    """What the fixes would change, as `git apply` reads it."""
+def _patch(checked: Checked, output: Path | None) -> tuple[str, bool]:
+    """What the fixes would change, as `git apply` reads it, and whether some of it is left out: a patch holds lines of
+    the workspace as they are, so that one which a terminal or CI would obey goes to a file alone."""
     from . import fix
     from .check import reader
 
@@ -211,7 +231,19 @@ def _patch(checked: Checked) -> str:
     applied = _applied(checked)
     for edit, reason in applied.refused:
         say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
-    return "".join(fix.unified_diff(name, read(name) or b"", data) for name, data in applied.files.items())
+    parts: list[str] = []
+    incomplete = False
+    for name, data in applied.files.items():
+        part = fix.unified_diff(name, read(name) or b"", data)
+        if output is None and is_obeyed(part):
+            incomplete = True
+            say(
+                f"rosimpact: {shown(name)}: its changes are not printed, since the lines around them hold what a "
+                "terminal or CI would obey; write them to a file with --output"
+            )
+        else:
+            parts.append(part)
+    return "".join(parts), incomplete
 
 
 def _prefix(path: Path, checked: Checked) -> str:
@@ -252,14 +284,15 @@ def schema() -> int:
     """Prints the JSON schema of the JSON report."""
     from .report.json import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
-def _deliver(text: str, output: Path | None) -> None:
-    """Writes a text to the file asked for, or to standard output. Raises Failed when the file cannot be written."""
+def _deliver(text: str, output: Path | None, format: str) -> None:
+    """Writes a text to the file asked for, or to standard output. Raises Failed or UserError when that cannot be
+    written."""
     if output is None:
-        _write(text)
+        _print(text, format)
     else:
         _save(output, text)
 
@@ -276,22 +309,28 @@ def _bytes(text: str) -> bytes:
     return (text if text.endswith("\n") or not text else text + "\n").encode("utf-8", "surrogateescape")
 
 
-def _write(text: str) -> None:
-    sys.stdout.flush()
-    sys.stdout.buffer.write(_bytes(text))
-    sys.stdout.flush()
+_PRINTERS: dict[str, Callable[[str], None]] = {
+    "json": write_json, "sarif": write_json, "html": write_exactly, "graphml": write_exactly, "dot": write_exactly,
+    "github": write_exactly, "patch": write_exactly,
+}  # fmt: skip
+"""Formats whose makers escape what they hold; all others are for people."""
+
+
+def _print(text: str, format: str) -> None:
+    """Prints a text on standard output. Who reads no further has read enough: the exit status stays what it is. Raises
+    UserError when it cannot be written."""
+    with suppress(BrokenPipeError):
+        _PRINTERS.get(format, write)(text)
 
 
 def _progress() -> Callable[[int, int], None] | None:
     """A line on standard error that is rewritten while files are parsed; None when nobody watches."""
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         return None
 
     def show(done: int, total: int) -> None:
         share = 100 * done // max(1, total)
-        end = "\r\x1b[K" if done >= total else ""
-        sys.stderr.write(f"\rparsing {share:3d} % of {total / 1e6:.1f} MB{end}")
-        sys.stderr.flush()
+        rewrite("" if done >= total else f"parsing {share:3d} % of {total / 1e6:.1f} MB", ended=False)
 
     return show
 
@@ -303,7 +342,7 @@ def graph_schema() -> int:
     """Prints the JSON schema of the graph's JSON."""
     from .flow.drawing.json import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
@@ -346,7 +385,7 @@ def impact_schema() -> int:
     """Prints the JSON schema of the JSON of `impact`."""
     from .flow.impact_report import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
@@ -378,7 +417,7 @@ def upgrade_schema() -> int:
     """Prints the JSON schema of the JSON of `upgrade`."""
     from .report.upgrade import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
@@ -603,13 +642,14 @@ def explain(name: str | None) -> int:
 
     rules = all_rules()
     if name is None:
-        family = ""
+        family, lines = "", []
         for rule in sorted(rules.values(), key=lambda r: (r.family, r.name)):
             if rule.family != family:
                 family = rule.family
-                print(f"{family}:")
-            print(f"  {rule.name:26s} {rule.severity:8s} {rule.documentation.splitlines()[0].split(': ', 1)[-1]}")
-        return 0
+                lines.append(f"{family}:")
+            first = rule.documentation.splitlines()[0].split(": ", 1)[-1]
+            lines.append(f"  {rule.name:26s} {rule.severity:8s} {first}")
+        return _answered(lambda: "\n".join(lines))
     if name not in rules:
         from difflib import get_close_matches
 
@@ -618,8 +658,7 @@ def explain(name: str | None) -> int:
             f"no rule is called `{name}`; "
             + (f"did you mean `{close[0]}`?" if close else "`rosimpact explain` lists them")
         )
-    print(rules[name].documentation.rstrip())
-    return 0
+    return _answered(rules[name].documentation.rstrip)
 
 
 def env_capture(output: Path | None) -> int:
@@ -629,13 +668,13 @@ def env_capture(output: Path | None) -> int:
     try:
         with told():
             machine = capture()
-            _deliver(to_json(machine), output)
+            _deliver(to_json(machine), output, "json")
     except Failed as error:
         return failed(str(error))
     if not machine.distro:
         say("no ROS distro was found on this machine: set `distro` in the file before it is used as a target")
     if output is not None:
-        say(f"{output}: written; use it with --target {output}")
+        say(f"rosimpact: {output}: written; use it with --target {output}")
     return 0
 
 
@@ -643,7 +682,7 @@ def env_diff_schema() -> int:
     """Prints the JSON schema of the JSON of `env diff`."""
     from .report.machines import schema as text
 
-    _write(text())
+    _print(text(), "json")
     return 0
 
 
@@ -676,10 +715,9 @@ def why(name: str, path: Path, targets: tuple[str, ...], format: str) -> int:
         unanswered = answered != {a.target for a in found}
         if format == "text":
             return as_text(name, found)
-        import json
-
-        rows = [answer._asdict() | {"offers": [offer._asdict() for offer in answer.offers]} for answer in found]
-        return json.dumps(rows, indent=1)
+        return json_text(
+            [answer._asdict() | {"offers": [offer._asdict() for offer in answer.offers]} for answer in found]
+        )
 
     return _answered(answer, format, _TEXT_OR_JSON, path=path) or int(unanswered)
 
@@ -694,7 +732,7 @@ def data_status(format: str = "text") -> int:
         if format == "json":
             import json
 
-            return json.dumps(found._asdict(), indent=1, default=str)
+            return escape_json(json.dumps(found._asdict(), indent=1, default=str, ensure_ascii=False))
         origin = "updated" if found.updated else "shipped with rosimpact"
         lines = [f"distro data of {found.date}, {origin}, {found.packed / 1e6:.1f} MB, in {found.folder}"]
         lines += [f"from {name} {commit}" for name, commit in found.sources.items()]
@@ -722,13 +760,14 @@ def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path 
                 raise Failed(str(error)) from None
     except Failed as error:
         return failed(str(error))
-    _write(
+    _print(
         f"data of {built.date} in {output}: {counted(built.releases, 'release')}, "
         f"{counted(built.manifests, 'manifest')}, {counted(built.rules, 'rosdep rule')}, "
-        f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)"
+        f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)",
+        "text",
     )
     for name, count in built.unreadable.items():
-        say(f"{name}: {counted(count, 'version')} of its distribution file could not be read")
+        say(f"rosimpact: {name}: {counted(count, 'version')} of its distribution file could not be read")
     return 0
 
 
@@ -745,10 +784,11 @@ def data_update() -> int:
     except Failed as error:
         return failed(str(error))
     for failure in found.failures:
-        say(f"not updated: {failure}")
-    _write(
+        say(f"rosimpact: not updated: {failure}")
+    _print(
         f"data of {found.date} in {found.folder}: {counted(len(found.syncs), 'new sync')}, "
         f"{counted(found.releases, 'release')}, {counted(found.manifests, 'manifest')}, "
-        f"{counted(found.rules, 'rosdep rule')}"
+        f"{counted(found.rules, 'rosdep rule')}",
+        "text",
     )
     return 0

@@ -26,6 +26,8 @@ from typing import Any, Protocol
 
 import msgspec
 
+from ..edges.console import visible as shown
+
 IGNORE_MARKERS = frozenset(
     ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "_setup_util.py", "_order_isolated_packages.py")
 )
@@ -119,14 +121,6 @@ class Tree(Protocol):
 def blob_id(data: bytes) -> str:
     """Git's id for these bytes as a blob (SHA-1 object format)."""
     return hashlib.sha1(b"blob %d\0" % len(data) + data, usedforsecurity=False).hexdigest()
-
-
-def shown(path: str) -> str:
-    """A path as it can be printed anywhere: bytes that are no UTF-8 and control characters as escapes."""
-    if path.isprintable():
-        return path
-    escaped = path.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in escaped)
 
 
 def inside(path: str) -> str | None:

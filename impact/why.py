@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from ..edges.console import counted
+from ..edges.console import counted, visible
 from .check import Options, open_workspace
 from .model.view import View
 from .targets.distro import DistroTarget
@@ -131,7 +131,7 @@ def as_text(name: str, found: list[Answer]) -> str:
         for answer in here:
             meanings.setdefault(answer.offers, []).append(answer.as_what)
         for offers, whats in meanings.items():
-            lines.append(f"{target}: `{name}` as {', '.join(whats)}")
+            lines.append(f"on {target}: `{name}` as {', '.join(whats)}")
             lines += [_offer_line(offer) for offer in offers] or ["  nobody is known to provide it there"]
         lines += [f"  {change}" for change in here[0].changes]
     if not found:
@@ -149,7 +149,7 @@ def as_text(name: str, found: list[Answer]) -> str:
         lines.append(f"not safe: `{name}` is gone on " + ", ".join(gone))
     elif used and not undeclared:
         lines.append("safe: every package that uses it declares it, or something that brings it")
-    return "\n".join(lines)
+    return "\n".join(map(visible, lines))
 
 
 def _is_gone(change: str, name: str) -> bool:

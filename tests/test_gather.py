@@ -51,6 +51,12 @@ def small_chunks(monkeypatch):
     monkeypatch.setattr(gather_module, "_CHUNK_BYTES", 3000)
 
 
+@pytest.fixture
+def short_time(monkeypatch):
+    """A fifth of a second of processor time for a file."""
+    monkeypatch.setattr(processes, "seconds_for", lambda size: 0.2)
+
+
 def test_facts_by_path(tmp_path):
     with Store(tmp_path / "cache") as store:
         gathered = gather(WorkingTree(write(tmp_path / "ws", FILES)), store)
@@ -141,7 +147,7 @@ def test_a_scheduler_chosen_through_joblib_is_used(tmp_path, small_chunks, monke
     import joblib
 
     write(tmp_path / "ws", sources(30))
-    monkeypatch.setattr(gather_module, "_in_forks", None)
+    monkeypatch.setattr(gather_module, "_in_workers", None)
     with Store(tmp_path / "cache") as store, joblib.parallel_config(backend="threading", n_jobs=2):
         assert gather(WorkingTree(tmp_path / "ws"), store, jobs=2).extracted == 30
 
@@ -229,10 +235,34 @@ def dies():
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+def segfaults():
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def runs_away():
+    while True:
+        pass
+
+
+def needs_all_memory():
+    return bytearray(1 << 40)
+
+
 @pytest.mark.parametrize(
     ("how", "jobs", "message"),
-    [(raises, 1, "odd input"), (raises, 2, "odd input"), (dies, 2, "crashed on this file")],
+    [
+        (raises, 1, "odd input"),
+        (raises, 2, "odd input"),
+        (dies, 1, "crashed on this file"),
+        (dies, 2, "crashed on this file"),
+        (segfaults, 1, "crashed on this file"),
+        (segfaults, 2, "crashed on this file"),
+        (runs_away, 2, "needed too much time on this file"),
+        (needs_all_memory, 1, "needed more than 768 MB of memory on this file"),
+        (needs_all_memory, 2, "needed more than 768 MB of memory on this file"),
+    ],
 )
+@pytest.mark.usefixtures("short_time")
 def test_a_file_that_its_extractor_fails_on(tmp_path, monkeypatch, small_chunks, how, jobs, message):
     files = sources(25)
     files["src/f5.cpp"] = files["src/copy.cpp"] = "// POISON 1"

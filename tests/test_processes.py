@@ -2,6 +2,7 @@
 
 import os
 import signal
+from pathlib import Path
 
 import pytest
 from rosimpact.impact import judge, processes
@@ -110,10 +111,60 @@ def test_every_result_comes_with_its_task():
 
 
 @needs_fork
-def test_tasks_of_a_process_that_died_come_without_result():
+def test_a_task_that_ends_its_process_comes_without_result():
     found = dict(processes.forked(_dies, range(8), 2, os.getpid()))
-    assert found.keys() == set(range(8)) and found[3] is None
-    assert all(result in (None, number) for number, result in found.items())
+    assert found.pop(3) == processes.Died("crashed", memory=True)
+    assert found == {number: number for number in range(8) if number != 3}
+
+
+def _dies_the_first_time(folder, number):
+    mark = folder / str(number)
+    if not mark.exists() and number > 4:
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+@needs_fork
+def test_a_task_is_tried_again_in_a_new_process(tmp_path):
+    found = dict(processes.forked(_dies_the_first_time, range(6), 1, tmp_path))
+    assert found == {number: number for number in range(6)}
+
+
+def _cannot_be_copied(number):
+    raise _Odd(number, 2)
+
+
+class _Odd(Exception):
+    def __init__(self, one, two):
+        super().__init__(f"{one} {two}")
+
+
+@needs_fork
+def test_an_error_that_cannot_be_copied_is_told_in_words():
+    with pytest.raises(RuntimeError, match="_Odd: 0 2"):
+        dict(processes.forked(_cannot_be_copied, [0], 1))
+
+
+@needs_fork
+def test_a_message_may_be_larger_than_a_pipe():
+    things = [bytes([n]) * 3_000_000 for n in range(4)]
+    assert dict(processes.forked(_doubled, things, 2, 2)) == {thing: 2 * thing for thing in things}
+
+
+def children():
+    return Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+
+
+@needs_fork
+def test_no_process_and_no_descriptor_is_left():
+    before, born_before = sorted(os.listdir("/proc/self/fd")), children()
+    for _ in processes.forked(_doubled, range(20), 3, 2):
+        break
+    with pytest.raises(KeyError):
+        dict(processes.forked(_raises, range(3), 2))
+    assert sorted(os.listdir("/proc/self/fd")) == before
+    assert children() == born_before
 
 
 @needs_fork
@@ -123,34 +174,75 @@ def test_what_a_task_raises_is_raised_here():
 
 
 @needs_fork
-def test_a_process_that_dies_loses_no_package(tmp_path, at_once, monkeypatch):
+def test_a_process_that_dies_once_loses_nothing(tmp_path, at_once, monkeypatch):
     ws = ring(tmp_path / "ws", 9)
     alone = check(ws, Options(("jazzy",), jobs=1, cache=tmp_path / "one"))
-    here, join, part = os.getpid(), workspace._join, judge._part
+    died = tmp_path / "died"
 
     def dying(run):
         def task(*arguments):
-            if os.getpid() != here:
+            if not died.exists() and arguments[-1] != "link_0":
+                died.touch()
                 os.kill(os.getpid(), signal.SIGKILL)
             return run(*arguments)
 
         return task
 
-    # The processes are forked, so they know these functions by their place in this one's memory.
-    monkeypatch.setattr(processes, "_run", _by_task({"_join": dying(join), "_part": dying(part)}))
-    together = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "two"))
-    assert told(alone) == told(together)
+    # The processes are forked, so they know what these names stand for in this one's memory.
+    join = workspace._join
+    monkeypatch.setattr(workspace, "_join", dying(join))
+    together = check(ws, Options(("jazzy",), jobs=1, cache=tmp_path / "two"))
+    assert died.exists() and told(alone) == told(together)
+    died.unlink()
+    monkeypatch.setattr(workspace, "_join", join)
+    monkeypatch.setattr(judge, "_part", dying(judge._part))
+    together = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "three"))
+    assert died.exists() and told(alone) == told(together)
 
 
-class _by_task:
-    def __init__(self, tasks):
-        _TASKS.update(tasks)
+def _dying_on(function, thing):
+    def task(*arguments):
+        if thing(*arguments):
+            os.kill(os.getpid(), signal.SIGSEGV)
+        return function(*arguments)
 
-    def __call__(self, task, thing):
-        return _TASKS[task.__name__](*processes._WHAT, thing)
+    return task
 
 
-_TASKS = {}
+@needs_fork
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_package_that_ends_its_process_is_named_and_loses_no_other(tmp_path, monkeypatch, jobs):
+    ws = ring(tmp_path / "ws", 9)
+    whole = check(ws, Options(("jazzy",), jobs=1, cache=tmp_path / "one"))
+    monkeypatch.setattr(workspace, "_join", _dying_on(workspace._join, lambda *arguments: arguments[-1] == "link_4"))
+    report = check(ws, Options(("jazzy",), jobs=jobs, cache=tmp_path / "two"))
+    assert [f.message for f in report.findings if f.rule == "unreadable-file"] == [
+        "the package could not be analysed: its analysis crashed"
+    ]
+    assert not report.failure
+
+    def of_others(report):
+        # What its neighbours say of it depends on it.
+        return [
+            f for f in report.findings if f.package not in ("link_3", "link_4", "link_5") and "link_4" not in f.message
+        ]
+
+    assert of_others(report) == of_others(whole)
+
+
+@needs_fork
+def test_rules_that_end_their_process_on_a_package_are_named_and_lose_no_other(tmp_path, at_once, monkeypatch):
+    ws = ring(tmp_path / "ws", 9)
+    whole = check(ws, Options(("jazzy",), jobs=1, cache=tmp_path / "one"))
+
+    def of_link_4(opened, rules, packages, size, task):
+        return "link_4" in packages[task[1] : task[1] + size]
+
+    monkeypatch.setattr(judge, "_part", _dying_on(judge._part, of_link_4))
+    report = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "two"))
+    assert "the check of `link_4` crashed" in report.failure
+    found = [f for f in report.findings if f.package != "link_4" and "link_4" not in f.message]
+    assert found == [f for f in whole.findings if f.package != "link_4" and "link_4" not in f.message]
 
 
 def _answers(target, providers, header):

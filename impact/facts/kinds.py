@@ -9,11 +9,9 @@ from typing import Any, Generic, TypeVar
 
 import msgspec
 
+from ...edges.limits import limits, size_text
 from .allow import allows
 from .place import Allow, Problem
-
-LARGEST = 8 * 1024 * 1024
-"""Bytes above which a file is taken for generated and not parsed."""
 
 T = TypeVar("T")
 
@@ -132,6 +130,26 @@ def kind_of(path: str) -> str | None:
     return BY_ENDING.get(ending)
 
 
+def largest(kind: str) -> int:
+    """Bytes above which a file of a kind is taken for generated, or for an attack, and not read."""
+    budget = limits()
+    module = EXTRACTORS[kind][0]
+    if kind in _BUDGETS:
+        return getattr(budget, _BUDGETS[kind])
+    if module in ("cmake", "manifest", "interface", "launch"):
+        return getattr(budget, module)
+    return budget.cpp if kind.endswith("cpp") else budget.python if "python" in kind else budget.script
+
+
+# Names of limits, where the extractor's name does not say it.
+_BUDGETS = {
+    **dict.fromkeys(("launch_yaml", "params", "parameters_yaml"), "parameters"),
+    **dict.fromkeys(("setup_cfg", "pyproject"), "settings"),
+    "setup_py": "python",
+    "shell": "script",
+}
+
+
 def version_of(kind: str) -> str:
     """The part of a store key that changes when an extractor does."""
     if kind == "script":
@@ -168,15 +186,15 @@ def script_kind(data: bytes) -> str:
 def extract(kind: str, data: bytes) -> FileFacts[Any]:
     """Facts of a file of a kind as given by kind_of(); never raises: what fails is a Problem of empty facts."""
     if kind == "script":
-        kind = script_kind(data) if len(data) <= LARGEST else "script"
+        kind = script_kind(data)
         if kind == "script":
             return FileFacts(kind, None)
     if kind == "flow_script":
-        if len(data) > LARGEST or script_kind(data) != "python":
+        if script_kind(data) != "python":
             return FileFacts(kind, None)
         kind = "flow_python"
-    if len(data) > LARGEST:
-        return FileFacts(kind, empty(kind, Problem(1, "larger than 8 MB")))
+    if len(data) > largest(kind):
+        return FileFacts(kind, empty(kind, Problem(1, f"larger than {size_text(largest(kind))}")))
     return FileFacts(kind, _facts(kind, data), allows(data))
 
 
@@ -196,6 +214,8 @@ def _facts(kind: str, data: bytes) -> Any:
             old = {"problems": (), "unresolved": ("written for Python 2",)} if python.python2_only else {}
             facts = msgspec.structs.replace(facts, python=python, **old)
         return facts
+    except MemoryError:
+        raise
     except RecursionError:
         return empty(kind, Problem(1, "nested too deeply to be read"))
     except Exception as error:  # one file must not end the run: what broke is named with it

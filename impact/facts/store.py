@@ -3,26 +3,46 @@
 A row is what one version of one extractor made of one content. `memo` rows are dear joins, by whatever key their maker
 chose. Losing any of it costs time and nothing else, so no fault of the disk stops a run: what cannot be written is kept
 in memory and what cannot be read is made again; `notes` says so in one line each.
+
+Every row carries a digest of its key and data, and one that does not match counts as lost: whatever happened to the
+file, what comes out is what went in. This protects from damage, not from a person who may write into the user's cache
+folder and makes rows with digests of their own: such a person can make a run answer wrongly. They still cannot make
+it execute anything, since rows are plain data of declared types.
 """
 
 from __future__ import annotations
 
 import contextlib
+import errno
+import fcntl
+import hashlib
 import os
 import sqlite3
+import stat
 import time
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
 
+from ...edges.console import visible
+from ...edges.files import NOT_REGULAR
+from ...edges.limits import limits
 from ..cache import cache_folder
 
-_SCHEMA_VERSION = 1
+_SCHEMA_VERSION = 2
 _TABLES = ("facts", "memo")
-# used: the day of its last use, since 1970
-_COLUMNS = "id INTEGER PRIMARY KEY, key BLOB NOT NULL UNIQUE, used INTEGER NOT NULL, data BLOB NOT NULL"
+# used: the day of its last use, since 1970; seal: see _seal()
+_COLUMNS = (
+    "id INTEGER PRIMARY KEY, key BLOB NOT NULL UNIQUE, used INTEGER NOT NULL, seal BLOB NOT NULL, data BLOB NOT NULL"
+)
 _SCHEMA = "".join(f"CREATE TABLE IF NOT EXISTS {table} ({_COLUMNS});" for table in _TABLES)
+# What SQLite says of its tables when they are ours, and when they are none.
+_LAYOUT = {(b"table", table.encode(), f"CREATE TABLE {table} ({_COLUMNS})".encode()) for table in _TABLES}
+_FILES = ("", "-wal", "-shm", "-journal")
 LIMIT_BYTES = 1_000_000_000
 _BUSY_MS = 5_000
+_LOCK_SECONDS = 2
+# A store that is damaged again and again is done without.
+_RESTARTS = 2
 # SQLite before 3.32 takes at most 999 variables
 _AT_ONCE = 900
 _DAY = 86_400
@@ -50,10 +70,33 @@ def unpack(data: bytes) -> bytes:
         return data[1:]
     if data[:1] != b"z":
         raise ValueError("not packed by this version")
+    inflater = zlib.decompressobj()
     try:
-        return zlib.decompress(data[1:])
+        whole = inflater.decompress(memoryview(data)[1:], limits().row)
     except zlib.error as error:
         raise ValueError(str(error)) from None
+    if not inflater.eof:
+        raise ValueError("cut off, or larger than a row may be")
+    return whole
+
+
+def _seal(table: str, key: bytes, data: bytes) -> bytes:
+    """What is stored beside a row, and matches nothing but this row."""
+    digest = hashlib.blake2b(key, digest_size=16, person=table.encode(), usedforsecurity=False)
+    digest.update(data)
+    return digest.digest()
+
+
+FAULTS = (sqlite3.Error, UnicodeDecodeError)
+"""What a statement raises on a damaged file: some messages of SQLite quote the file, and Python cannot decode them."""
+
+
+class _Newer(Exception):
+    """The file was made by a newer version of rosimpact, which goes on using it."""
+
+
+class _Older(sqlite3.DatabaseError):
+    """The file was made by an older version of rosimpact, so that nothing in it is of use."""
 
 
 class Store:
@@ -75,6 +118,8 @@ class Store:
         self._writable = True
         self._wrote = False
         self._touch = False
+        self._restarts = 0
+        self._file: tuple[int, int] | None = None
 
     def __enter__(self) -> Store:
         return self
@@ -121,8 +166,8 @@ class Store:
                 if self._wrote and self._writable:
                     self._trim(self._db)
                 self._db.close()
-            except sqlite3.Error:
-                with contextlib.suppress(sqlite3.Error):
+            except FAULTS:
+                with contextlib.suppress(*FAULTS):
                     self._db.close()
         self._db = None
         self._opened = False
@@ -132,45 +177,58 @@ class Store:
         if self._opened:
             return self._db
         self._opened = True
-        for attempt in (1, 2):
+        while self._db is None:
             try:
                 self._db = self._connect()
+            except _Newer as error:
+                self._give_up_writing("used", error)
                 break
             except OSError as error:
                 self._give_up_writing("opened", error)
                 break
-            except sqlite3.Error as error:
+            except FAULTS as error:
                 if _is_of_the_disk(error):
                     self._give_up_writing("opened", error)
                     self._db = self._connect_to_read()
                     break
-                if attempt == 2 or not self._discard(error):
-                    self._give_up_writing("opened", error)
+                if not self._start_anew(error):
+                    self._give_up_writing("read", error)
                     break
         return self._db
 
     def _connect(self) -> sqlite3.Connection:
         os.makedirs(self.folder, exist_ok=True)
-        db = sqlite3.connect(self.path, timeout=_BUSY_MS / 1000, isolation_level=None)
-        try:
-            version = db.execute("PRAGMA user_version").fetchone()[0]
-            if version > _SCHEMA_VERSION:
-                raise sqlite3.DatabaseError(f"made by a newer rosimpact (layout {version})")
-            # Readers then never wait for a writer. Where it cannot be had (network folders), the default works too.
-            with contextlib.suppress(sqlite3.OperationalError):
-                if version != _SCHEMA_VERSION:
-                    db.execute("PRAGMA auto_vacuum = INCREMENTAL")
-                db.execute("PRAGMA journal_mode = WAL")
-            # Only a crash of the machine can lose or damage rows then, and damage is found and mended.
-            db.execute("PRAGMA synchronous = OFF")
-            if version != _SCHEMA_VERSION:
-                db.executescript(f"BEGIN IMMEDIATE; {_SCHEMA} PRAGMA user_version = {_SCHEMA_VERSION}; COMMIT;")
-            # rows are stamped as used only once dropping some is in sight, so that a warm run writes nothing
-            self._touch = self._bytes(db) > self.limit // 2
-        except BaseException:
-            db.close()
-            raise
+        with self._locked(fcntl.LOCK_SH):
+            self._check_files()
+            db = sqlite3.connect(self.path, timeout=_BUSY_MS / 1000, isolation_level=None)
+            try:
+                self._file = self._identity()
+                self._prepare(db)
+            except BaseException:
+                db.close()
+                raise
         return db
+
+    def _prepare(self, db: sqlite3.Connection) -> None:
+        """Makes an open file one of ours. Raises _Newer, and sqlite3.Error where it cannot be."""
+        db.text_factory = bytes  # where a damaged file says text there may be anything
+        version = db.execute("PRAGMA user_version").fetchone()[0]
+        if version > _SCHEMA_VERSION:
+            raise _Newer(f"made by a newer rosimpact, layout {version}")
+        if 0 < version < _SCHEMA_VERSION:
+            raise _Older
+        # Readers then never wait for a writer. Where it cannot be had (network folders), the default works too.
+        with contextlib.suppress(sqlite3.OperationalError):
+            if version != _SCHEMA_VERSION:
+                db.execute("PRAGMA auto_vacuum = INCREMENTAL")
+            db.execute("PRAGMA journal_mode = WAL")
+        # Only a crash of the machine can lose or damage rows then, and damage is found and mended.
+        db.execute("PRAGMA synchronous = OFF")
+        if version != _SCHEMA_VERSION:
+            db.executescript(f"BEGIN IMMEDIATE; {_SCHEMA} PRAGMA user_version = {_SCHEMA_VERSION}; COMMIT;")
+        _check_layout(db)
+        # rows are stamped as used only once dropping some is in sight, so that a warm run writes nothing
+        self._touch = self._bytes(db) > self.limit // 2
 
     def _connect_to_read(self) -> sqlite3.Connection | None:
         """A connection that only reads, for a cache folder that cannot be written; None when that fails too."""
@@ -181,49 +239,122 @@ class Store:
         for mode in ("mode=ro", "immutable=1"):
             try:
                 db = sqlite3.connect(f"file:{quote(self.path)}?{mode}", uri=True, timeout=1, isolation_level=None)
-            except sqlite3.Error:
+            except FAULTS:
                 continue
             try:
+                db.text_factory = bytes
                 if db.execute("PRAGMA user_version").fetchone()[0] == _SCHEMA_VERSION:
-                    db.execute("SELECT id FROM facts LIMIT 1").fetchone()
+                    _check_layout(db)
                     return db
-            except sqlite3.Error:
+            except FAULTS:
                 pass
             db.close()
         return None
 
+    @contextlib.contextmanager
+    def _locked(self, kind: int) -> Iterator[None]:
+        """Holds the folder, so that no process begins to use a file while another takes it away. Whoever cannot have
+        the lock goes on without: what then may get lost are rows."""
+        # The lock is on the folder, since closing a descriptor of the file would end SQLite's own locks.
+        try:
+            folder = os.open(self.folder, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)
+        except OSError:
+            yield
+            return
+        try:
+            until = time.monotonic() + _LOCK_SECONDS
+            while True:
+                try:
+                    fcntl.flock(folder, kind | fcntl.LOCK_NB)
+                    break
+                except BlockingIOError:
+                    if time.monotonic() > until:
+                        break
+                    time.sleep(0.005)
+                except OSError:  # a file system without locks
+                    break
+            yield
+        finally:
+            os.close(folder)
+
+    def _check_files(self) -> None:
+        """Raises OSError where SQLite would open anything but regular files: it would wait for a named pipe, and write
+        through a link into what is not ours."""
+        for suffix in _FILES:
+            try:
+                mode = os.lstat(self.path + suffix).st_mode
+            except FileNotFoundError:
+                continue
+            if not stat.S_ISREG(mode):
+                what = "is a link" if stat.S_ISLNK(mode) else NOT_REGULAR
+                name = os.path.basename(self.path + suffix)
+                raise OSError(errno.EINVAL, f"{what}: remove `{name}`", self.path + suffix)
+
+    def _identity(self) -> tuple[int, int] | None:
+        """What tells the file from another of the same name; None when there is none."""
+        try:
+            status = os.lstat(self.path)
+        except OSError:
+            return None
+        return status.st_dev, status.st_ino
+
     def _give_up_writing(self, what: str, error: Exception) -> None:
         if self._writable:
             self._writable = False
+            remedy = (
+                "to another folder, or update rosimpact"
+                if isinstance(error, _Newer)
+                else "to a folder that can be written"
+            )
             self.notes.append(
                 f"the cache `{self.path}` cannot be {what} ({_clause(error)}), so the next run starts from what "
-                "it holds now; set ROSIMPACT_CACHE to a folder that can be written"
+                f"it holds now; set ROSIMPACT_CACHE {remedy}"
             )
 
-    def _discard(self, error: Exception) -> bool:
-        """Deletes a damaged file so that a new one can be made; False when that is not possible."""
-        if self._db is not None:
-            with contextlib.suppress(sqlite3.Error):
-                self._db.close()
-            self._db = None
+    def _start_anew(self, error: Exception) -> bool:
+        """Takes a damaged file away so that a new one can be made; False when that is not possible.
+
+        Processes that still have it open keep it, with its log, until they close it: SQLite neither writes nor deletes
+        a log once the file beside it is another one.
+        """
+        damaged = self._file
+        self._let_go()
+        if self._restarts == _RESTARTS:
+            return False
+        self._restarts += 1
         try:
-            for suffix in ("", "-wal", "-shm", "-journal"):
-                with contextlib.suppress(FileNotFoundError):
-                    os.remove(self.path + suffix)
+            with self._locked(fcntl.LOCK_EX):
+                if damaged is not None and self._identity() not in (damaged, None):
+                    return True  # another process has done it meanwhile
+                for suffix in _FILES:
+                    with contextlib.suppress(FileNotFoundError):
+                        os.remove(self.path + suffix)
         except OSError:
             return False
-        self.notes.append(f"the cache `{self.path}` was damaged ({_clause(error)}) and has been started anew")
+        if not isinstance(error, _Older):
+            self.notes.append(f"the cache `{self.path}` was damaged ({_clause(error)}) and has been started anew")
         return True
 
-    def _failed(self, error: sqlite3.Error) -> None:
+    def _let_go(self) -> None:
+        if self._db is not None:
+            with contextlib.suppress(*FAULTS):
+                self._db.close()
+        self._db = None
+        self._file = None
+
+    def _failed(self, error: Exception) -> None:
         """After an error of a statement: mends what can be mended, so that the next statement may work."""
-        if _is_of_the_disk(error):
+        if self._writable and self._file is not None and self._identity() not in (self._file, None):
+            # Another process started the file anew, and this one's is gone.
+            self._let_go()
+            self._opened = self._restarts == _RESTARTS
+            self._restarts += not self._opened
+        elif _is_of_the_disk(error):
             self._give_up_writing("written", error)
-        elif self._discard(error):
+        elif self._start_anew(error):
             self._opened = False
         else:
             self._give_up_writing("read", error)
-            self._db = None
 
     def _find(self, table: str, keys: Sequence[bytes]) -> set[bytes]:
         memory = self._memory[table]
@@ -236,7 +367,7 @@ class Store:
             for part, marks in _parts(keys):
                 rows.extend(db.execute(f"SELECT id, key FROM {table} WHERE key IN ({marks})", part))
             self._use(db, table, [row[0] for row in rows])
-        except sqlite3.Error as error:
+        except FAULTS as error:
             self._failed(error)
         present.update(row[1] for row in rows)
         return present
@@ -251,13 +382,14 @@ class Store:
             if db is None:
                 return
             try:
-                rows = db.execute(f"SELECT id, key, data FROM {table} WHERE key IN ({marks})", part).fetchall()
+                rows = db.execute(f"SELECT id, key, seal, data FROM {table} WHERE key IN ({marks})", part).fetchall()
                 self._use(db, table, [row[0] for row in rows])
-            except sqlite3.Error as error:
+            except FAULTS as error:
                 self._failed(error)
                 continue
-            for _, key, data in rows:
-                yield key, data
+            for _, key, seal, data in rows:
+                if isinstance(key, bytes) and isinstance(data, bytes) and seal == _seal(table, key, data):
+                    yield key, data
 
     def _use(self, db: sqlite3.Connection, table: str, ids: Sequence[int]) -> None:
         if not self._touch or not self._writable:
@@ -268,8 +400,12 @@ class Store:
                 db.execute(f"UPDATE {table} SET used = {today} WHERE used < {today} AND id IN ({marks})", part)
 
     def _put(self, table: str, rows: list[tuple[bytes, bytes]]) -> None:
+        largest = limits().row
+        self._memory[table].update((key, data) for key, data in rows if len(data) > largest)
+        rows = [(key, data) for key, data in rows if len(data) <= largest]
         if not rows:
             return
+        sealed = [(key, _seal(table, key, data), data) for key, data in rows]
         for _ in (1, 2):  # the second time on a file that has been started anew
             db = self._open()
             if db is None or not self._writable:
@@ -277,12 +413,14 @@ class Store:
             today = int(time.time()) // _DAY
             try:
                 db.execute("BEGIN IMMEDIATE")
-                db.executemany(f"INSERT OR REPLACE INTO {table} (key, used, data) VALUES (?, {today}, ?)", rows)
+                db.executemany(
+                    f"INSERT OR REPLACE INTO {table} (key, used, seal, data) VALUES (?, {today}, ?, ?)", sealed
+                )
                 db.execute("COMMIT")
                 self._wrote = True
                 return
-            except sqlite3.Error as error:
-                with contextlib.suppress(sqlite3.Error):
+            except FAULTS as error:
+                with contextlib.suppress(*FAULTS):
                     if db.in_transaction:
                         db.execute("ROLLBACK")
                 self._failed(error)
@@ -298,10 +436,13 @@ class Store:
         if size <= self.limit:
             return
         surplus = size - self.limit * 3 // 4
+        today = int(time.time()) // _DAY  # what was used later was used by a clock that went wrong
         rows = [
             (used, row, length, table)
             for table in _TABLES
-            for row, used, length in db.execute(f"SELECT id, used, length(data) + 80 FROM {table}")
+            for row, used, length in db.execute(
+                f"SELECT id, CASE WHEN used BETWEEN 0 AND {today} THEN used ELSE 0 END, length(data) + 96 FROM {table}"
+            )
         ]
         rows.sort()
         surplus *= sum(length for _, _, length, _ in rows) / size  # pages are not filled to the last byte
@@ -324,8 +465,14 @@ class Store:
 _DISK = ("locked", "disk I/O", "disk is full", "readonly", "unable to open", "out of memory", "interrupted")
 
 
-def _is_of_the_disk(error: sqlite3.Error) -> bool:
+def _is_of_the_disk(error: Exception) -> bool:
     return isinstance(error, sqlite3.OperationalError) and any(words in str(error) for words in _DISK)
+
+
+def _check_layout(db: sqlite3.Connection) -> None:
+    """Raises sqlite3.DatabaseError unless a file has our tables and nothing else."""
+    if set(db.execute("SELECT type, name, sql FROM sqlite_master WHERE sql IS NOT NULL")) != _LAYOUT:
+        raise sqlite3.DatabaseError("its tables are not those of rosimpact")
 
 
 def _memo_key(table: str, key: bytes) -> bytes:
@@ -342,4 +489,6 @@ def _parts(values: Sequence) -> Iterator[tuple[Sequence, str]]:
 def _clause(error: Exception) -> str:
     if isinstance(error, OSError):
         return (error.strerror or type(error).__name__).lower()
-    return str(error) or type(error).__name__
+    if isinstance(error, UnicodeDecodeError):
+        return "malformed database schema"
+    return visible(str(error))[:200] or type(error).__name__

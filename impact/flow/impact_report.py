@@ -10,11 +10,9 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from ...edges.console import counted
-from ..findings import printable
+from ...edges.console import counted, json_text
 from ..report.columns import Piece, laid_out
 from ..report.markdown import code, escaped
-from ..report.report import one_line
 from ..report.text import Style, painted
 from .drawing.text import WIDE, coverage_lines
 from .impact import KINDS, Effect, Hop, Impact
@@ -94,8 +92,7 @@ def _alike(effect: Effect) -> tuple:
 
 
 def _line(pieces: Sequence[Piece], style: Style, indent: int, hang: int) -> Iterator[str]:
-    safe = [one._replace(text=one_line(one.text), path=one_line(one.path)) for one in pieces if one.text or one.path]
-    return laid_out(safe, style, indent, hang)
+    return laid_out([one for one in pieces if one.text or one.path], style, indent, hang)
 
 
 def _head(effect: Effect, names: dict[str, str], style: Style) -> Iterator[str]:
@@ -192,8 +189,8 @@ def markdown(impact: Impact, most: int = _MOST_EFFECTS, told: bool = True) -> st
     for effect in impact.effects[:most]:
         near = [names.get(hop.node, hop.node) for hop in effect.reaches]
         reaches = f"reaches {escaped(_some(near))}" if near else _nowhere(effect)
-        place = code(one_line(f"{effect.path}:{effect.line}"))
-        rows.append(f"- {effect.kind} {escaped(effect.change)} {code(one_line(effect.subject))} {place}: {reaches}")
+        place = code(f"{effect.path}:{effect.line}")
+        rows.append(f"- {effect.kind} {escaped(effect.change)} {code(effect.subject)} {place}: {reaches}")
     if len(impact.effects) > most:
         rows.append(f"- and {len(impact.effects) - most} more")
     last = ["", f"<sub>{escaped(summary(impact))}</sub>"] if told else []
@@ -213,7 +210,7 @@ def as_json(impact: Impact, told: Told) -> str:
         "silent": impact.silent,
         "coverage": msgspec.to_builtins(impact.coverage),
     }
-    return printable(json.dumps(document, indent=1, ensure_ascii=False)) + "\n"
+    return json_text(document) + "\n"
 
 
 def schema() -> str:

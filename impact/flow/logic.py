@@ -20,7 +20,7 @@ from ..facts.store import Store, fact_key, pack, unpack
 from .history import Commit, History, State
 from .logic_changes import Change, Reached, Side
 from .logic_states import compared, decoded, digest_key, safe_digest, stamp
-from .statements import Before, kind_of_facts
+from .statements import EMPTY, Before, kind_of_facts
 
 Progress = Callable[[str, int, int], None]
 _STATES_AT_ONCE = 24
@@ -157,8 +157,9 @@ class _Run:
         chunks = _chunked(missing)
         done = 0
         for chunk, made in self._each(_digest_chunk, chunks, self.history.path, self.store.folder):
-            rows = made if made is not None else _digest_chunk(self.history.path, self.store.folder, chunk)
-            self.digests.add(rows)
+            self.digests.add([row for row in made if row is not None])
+            lost = [state for state, row in zip(chunk, made, strict=True) if row is None]
+            self.digests.packed.update(_unread(state) for state in lost)
             done += len(chunk)
             self.progress("reading packages", done, len(missing))
 
@@ -168,8 +169,7 @@ class _Run:
         compared: list[tuple[_Step, tuple[Change, ...]]] = []
         known = self.digests.packed
         for chunk, found in self._each(_compare_chunk, chunks, self.history.path, known):
-            rows = found if found is not None else _compare_chunk(self.history.path, known, chunk)
-            compared.extend(zip(chunk, rows, strict=True))
+            compared.extend((step, row or ()) for step, row in zip(chunk, found, strict=True))
             done += len(chunk)
             self.progress("comparing commits", done, len(steps))
         reaching = [step for step, found in compared if any(change.topics for change in found)]
@@ -210,16 +210,35 @@ class _Run:
                 found.setdefault(inlet.topic, []).append(reached)
         return found
 
-    def _each(self, task, chunks: Sequence[Any], *what: Any) -> Iterator[tuple[Any, Any]]:
-        if self.jobs > 1 and len(chunks) > 1 and processes.may_fork():
-            yield from processes.forked(task, chunks, self.jobs, *what)
-        else:
-            for chunk in chunks:
-                yield chunk, task(*what, chunk)
+    def _each(
+        self, task: Callable[..., Sequence[Any]], chunks: Sequence[Sequence[Any]], *what: Any
+    ) -> Iterator[tuple[Sequence[Any], Sequence[Any]]]:
+        """Chunks with a row for each of their items, None for an item whose process died."""
+        if not processes.may_fork():
+            yield from ((chunk, task(*what, chunk)) for chunk in chunks)
+            return
+        # Chunks by their numbers: the processes inherit what is in them.
+        for number, rows in processes.forked(_numbered, range(len(chunks)), self.jobs, task, chunks, what):
+            chunk = chunks[number]
+            if isinstance(rows, processes.Died):
+                alone = [[item] for item in chunk]
+                found = dict(processes.forked(_numbered, range(len(alone)), 1, task, alone, what))
+                rows = [None if isinstance(found[at], processes.Died) else found[at][0] for at in range(len(alone))]
+            yield chunk, rows
 
     def _remember(self, rows: Iterable[tuple[str, _Result]]) -> None:
         encode, folder = msgspec.msgpack.encode, self.history.folder
         self.store.remember("logic", [(_commit_key(commit, folder), encode(row)) for commit, row in rows])
+
+
+def _numbered(task: Callable[..., Any], chunks: Sequence[Any], what: Sequence[Any], number: int) -> Any:
+    return task(*what, chunks[number])
+
+
+def _unread(state: State) -> tuple[bytes, bytes]:
+    """What stands for the digest of a state that could not be made: all its files count as not read."""
+    files = tuple(file.path for file in state.files)
+    return state.key, pack(msgspec.msgpack.encode(msgspec.structs.replace(EMPTY, unread=files)))
 
 
 def _reaching(change: Change, listeners: Mapping[str, list[Reached]]) -> Change:
@@ -354,7 +373,9 @@ def _facts(history: History, store: Store, wanted: Sequence[tuple[str, str]]) ->
         yield rows[row], facts
     fresh: list[tuple[bytes, bytes]] = []
     for row, (content, kind) in missing.items():
-        extracted = kinds.extract(kind, history.read(content))
+        source = history.read(content)
+        processes.begin_part(0, len(source))
+        extracted = kinds.extract(kind, source)
         fresh.append((row, pack(kinds.encode(extracted))))
         yield (content, kind), extracted.facts
     store.put(fresh)

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
-from ...edges.console import counted
-from ..findings import printable
+from ...edges.console import counted, json_text, visible
 from ..report.columns import UNBROKEN, Piece, laid_out
-from ..report.report import one_line
 from ..report.text import PLAIN, Style
 from .history import Commit
 from .logic import Logic
@@ -33,7 +30,7 @@ def text(logic: Logic, style: Style = _WIDE) -> str:
     """The changes by commit, newest first, and what was looked at."""
     lines: list[str] = []
     for commit, changes in groupby(logic.changes, key=lambda pair: pair[0]):
-        title = Piece(one_line(commit.summary), "bold", hang=_TITLE)
+        title = Piece(visible(commit.summary), "bold", hang=_TITLE)
         lines += laid_out([Piece(f"{commit.id[:10]}  {commit.date[:10]}", "bold"), title], style, 0, _TITLE)
         for _, change in changes:
             lines += _lines(change, style)
@@ -43,29 +40,29 @@ def text(logic: Logic, style: Style = _WIDE) -> str:
 
 
 def _lines(change: Change, style: Style) -> Iterator[str]:
-    node = f" ({one_line(change.node)})" if change.node else ""
+    node = f" ({visible(change.node)})" if change.node else ""
     head = [
         Piece(f"{change.kind:15s}", _ROLES[change.kind]),
-        Piece((one_line(change.topic) or "?") + node, hang=_TOPIC),
-        Piece("", path=f"{one_line(change.path)}:{change.line}"),
+        Piece((visible(change.topic) or "?") + node, hang=_TOPIC),
+        Piece("", path=f"{visible(change.path)}:{change.line}"),
     ]
     yield from laid_out(head, style, 2, 6)
     if change.why:
-        yield from laid_out([Piece(one_line(change.why))], style, 6, 8)
+        yield from laid_out([Piece(visible(change.why))], style, 6, 8)
     if change.old is not None and change.new is not None:
         old, new = apart(change.old, change.new)
         said = [f"- {old or 'always'}", f"+ {new or 'always'}"]
     else:
         said = [f"{sign} {text}" for sign, text in (("-", change.old), ("+", change.new)) if text]
     for line in said:
-        yield from laid_out([Piece(one_line(line), "dim")], style, 6, 8)
+        yield from laid_out([Piece(visible(line), "dim")], style, 6, 8)
     for number, reached in enumerate(change.reaches):
         if number == _MOST_READERS:
             yield f"      and {counted(len(change.reaches) - number, 'further subscriber')}"
             break
         callback = f", {reached.callback}" if reached.callback else ""
-        who = Piece(f"reaches {one_line((reached.node or reached.package) + callback)}")
-        yield from laid_out([who, Piece("", path=f"{one_line(reached.path)}:{reached.line}")], style, 6, 8)
+        who = Piece(f"reaches {visible((reached.node or reached.package) + callback)}")
+        yield from laid_out([who, Piece("", path=f"{visible(reached.path)}:{reached.line}")], style, 6, 8)
 
 
 def apart(old: str, new: str) -> tuple[str, str]:
@@ -96,7 +93,7 @@ def missed(logic: Logic, chosen: Logic, packages: Sequence[str], topics: Sequenc
         names = sorted({name_of(change) or "?" for _, change in logic.changes})
         rest = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
         clauses.append(f"{option}: nothing of it changed; what did is of {', '.join(names[:_MOST_NAMES])}{rest}")
-    return "; ".join(map(one_line, clauses))
+    return "; ".join(map(visible, clauses))
 
 
 def summary(logic: Logic) -> str:
@@ -106,7 +103,7 @@ def summary(logic: Logic) -> str:
     found = ", ".join(told) or "no change of the logic of publishing"
     coverage = logic.coverage
     parts = [
-        f"{counted(coverage.commits, 'commit')} of {one_line(logic.repository)} ({one_line(logic.range)})",
+        f"{counted(coverage.commits, 'commit')} of {visible(logic.repository)} ({visible(logic.range)})",
         f"{coverage.compared:,} compared",
     ]
     if coverage.cut_off:
@@ -140,7 +137,7 @@ def as_json(logic: Logic, version: str) -> str:
             "unread": list(coverage.unread),
         },
     }
-    return printable(json.dumps(document, indent=1, ensure_ascii=False))
+    return json_text(document)
 
 
 def _entry(commit: Commit, change: Change) -> dict[str, Any]:

@@ -189,8 +189,9 @@ def _made(workspace: Workspace, gathered: Gathered, states: Sequence[State]) -> 
         return
     workspace.gathered.store.close()  # no other process may go on with a connection of this one
     large_first = sorted(states, key=lambda state: -len(state.files))
-    for state, made in processes.forked(_one, large_first, jobs, workspace, gathered):
-        yield made if made is not None else _one(workspace, gathered, state)
+    for _, made in processes.forked(_one, large_first, jobs, workspace, gathered):
+        if not isinstance(made, processes.Died):
+            yield made
 
 
 def _one(workspace: Workspace, gathered: Gathered, state: State) -> tuple[bytes, bytes]:

@@ -12,7 +12,7 @@ import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
@@ -418,8 +418,13 @@ class _Joined(NamedTuple):
     head: bytes | None
 
 
+# A package may take as much time as a file of this size.
+_JOIN_BYTES = 10_000_000
+
+
 def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, Digest | None]], path: str):
     """What a process of its own does with a folder of tasks: a _Joined, with the digest in one form only."""
+    processes.begin_part(0, _JOIN_BYTES)
     digest, packed, head = linker.joined_one(*tasks[path])
     return None if packed else digest, packed, head
 
@@ -449,9 +454,12 @@ class _Linker:
             blob = remembered.get(keys[place.path])
             if blob is not None:
                 size = int.from_bytes(blob[:4], "big")
-                read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
                 packed = memoryview(blob)[4 + size :]
-                before = decoder.decode(packed)
+                try:
+                    read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
+                    before = decoder.decode(packed)
+                except msgspec.MsgspecError:
+                    continue  # of another version: made anew
                 if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items()):
                     found[place.path] = _Joined(before, packed, None)
                 else:
@@ -474,14 +482,16 @@ class _Linker:
         tasks = {p.path: (p, stale.get(p.path)) for p in places}
         order = sorted(tasks, key=lambda path: (-len(self.paths_of[path]), path))
         files = sum(len(self.paths_of[path]) for path in order)
-        if self.jobs < 2 or len(order) < 2 or files < _ALONE_FILES or not processes.may_fork():
+        if not order or not processes.may_fork():
             yield from ((path, self.joined_one(*tasks[path])) for path in order)
             return
+        jobs = 1 if len(order) < 2 or files < _ALONE_FILES else self.jobs
         self.gathered.store.close()  # every process opens it for itself
         decoder = msgspec.msgpack.Decoder(Digest)
-        for path, result in processes.forked(_join, order, self.jobs, self, tasks):
-            if result is None:  # the process was killed
-                yield path, self.joined_one(*tasks[path])
+        for path, result in processes.forked(_join, order, jobs, self, tasks):
+            if isinstance(result, processes.Died):
+                place, _ = tasks[path]
+                yield path, self.encoded(self.failed(place, f"its analysis {result.why}"), None)
             else:
                 digest, packed, head = result
                 yield path, _Joined(digest or decoder.decode(packed), packed, head)
@@ -491,7 +501,12 @@ class _Linker:
             digest, read = self.join(place, before)
         except Exception as error:
             # One package that nobody foresaw must not take the others with it.
-            digest, read = self.failed(place, error), None
+            why = f"{type(error).__name__}: {error}; this is a fault of rosimpact, please report it"
+            digest, read = self.failed(place, why), None
+        return self.encoded(digest, read)
+
+    def encoded(self, digest: Digest, read: Any) -> _Joined:
+        """A digest with what is remembered of it."""
         try:
             head = msgspec.msgpack.encode(read) if read is not None else None
             return _Joined(digest, msgspec.msgpack.encode(digest), head)
@@ -503,14 +518,11 @@ class _Linker:
         self.identity.update(len(digest).to_bytes(8, "big"))
         self.identity.update(digest)
 
-    def failed(self, place, error: Exception) -> Digest:
+    def failed(self, place, reason: str) -> Digest:
         """What stands for a package whose join failed: its manifest, and a problem that says so."""
         manifest = _manifest(self.gathered, place.manifest_path)
         assert manifest is not None
-        why = (
-            f"the package could not be analysed ({type(error).__name__}: {error}); "
-            "this is a fault of rosimpact, please report it"
-        )
+        why = f"the package could not be analysed: {reason}"
         return Digest(place.name, place.path, place.manifest_path, manifest, build_type_of(manifest, self.ros), Build(),
                       problems=((place.manifest_path, 0, why),), files=tuple(self.paths_of[place.path]))  # fmt: skip
 

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from ...edges.console import visible
 from .report import cells
 from .text import Style, painted
 
@@ -28,13 +29,14 @@ class Piece(NamedTuple):
 def laid_out(pieces: Sequence[Piece], style: Style, indent: int, hang: int) -> Iterator[str]:
     """One line of pieces with two spaces between them, or as many as the style's width asks for.
 
-    indent: columns before the first line, hang: before those that follow. A word that is longer than a line stands on
-    one of its own.
+    What the pieces hold is shown escaped where a terminal or CI would obey it. indent: columns before the first line,
+    hang: before those that follow. A word that is longer than a line stands on one of its own.
     """
     line, used, gap = " " * indent, indent, ""
     for piece in pieces:
         room = max(_LEAST, style.width - hang)
-        text = piece.text + shortened(piece.path, room - cells(piece.text))
+        told = visible(piece.text)
+        text = told + shortened(visible(piece.path), room - cells(told))
         if gap and piece.hang is None and used + len(gap) + cells(text) > style.width:
             yield line
             line, used, gap = " " * hang, hang, ""

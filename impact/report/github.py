@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ...edges.console import counted, visible, visible_lines
 from ..rules.rule import Finding
 from . import evidence, markdown
-from .report import Report, count_by_severity, counted, coverage_text, focus, fresh, one_line, safe
+from .report import Report, count_by_severity, coverage_text, focus, fresh
 
 SHOWN = 10
 _COMMAND = {"error": "error", "warning": "warning", "note": "notice"}
@@ -34,8 +35,8 @@ def render(report: Report, prefix: str = "") -> str:
             commands.append(_command(report, finding, folder))
         else:
             rest.append(
-                f"{folder}{one_line(finding.path)}:{finding.line}: {finding.severity}[{finding.rule}] "
-                f"{one_line(finding.message)}{_on(report, finding)}"
+                f"rosimpact: {visible(folder + finding.path)}:{finding.line}: {finding.severity}[{finding.rule}] "
+                f"{visible(finding.message)}{_on(report, finding)}"
             )
     if report.failure:
         commands.insert(0, f"::error title=rosimpact::{_data(report.failure)}")
@@ -52,9 +53,9 @@ def step_summary(report: Report) -> str:
     if findings:
         lines += ["| | place | finding | targets |", "|---|---|---|---|"]
     for finding in findings[:500]:
-        place = markdown.code(f"{one_line(finding.path)}:{finding.line}").replace("|", "\\|")
-        message = markdown.escaped(finding.message).replace("\\|", "|").replace("|", "\\|")
-        targets = markdown.escaped(", ".join(finding.targets))
+        place = markdown.cell(markdown.code(f"{finding.path}:{finding.line}"))
+        message = markdown.cell(markdown.escaped(finding.message))
+        targets = markdown.cell(markdown.escaped(", ".join(finding.targets)))
         lines.append(f"| {finding.severity} | {place} | {message} | {targets} |")
     if len(findings) > 500:
         lines.append(f"\nand {len(findings) - 500:,} more")
@@ -96,11 +97,11 @@ def _command(report: Report, finding: Finding, folder: str) -> str:
 
 
 def _on(report: Report, finding: Finding) -> str:
-    return f" ({one_line(', '.join(finding.targets))})" if finding.targets and len(report.targets) > 1 else ""
+    return f" ({visible(', '.join(finding.targets))})" if finding.targets and len(report.targets) > 1 else ""
 
 
 def _data(text: str) -> str:
-    return safe(text).replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    return visible_lines(text).replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
 def _property(text: str) -> str:

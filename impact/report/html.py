@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
 
+from ...edges.console import visible_in_page
 from ..rules.rule import Finding
 from . import evidence
 from .markdown import verdict
@@ -30,7 +30,7 @@ def _data(report: Report) -> dict[str, Any]:
         "root": report.root,
         "base": report.base,
         "failure": report.failure,
-        "verdict": re.sub(r"\*\*|\\(?=[^\w\s])|<!-- -->", "", verdict(report)),
+        "verdict": verdict(report, str, ""),
         "coverage": coverage_text(report.coverage),
         "seconds": round(report.seconds, 2),
         "suppressed": len(report.suppressed),
@@ -80,7 +80,9 @@ def as_row(report: Report, finding: Finding, names: list[str]) -> list[Any]:
         first, shown = focus(finding, lines)
         if shown is not None:
             start, width = (shown.start, shown.width) if shown.start < _LONGEST_LINE else (0, 0)
-            code = [first, [line[:_LONGEST_LINE] for line in lines], start, width]
+            # The page shows some characters escaped, which moves what is behind them.
+            before, under = (visible_in_page(shown.text[part]) for part in (slice(start), slice(start, start + width)))
+            code = [first, [line[:_LONGEST_LINE] for line in lines], len(before), len(under)]
     numbers = [names.index(name) for name in finding.targets if name in names]
     return [
         finding.rule, finding.severity, finding.package, finding.path, finding.line, finding.column, finding.subject,

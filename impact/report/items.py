@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ...edges.console import counted, visible
 from . import json
-from .report import Report, counted, one_line
+from .report import Report
 from .text import Style, finding_lines, painted
 
 if TYPE_CHECKING:
@@ -31,10 +32,10 @@ def item_lines(report: Report, item: Item, style: Style, fixable: Collection[str
 def short_lines(item: Item, style: Style, fixable: Collection[str] = ()) -> Iterator[str]:
     """An item without code, set in by two."""
     for findings in _by_message(item):
-        yield f"  {one_line(findings[0].message)}{_fixed(findings, fixable, style)}"
+        yield f"  {visible(findings[0].message)}{_fixed(findings, fixable, style)}"
         yield from _places(findings, style, "    ")
         if findings[0].help:
-            yield f"    {painted(style, 'help', 'help:')} {one_line(findings[0].help)}"
+            yield f"    {painted(style, 'help', 'help:')} {visible(findings[0].help)}"
 
 
 def _by_message(item: Item) -> Iterable[list[Finding]]:
@@ -60,7 +61,7 @@ def _places(findings: Sequence[Finding], style: Style, margin: str) -> Iterator[
 
 
 def _place(finding: Finding) -> str:
-    place = one_line(finding.path)
+    place = visible(finding.path)
     if finding.line:
         place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")
     return place

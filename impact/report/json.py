@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..findings import printable
+from ...edges.console import json_text
 from ..rules.rule import Finding
 from . import evidence
 from .report import Coverage, Report
@@ -50,7 +50,7 @@ def render(report: Report) -> str:
 
 def dumped(data: dict[str, Any]) -> str:
     """Data as JSON text that ends in a line end, whatever bytes its texts hold."""
-    return json.dumps(_printable(data), ensure_ascii=False, indent=1) + "\n"
+    return json_text(data) + "\n"
 
 
 def failure(version: str, data: str, message: str) -> str:
@@ -90,14 +90,3 @@ def as_data(finding: Finding) -> dict[str, Any]:
         "new": finding.new,
         "fingerprint": finding.fingerprint,
     } | ({"evidence": evidence.as_object(finding.evidence)} if finding.evidence is not None else {})
-
-
-def _printable(value: Any) -> Any:
-    """The value with bytes that are no UTF-8 (in paths) replaced, which JSON could not carry."""
-    if isinstance(value, str):
-        return printable(value)
-    if isinstance(value, dict):
-        return {key: _printable(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_printable(item) for item in value]
-    return value

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ...edges.console import counted, visible
 from . import json
 from .columns import Piece, laid_out
 from .items import as_data, by_severity, item_lines
-from .report import ReportedTarget, cells, counted, one_line
+from .report import ReportedTarget, cells
 from .text import Style, described, painted
 
 if TYPE_CHECKING:
@@ -29,8 +30,8 @@ _SUBJECTS = 3
 
 def text(found: Machines, style: Style) -> str:
     """What differs, for people: what breaks on one of them alone, then versions, then what is only counted."""
-    lines = [f"{described(found.first)} and {described(found.second)}"]
-    lines += [f"  {one_line(target.name)}: {one_line(note)}" for target in _targets(found) for note in target.notes]
+    lines = [f"compared: {described(found.first)} and {described(found.second)}"]
+    lines += [f"  {visible(target.name)}: {visible(note)}" for target in _targets(found) for note in target.notes]
     if found.report is not None:
         for item in found.harms:
             lines += ["", *item_lines(found.report, item, style)]
@@ -46,10 +47,14 @@ def _targets(found: Machines) -> tuple[ReportedTarget, ReportedTarget]:
 def _versions(found: Machines, style: Style) -> Iterator[str]:
     head = (
         "versions" if found.report is None else "what it uses",
-        one_line(found.first.name),
-        one_line(found.second.name),
+        visible(found.first.name),
+        visible(found.second.name),
     )
-    rows = [(each.name, each.first or "-", each.second or "-") for each, _ in found.versions]
+    # No name begins a line: CI systems read what is there.
+    rows = [
+        (f"  {visible(each.name)}", visible(each.first or "-"), visible(each.second or "-"))
+        for each, _ in found.versions
+    ]
     widths = [max(cells(row[place]) for row in (head, *rows)) for place in range(3)]
 
     def padded(row: Sequence[str]) -> list[str]:
@@ -58,9 +63,10 @@ def _versions(found: Machines, style: Style) -> Iterator[str]:
     yield painted(style, "bold", "  ".join(padded(head)).rstrip())
     for row, used in zip(rows, found.versions, strict=True):
         pieces = [Piece("  ".join(padded(row)) if used.uses else "  ".join(padded(row)).rstrip())]
+        name = used.difference.name
         users = list(dict.fromkeys(use.package for use in used.uses))
         pieces += [
-            Piece(f"{package}: {_told([use for use in used.uses if use.package == package], row[0])}", "dim")
+            Piece(f"{package}: {_told([use for use in used.uses if use.package == package], name)}", "dim")
             for package in users[:_USERS]
         ]
         if len(users) > _USERS:
@@ -80,14 +86,14 @@ def _told(uses: Sequence[Use], name: str) -> str:
 
 def _some(names: list[str]) -> str:
     more = len(names) - _SUBJECTS
-    return ", ".join(one_line(name) for name in names[:_SUBJECTS]) + (f" and {more:,} more" if more > 0 else "")
+    return ", ".join(visible(name) for name in names[:_SUBJECTS]) + (f" and {more:,} more" if more > 0 else "")
 
 
 def _summary(found: Machines, style: Style) -> str:
     if found.report is None:
         return counted(len(found.machine) + len(found.versions), "difference")
     parts = [
-        f"{alone} on {one_line(target.name)} alone"
+        f"{alone} on {visible(target.name)} alone"
         for target in _targets(found)
         if (alone := _counts([item for item in found.harms if target.name in item.findings[0].targets]))
     ]

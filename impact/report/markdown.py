@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
+from ...edges.console import counted, visible
 from ..rules.rule import Finding
-from .report import Report, count_by_severity, counted, coverage_text, fresh, one_line
+from .report import Report, count_by_severity, coverage_text, fresh
 
 _LINES = 10
 _SYMBOL = {"error": "❌", "warning": "⚠️", "note": "💡"}
 _LONGEST = 300
+_SPAN = re.compile(r"(`[^`]+`)")
+_LINKED = re.compile(
+    r"\S*(?:@(?=\w)|#(?=\d)|\$|://|\bwww\.|\b(?:mailto|xmpp):|\bGH-(?=\d))\S*|\b[0-9a-f]{7,40}\b", re.IGNORECASE
+)
+_BEFORE, _BEHIND = "([{\"'", ")]}\"',.;:"
 
 
 def render(report: Report) -> str:
@@ -37,10 +44,14 @@ def render(report: Report) -> str:
     return "\n".join([*head, *rows, *tail] if rows else [head[0], *tail]) + "\n"
 
 
-def verdict(report: Report) -> str:
-    """`breaks on robot: 2; may break on rolling: 1; safe on: humble, jazzy`, in Markdown."""
+def verdict(report: Report, written: Callable[[str], str] | None = None, strong: str = "**") -> str:
+    """`breaks on robot: 2; may break on rolling: 1; safe on: humble, jazzy`.
+
+    written: how names and the failure are written, as in Markdown by default. strong: what stands around what breaks.
+    """
+    written = written or escaped
     if report.failure:
-        return f"failed: {escaped(report.failure)}"
+        return f"failed: {written(report.failure)}"
     if not report.coverage.parsed:
         return "analysed nothing"
     by_target = {target.name: {"error": 0, "warning": 0, "note": 0} for target in report.targets}
@@ -48,13 +59,13 @@ def verdict(report: Report) -> str:
         for name in finding.targets or by_target:
             if name in by_target:
                 by_target[name][finding.severity] += 1
-    bad = [f"**{escaped(name)}**: {cell['error']}" for name, cell in by_target.items() if cell["error"]]
+    bad = [f"{strong}{written(name)}{strong}: {cell['error']}" for name, cell in by_target.items() if cell["error"]]
     doubtful = [
-        f"{escaped(name)}: {cell['warning']}"
+        f"{written(name)}: {cell['warning']}"
         for name, cell in by_target.items()
         if cell["warning"] and not cell["error"]
     ]
-    good = [escaped(name) for name, cell in by_target.items() if not cell["error"] and not cell["warning"]]
+    good = [written(name) for name, cell in by_target.items() if not cell["error"] and not cell["warning"]]
     parts = [f"breaks on {', '.join(bad)}"] if bad else []
     parts += [f"may break on {', '.join(doubtful)}"] if doubtful else []
     parts += [f"safe on: {', '.join(good)}"] if good else []
@@ -64,7 +75,7 @@ def verdict(report: Report) -> str:
 def _row(report: Report, alike: list[Finding]) -> str:
     """One line for findings that say the same, with the first place of them."""
     finding = alike[0]
-    place = one_line(finding.path) + (f":{finding.line}" if finding.line else "")
+    place = finding.path + (f":{finding.line}" if finding.line else "")
     others = f" and {counted(len(alike) - 1, 'more place')}:" if len(alike) > 1 else ""
     told = set(re.split(r"[\s,;()]+", finding.message)).issuperset(finding.targets)
     everywhere = len(finding.targets) == len(report.targets)
@@ -81,7 +92,7 @@ def _tail(report: Report, findings: list[Finding]) -> str:
     parts = [coverage_text(report.coverage)]
     notes = count_by_severity(findings)["note"]
     parts += [counted(notes, "note")] if notes else []
-    parts += [f"new against {code(one_line(report.base))}"] if report.base else []
+    parts += [f"new against {code(report.base)}"] if report.base else []
     parts += [f"{len(report.suppressed):,} suppressed"] if report.suppressed else []
     parts += [f"{len(report.known):,} in the baseline"] if report.known else []
     parts.append(f"rosimpact {escaped(report.version)}, data of {escaped(report.data)}")
@@ -89,20 +100,43 @@ def _tail(report: Report, findings: list[Finding]) -> str:
 
 
 def escaped(text: str) -> str:
-    """Text that Markdown shows as it is on one line: code in single backticks stays code, all else is inert.
+    """Text that Markdown shows as it is on one line: what stands in single backticks is code, all else is inert.
 
-    An empty comment keeps GitHub from taking `@name` and `#1` for a mention.
+    Words that GitHub makes a link of (mentions, issues, commits, addresses) are code too: nothing else stops it.
     """
-    parts = re.split(r"(`[^`]+`)", one_line(text))
-    return "".join(
-        part if index % 2 else re.sub(r"[@#](?=\w)", r"\g<0><!-- -->", re.sub(r"[\\`*_\[\]<>&|$]", r"\\\g<0>", part))
-        for index, part in enumerate(parts)
-    )
+    parts: list[str] = []
+    for index, part in enumerate(_SPAN.split(visible(text))):
+        shown = code(part[1:-1]) if index % 2 else _without_links(part)
+        # Two spans that touch would be one with other ends.
+        parts.append(f" {shown}" if parts and parts[-1].endswith("`") and shown.startswith("`") else shown)
+    return "".join(parts)
+
+
+def _without_links(text: str) -> str:
+    parts: list[str] = []
+    last = 0
+    for match in _LINKED.finditer(text):
+        word = match[0].rstrip(_BEHIND)
+        inner = word.lstrip(_BEFORE)
+        start = match.start() + len(word) - len(inner)
+        parts += [_inert(text[last:start]), code(inner) if inner else ""]
+        last = start + len(inner)
+    return "".join([*parts, _inert(text[last:])])
+
+
+def _inert(text: str) -> str:
+    return re.sub(r"[\\`*_~\[\]<>&|$]", r"\\\g<0>", text)
 
 
 def code(text: str) -> str:
-    """Text as inline code, whatever backticks it holds."""
+    """Text as inline code on one line, whatever backticks it holds."""
+    text = visible(text)
     longest = max((len(run) for run in re.findall("`+", text)), default=0)
     fence = "`" * (longest + 1)
-    pad = " " if text.startswith("`") or text.endswith("`") else ""
+    pad = " " if not text or text.startswith("`") or text.endswith("`") else ""
     return f"{fence}{pad}{text}{pad}{fence}"
+
+
+def cell(markdown: str) -> str:
+    """Markdown of one line as a table's cell holds it: a bar is escaped there even in code."""
+    return re.sub(r"\\(?=\|)", r"\\ ", markdown.replace("\\|", "|")).replace("|", "\\|")

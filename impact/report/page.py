@@ -8,14 +8,12 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
-import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..findings import printable
-from .report import safe
+from ...edges.console import json_text, visible_in_page
 
 _PART = re.compile(r"\{\{([a-z]+\.(?:html|css|js))\}\}")
 _PLACEHOLDER = re.compile(r"\{\{(policy|title|data)\}\}")
@@ -29,7 +27,7 @@ def page(template: Path, title: str, data: Mapping[str, Any]) -> str:
     nothing else.
     """
     text = _whole(template)
-    values = {"policy": _policy(text), "title": html.escape(safe(printable(title))), "data": _block(data)}
+    values = {"policy": _policy(text), "title": _escaped(title), "data": _block(data)}
     return _PLACEHOLDER.sub(lambda match: values[match[1]], text)
 
 
@@ -54,17 +52,21 @@ def _policy(text: str) -> str:
 
 
 def _block(data: Mapping[str, Any]) -> str:
-    """JSON in which no character can end the block: < > & and line separators are escaped."""
-    text = printable(json.dumps(_clean(data), ensure_ascii=False, separators=(",", ":")))
-    return re.sub("[<>&\u2028\u2029]", lambda match: f"\\u{ord(match[0]):04x}", text)
+    """JSON in which no character can end the block: < > & and what is invisible are escaped."""
+    return re.sub("[<>&]", lambda match: f"\\u{ord(match[0]):04x}", json_text(_clean(data), None))
+
+
+def _escaped(text: str) -> str:
+    """Text for the page's markup."""
+    return html.escape(visible_in_page(text).replace("\n", " ")).replace("##", "&#35;&#35;")
 
 
 def _clean(value: Any) -> Any:
-    """The value with control and direction characters in its texts replaced."""
+    """The value with control and direction characters in its texts shown escaped."""
     if isinstance(value, str):
-        return safe(value)
+        return visible_in_page(value)
     if isinstance(value, Mapping):
-        return {safe(key): _clean(item) for key, item in value.items()}
+        return {visible_in_page(key): _clean(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [_clean(item) for item in value]
     return value

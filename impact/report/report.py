@@ -15,9 +15,6 @@ if TYPE_CHECKING:
 
 CONTEXT = 1
 _KEPT_FILES = 32
-# Characters that move the cursor, end a line elsewhere or turn the reading direction: shown as a placeholder, so that
-# no path and no line of code can redraw a terminal or hide what it says.
-_UNSAFE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]")
 
 
 class ReportedTarget(NamedTuple):
@@ -153,16 +150,6 @@ def focus(finding: Finding, lines: list[str]) -> tuple[int, Shown | None]:
     first = max(1, finding.line - CONTEXT)
     index = finding.line - first
     return first, pointed(lines[index], finding.column, finding.subject) if 0 <= index < len(lines) else None
-
-
-def safe(text: str) -> str:
-    """Text with control, direction and broken characters replaced, for terminals and logs. Tabs and LF stay."""
-    return _UNSAFE.sub("\ufffd", text)
-
-
-def one_line(text: str) -> str:
-    """Safe text on one line."""
-    return safe(text).replace("\n", "\ufffd").replace("\t", " ")
 
 
 def cells(text: str) -> int:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Any
 from urllib.parse import quote
 
-from ..findings import printable
+from ...edges.console import escape_json, visible, visible_bytes_in_json
 from ..rules.rule import Edit, Finding, Rule
 from . import evidence
 from .report import Report, focus
@@ -52,7 +52,7 @@ def render(report: Report) -> str:
     if not re.fullmatch(r"\d+\.\d+\.\d+(?:[-+].*)?", report.version):
         del run["tool"]["driver"]["semanticVersion"]
     log = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
-    return printable(json.dumps(log, ensure_ascii=False, indent=1)) + "\n"
+    return escape_json(visible_bytes_in_json(json.dumps(log, ensure_ascii=False, indent=1))) + "\n"
 
 
 def _invocation(report: Report) -> dict[str, Any]:
@@ -107,7 +107,7 @@ def _help(body: str) -> str:
 
 def _result(report: Report, finding: Finding, silent: list[dict[str, str]], index: dict[str, int]) -> dict[str, Any]:
     shown = "".join(f"\n{label}: {line}" for label, line in evidence.lines(finding))
-    text = finding.message + shown + (f"\nhelp: {finding.help}" if finding.help else "")
+    text = _without_links(finding.message + shown + (f"\nhelp: {finding.help}" if finding.help else ""))
     result: dict[str, Any] = {
         "ruleId": finding.rule,
         "ruleIndex": index[finding.rule],
@@ -129,6 +129,11 @@ def _result(report: Report, finding: Finding, silent: list[dict[str, str]], inde
     if any(isinstance(part, Edit) for part in finding.fix):
         result["fixes"] = [_fix(finding)]
     return result
+
+
+def _without_links(text: str) -> str:
+    """A message in which `[text](target)` is no link (SARIF 3.11.6): names and declarations may look like one."""
+    return re.sub(r"\[(?=[^\[\]]*\]\()", r"\\[", text)
 
 
 def _location(report: Report, finding: Finding) -> dict[str, Any]:
@@ -164,7 +169,7 @@ def _artifact(path: str) -> dict[str, str]:
     try:
         data = path.encode("utf-8", "surrogateescape")
     except UnicodeEncodeError:
-        data = printable(path).encode()
+        data = visible(path).encode()
     return {"uri": quote(data, safe="/") or "./", "uriBaseId": _ROOT}
 
 

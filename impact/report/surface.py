@@ -8,10 +8,12 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from ...edges.console import json_text, visible
 from ..facts.surface import FUNCTIONS, declared
 from ..targets.surface import Change, Surface
 from ..targets.surface_python import Names, signature
 from .columns import Piece, laid_out
+from .markdown import cell, code, escaped
 from .text import Style, painted
 
 FORMATS = ("text", "json", "markdown")
@@ -90,7 +92,7 @@ def diff_text(found: Difference, style: Style, everything: bool) -> str:
 
 def _heading(package: str, found: Difference, style: Style) -> list[str]:
     arrow = style.symbols[3]
-    lines = [painted(style, "bold", f"{package} {_short(found.old)} {arrow} {_short(found.new)}")]
+    lines = [painted(style, "bold", visible(f"package {package} {_short(found.old)} {arrow} {_short(found.new)}"))]
     for source in (found.old, found.new):
         lines += _source(source, style)
     return lines
@@ -155,10 +157,10 @@ def diff_markdown(found: Difference) -> str:
     """The report as Markdown, for a pull request or a wiki."""
     lines: list[str] = []
     for package, changes in found.changes.items():
-        lines += [f"## {package} {_short(found.old)} → {_short(found.new)}", ""]
+        lines += [f"## {escaped(package)} {escaped(_short(found.old))} → {escaped(_short(found.new))}", ""]
         for source in (found.old, found.new):
             if source.approximate:
-                lines += [f"`{source.revision}` of {source.repository}: {_lacking(source)}.", ""]
+                lines += [f"{code(source.revision)} of {escaped(source.repository)}: {escaped(_lacking(source))}.", ""]
         for name in _GROUPS:
             these = [c for c in changes if group_of(c) == name]
             if not these:
@@ -175,11 +177,7 @@ def diff_markdown(found: Difference) -> str:
 
 
 def _code(text: str) -> str:
-    if not text:
-        return ""
-    if "`" in text:
-        return text.replace("|", "\\|")
-    return "`" + text.replace("|", "\\|") + "`"
+    return cell(code(text)) if text else ""
 
 
 def diff_json(found: Difference, tool: str) -> str:
@@ -189,7 +187,7 @@ def diff_json(found: Difference, tool: str) -> str:
 
 
 def _json(value: Any) -> str:
-    return msgspec.json.format(msgspec.json.encode(value), indent=1).decode() + "\n"
+    return json_text(msgspec.to_builtins(value)) + "\n"
 
 
 # -- one surface -------------------------------------------------------------------------------------------------------
@@ -269,7 +267,7 @@ def show_text(
     """What a package offers, for people. everything: members of classes, constants and macros too. hashes: see
     items()."""
     build = surface.build
-    lines = [painted(style, "bold", f"{surface.package} {_short(source)}"), *_source(source, style)]
+    lines = [painted(style, "bold", visible(f"package {surface.package} {_short(source)}")), *_source(source, style)]
     facts = [f"build type {build.build_type}"]
     if build.standard:
         facts.append(f"C++{build.standard}")
@@ -322,6 +320,7 @@ def show_json(surface: Surface, source: Source, tool: str, hashes: Mapping[str, 
 
 def show_markdown(surface: Surface, source: Source, hashes: Mapping[str, str] = _NONE) -> str:
     """What a package offers as a table."""
-    lines = [f"## {surface.package} {_short(source)}", "", "| what | name | declaration |", "|---|---|---|"]
+    lines = [f"## {escaped(surface.package)} {escaped(_short(source))}", ""]
+    lines += ["| what | name | declaration |", "|---|---|---|"]
     lines += [f"| {i.what} | {_code(i.name)} | {_code(i.declaration)} |" for i in items(surface, hashes)]
     return "\n".join(lines) + "\n"

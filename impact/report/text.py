@@ -8,6 +8,7 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping
 from typing import NamedTuple, TextIO
 
+from ...edges.console import counted, cut_visibly, visible
 from ..rules.rule import Finding
 from . import evidence
 from .report import (
@@ -16,13 +17,10 @@ from .report import (
     Shown,
     cells,
     count_by_severity,
-    counted,
     coverage_text,
     focus,
     fresh,
     matrix,
-    one_line,
-    safe,
 )
 
 _TAB = "    "
@@ -74,7 +72,7 @@ def render(report: Report, style: Style = PLAIN) -> str:
         lines += [
             "",
             painted(style, "bold", "what this change reaches"),
-            *short(report.impact, style, one_line(report.base)),
+            *short(report.impact, style, visible(report.base)),
         ]
     table = _matrix(report, style)
     if table:
@@ -98,11 +96,11 @@ def _targets(report: Report, style: Style) -> list[str]:
     groups = []
     for reason, targets in by_reason.items():
         names = ", ".join(described(target) for target in targets)
-        groups.append(f"{names}: {one_line(reason)}" if reason else names)
-    base = f" (new against {one_line(report.base)})" if report.base else ""
+        groups.append(f"{names}: {visible(reason)}" if reason else names)
+    base = f" (new against {visible(report.base)})" if report.base else ""
     lines = [painted(style, "bold", "targets ") + "; ".join(groups) + base]
     for target in report.targets:
-        lines += [f"  {one_line(target.name)}: {one_line(note)}" for note in target.notes]
+        lines += [f"  {visible(target.name)}: {visible(note)}" for note in target.notes]
     return lines
 
 
@@ -110,7 +108,7 @@ def described(target: ReportedTarget) -> str:
     """A target's name, with what is behind it."""
     parts = [target.distro if target.distro != target.name else "", target.date, target.platform]
     detail = ", ".join(part for part in parts if part)
-    return one_line(f"{target.name} ({detail})" if detail else target.name)
+    return visible(f"{target.name} ({detail})" if detail else target.name)
 
 
 def _packages(report: Report, findings: list[Finding], style: Style) -> list[str]:
@@ -123,9 +121,9 @@ def _packages(report: Report, findings: list[Finding], style: Style) -> list[str
     lines: list[str] = []
     shown: Counter[tuple[str, str]] = Counter()
     for name, group in by_package.items():
-        title = painted(style, "bold", one_line(name or "workspace"))
+        title = heading(name, style)
         if folders.get(name, "") not in ("", ".", name):
-            title += painted(style, "dim", f" {style.symbols[4]} {one_line(folders[name])}")
+            title += painted(style, "dim", f" {style.symbols[4]} {visible(folders[name])}")
         lines += ["", title]
         # What is said too often is listed where it first was: errors stay before warnings.
         more: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
@@ -146,18 +144,23 @@ def _packages(report: Report, findings: list[Finding], style: Style) -> list[str
     return lines
 
 
+def heading(package: str, style: Style) -> str:
+    """The line above what concerns a package. No name begins a line: CI systems read what is there."""
+    return painted(style, "bold", f"package {visible(package)}" if package else "workspace")
+
+
 def _head(report: Report, finding: Finding, style: Style) -> str:
     names = [target.name for target in report.targets]
     where = f" {', '.join(finding.targets)}" if len(names) > 1 and finding.targets else ""
     if where and len(finding.targets) == len(names):
         where = " all targets"
     label = painted(style, finding.severity, f"{finding.severity}[{finding.rule}]")
-    return f"{label}{one_line(where)}: {one_line(finding.message)}"
+    return f"{label}{visible(where)}: {visible(finding.message)}"
 
 
 def finding_lines(report: Report, finding: Finding, style: Style) -> list[str]:
     """A finding with its place, its code and its help."""
-    place = one_line(finding.path)
+    place = visible(finding.path)
     if finding.line:
         place += f":{finding.line}" + (f":{finding.column}" if finding.column else "")
     lines = [_head(report, finding, style), f"  {painted(style, 'dim', style.symbols[3])} {place}"]
@@ -171,21 +174,21 @@ def finding_lines(report: Report, finding: Finding, style: Style) -> list[str]:
             caret = painted(style, finding.severity, "^" * width)
             lines.append(f"  {' ' * margin} {painted(style, 'dim', '|')} {' ' * offset}{caret}")
     for label, text in evidence.lines(finding):
-        shown, room = one_line(text), style.width - len(label) - 4
+        shown, room = visible(text), style.width - len(label) - 4
         # Declarations can be long; what they were called comes first.
         cut = label != "when" and cells(shown) > room
         lines.append(f"  {painted(style, 'dim', f'{label}:')} {shown[: room - 3] + '...' if cut else shown}")
     if finding.help:
-        lines.append(f"  {painted(style, 'help', 'help:')} {one_line(finding.help)}")
+        lines.append(f"  {painted(style, 'help', 'help:')} {visible(finding.help)}")
     return lines
 
 
 def _clipped(shown: Shown, room: int) -> tuple[str, int, int]:
     """(text that fits into room columns, caret offset and width in columns). Leading space goes first, then the far
     ends of the line."""
-    before = safe(shown.text[: shown.start]).replace("\t", _TAB)
-    under = safe(shown.text[shown.start : shown.start + shown.width]).replace("\t", _TAB)
-    after = safe(shown.text[shown.start + shown.width :]).replace("\t", _TAB).rstrip()
+    pieces = cut_visibly(shown.text, shown.start, shown.start + shown.width)
+    before, under, after = (piece.replace("\t", _TAB) for piece in pieces)
+    after = after.rstrip()
     if cells(before) + cells(under) + cells(after) > room:
         before = before.lstrip()
         under = under[:room]
@@ -201,7 +204,7 @@ def _clipped(shown: Shown, room: int) -> tuple[str, int, int]:
 
 def _repeated(report: Report, findings: list[Finding], style: Style) -> list[str]:
     """Findings whose message was shown often enough already: their places only."""
-    places = [f"{one_line(finding.path)}:{finding.line}" for finding in findings]
+    places = [f"{visible(finding.path)}:{finding.line}" for finding in findings]
     limit = max(3, style.excerpts)
     lines = [_head(report, findings[0], style), *(f"  {style.symbols[3]} {place}" for place in places[:limit])]
     if len(places) > limit:
@@ -228,16 +231,16 @@ def _matrix(report: Report, style: Style) -> list[str]:
             else:
                 row_cells.append((fine, "good"))
         if any(role != "good" for _, role in row_cells):
-            rows.append((one_line(package or "workspace"), row_cells))
+            rows.append((f"  {visible(package or 'workspace')}", row_cells))
         elif package:
             good += 1
     if not rows or not names:
         return []
     if good:
         others = "other package" if good == 1 else "other packages"
-        rows.append((f"{good:,} {others}", [(fine, "good")] * len(names)))
+        rows.append((f"  {good:,} {others}", [(fine, "good")] * len(names)))
     first = max(cells(label) for label, _ in rows)
-    heads = [one_line(name) for name in names]
+    heads = [visible(name) for name in names]
     lines = [" " * first + "".join(f"  {head}" for head in heads)]
     for label, row_cells in rows:
         line = label + " " * (first - cells(label))
@@ -258,7 +261,7 @@ def _summary(report: Report, style: Style) -> str:
         if number
     ]
     if report.failure:
-        text = painted(style, "error", "failed") + f": {one_line(report.failure)}"
+        text = painted(style, "error", "failed") + f": {visible(report.failure)}"
     elif not report.coverage.parsed and not findings:
         text = painted(style, "error", "nothing was analysed")
     else:

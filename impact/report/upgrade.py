@@ -6,11 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ...edges.console import counted, visible
 from . import html, json
 from .items import as_data, by_severity, item_lines, short_lines
 from .page import page
-from .report import ReportedTarget, count_by_severity, counted, coverage_text, one_line
-from .text import Style, described, painted
+from .report import ReportedTarget, count_by_severity, coverage_text
+from .text import Style, described, heading, painted
 
 if TYPE_CHECKING:
     from ..between import Item
@@ -26,7 +27,7 @@ def verdict(found: Upgrade) -> str:
 
     `humble → jazzy breaks 3 of 46 packages: 3 errors and 1 warning to work off, in 9 places`
     """
-    way = f"{one_line(found.old.name)} → {one_line(found.new.name)}"
+    way = f"{visible(found.old.name)} → {visible(found.new.name)}"
     total = counted(len(found.packages), "package")
     if not found.breaks:
         return f"{way} is safe: nothing that is known breaks in {total}"
@@ -50,7 +51,7 @@ def by_fixes(found: Upgrade) -> str:
 
 def rest(found: Upgrade) -> list[str]:
     """What is not the upgrade's, as clauses."""
-    old, new = one_line(found.old.name), one_line(found.new.name)
+    old, new = visible(found.old.name), visible(found.new.name)
     told = []
     if found.both:
         them = "it" if len(found.both) == 1 else "them"
@@ -72,17 +73,17 @@ def text(found: Upgrade, style: Style) -> str:
     role = "good" if not found.breaks else _worst(found.breaks)
     lines = [painted(style, role, verdict(found).replace("→", style.symbols[3]))]
     fixes = by_fixes(found)
-    lines += [f"  {painted(style, 'help', fixes)}"] if fixes else []
+    lines += [f"  {painted(style, 'help', visible(fixes))}"] if fixes else []
     for word, target in (("from", found.old), ("to", found.new)):
         lines.append(f"  {painted(style, 'dim', f'{word} {described(target)}')}")
-        lines += [f"    {one_line(note)}" for note in target.notes]
+        lines += [f"    {visible(note)}" for note in target.notes]
     steps = _steps(found.breaks)
     for number, (package, items) in enumerate(steps.items(), 1):
         lines += ["", _title(f"{number} of {len(steps)}", package, found, style)]
         for item in items:
             lines += ["", *item_lines(found.report, item, style, found.fixable)]
     if found.deprecations:
-        lines += ["", painted(style, "bold", f"deprecated on {one_line(found.new.name)}")]
+        lines += ["", painted(style, "bold", f"deprecated on {visible(found.new.name)}")]
         for package, items in _steps(found.deprecations).items():
             lines += ["", _title("", package, found, style)]
             for item in items:
@@ -105,9 +106,9 @@ def _steps(items: Iterable[Item]) -> dict[str, list[Item]]:
 
 def _title(number: str, package: str, found: Upgrade, style: Style) -> str:
     folders = {each.name: each.path for each in found.packages}
-    title = painted(style, "bold", one_line(package or "workspace"))
+    title = heading(package, style)
     if folders.get(package, "") not in ("", ".", package):
-        title += painted(style, "dim", f" {style.symbols[4]} {one_line(folders[package])}")
+        title += painted(style, "dim", f" {style.symbols[4]} {visible(folders[package])}")
     return f"{painted(style, 'dim', f'{number}: ')}{title}" if number else title
 
 

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import msgspec
 
 from ..cache import cache_folder
+from ..facts.store import FAULTS
 from . import unpacked
 from .snapshot import DATA, SnapshotError
 from .target import Provider
@@ -307,10 +308,18 @@ class Providers:
     def _open(self) -> sqlite3.Connection:
         return _open(self._data, self._cache or cache_folder())
 
+    def _open_again(self) -> sqlite3.Connection:
+        return _open_again(self._data, self._cache or cache_folder())
+
     def _rows(self, sql: str, *arguments: object) -> list[tuple]:
         with self._lock:
             self._connection, self._reader = unpacked.of_this_process(self._connection, self._reader, self._open)
-            return self._connection.execute(sql, arguments).fetchall()
+            try:
+                return self._connection.execute(sql, arguments).fetchall()
+            except FAULTS:
+                self._connection.close()
+                self._connection = self._open_again()
+                return self._connection.execute(sql, arguments).fetchall()
 
 
 def _once(providers: list[Provider]) -> list[Provider]:
@@ -350,18 +359,33 @@ class _Info(msgspec.Struct, frozen=True):
 
 
 def _open(data: Path, cache: Path) -> sqlite3.Connection:
-    packed, corrections, info = (data / f"providers.{end}" for end in ("sqlite.zst", "yaml", "json"))
-    try:
-        facts = corrections.read_bytes()
-        sha = msgspec.json.decode(info.read_bytes(), type=_Info).sha256
-    except (OSError, msgspec.MsgspecError) as error:
-        raise SnapshotError(f"{info}: {error}; install rosimpact again") from None
-    path = cache / f"providers-{_FORMAT}-{sha[:16]}-{hashlib.sha256(facts).hexdigest()[:16]}.sqlite"
+    path, sha, facts = _place(data, cache)
     connection = unpacked.connect(path, "fact")
     if connection is not None:
         return connection
-    raw = unpacked.decompress(packed, sha, info.name)
-    return unpacked.unpack(raw, lambda connection: add_facts(connection, facts), path, "fact")
+    return unpacked.unpack(_raw(data, sha), lambda connection: add_facts(connection, facts), path, "fact")
+
+
+def _open_again(data: Path, cache: Path) -> sqlite3.Connection:
+    """The same in memory, when the file turns out broken while it is read."""
+    path, sha, facts = _place(data, cache)
+    unpacked.distrust(path)
+    return unpacked.in_memory(_raw(data, sha), lambda connection: add_facts(connection, facts))
+
+
+def _place(data: Path, cache: Path) -> tuple[Path, str, bytes]:
+    """Where the unpacked file belongs, the hash of what is shipped, and the reviewed facts. Raises SnapshotError."""
+    info = data / "providers.json"
+    try:
+        facts = (data / "providers.yaml").read_bytes()
+        sha = msgspec.json.decode(info.read_bytes(), type=_Info).sha256
+    except (OSError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{info}: {error}; install rosimpact again") from None
+    return cache / f"providers-{_FORMAT}-{sha[:16]}-{hashlib.sha256(facts).hexdigest()[:16]}.sqlite", sha, facts
+
+
+def _raw(data: Path, sha: str) -> bytes:
+    return unpacked.decompress(data / "providers.sqlite.zst", sha, "providers.json")
 
 
 def add_facts(connection: sqlite3.Connection, facts: bytes) -> None:

@@ -7,16 +7,21 @@ old file. A file that turns out broken is unpacked again; where no folder can be
 """
 
 import contextlib
+import datetime
 import hashlib
+import os
 import sqlite3
 import threading
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
+from ...edges.files import read_file
+from ...edges.limits import limits
 from ..cache import cache_folder
+from ..facts.store import FAULTS
 from . import unpacked
 from .unpacked import SnapshotError
 
@@ -91,8 +96,11 @@ def shipped_info(data: Path = DATA) -> SnapshotInfo:
     Raises SnapshotError when it is missing or damaged.
     """
     try:
-        return msgspec.json.decode((data / "snapshot.json").read_bytes(), type=SnapshotInfo)
-    except (OSError, msgspec.MsgspecError) as error:
+        info = msgspec.json.decode(read_file(data / "snapshot.json", limits().settings), type=SnapshotInfo)
+        datetime.date.fromisoformat(info.date)
+        int(info.sha256, 16)
+        return info
+    except (OSError, ValueError, RecursionError) as error:
         raise SnapshotError(f"{data / 'snapshot.json'}: {error}; install rosimpact again") from None
 
 
@@ -147,7 +155,7 @@ class Snapshot:
     """Read access to the database. Open one with `default()`, or `Snapshot(folder)` for another data folder.
 
     facts: the folder of the reviewed fact files. The file is opened at the first query. A database that breaks while it
-    is read is unpacked again once.
+    is read is unpacked again, in memory.
     """
 
     def __init__(self, data: Path = DATA, cache: Path | None = None, facts: Path = DATA):
@@ -178,9 +186,10 @@ class Snapshot:
             self._connection, self._reader = unpacked.of_this_process(self._connection, self._reader, self._open)
             try:
                 return self._connection.execute(sql, arguments).fetchall()
-            except sqlite3.DatabaseError:
+            except FAULTS:
                 self._connection.close()
-                self._connection = self._open_again()
+                unpacked.distrust(self.path())
+                self._connection = unpacked.in_memory(*self._raw_and_facts())
                 return self._connection.execute(sql, arguments).fetchall()
 
     def row(self, sql: str, parameters: Iterable[Any] = ()) -> tuple | None:
@@ -205,6 +214,11 @@ class Snapshot:
         return unpacked.connect(self.path(), "distro_fact") or self._open_again()
 
     def _open_again(self) -> sqlite3.Connection:
+        raw, add = self._raw_and_facts()
+        return unpacked.unpack(raw, add, self.path(), "distro_fact")
+
+    def _raw_and_facts(self) -> tuple[bytes, Callable[[sqlite3.Connection], None]]:
+        """What the file is made of: the database without the reviewed facts, and what adds them."""
         try:
             raw = unpack(self.data)
         except SnapshotError:
@@ -214,7 +228,7 @@ class Snapshot:
             self.data, self._info = DATA, None
             raw = unpack(self.data)
         facts = _fact_files(self.facts)
-        return unpacked.unpack(raw, lambda connection: add_facts(connection, *facts), self.path(), "distro_fact")
+        return raw, lambda connection: add_facts(connection, *facts)
 
 
 _default: Snapshot | None = None
@@ -231,8 +245,8 @@ def default() -> Snapshot:
 def _newest_folder() -> Path:
     """The shipped data, or what `data update` made where that is newer and whole."""
     updated = updated_folder()
-    if (updated / "snapshot.json").is_file():
+    if os.path.exists(updated / "snapshot.json"):
         with contextlib.suppress(SnapshotError):
-            if shipped_info(updated).date > shipped_info().date and (updated / "distros.sqlite.zst").is_file():
+            if shipped_info(updated).date > shipped_info().date and os.path.isfile(updated / "distros.sqlite.zst"):
                 return updated
     return DATA

@@ -1,19 +1,31 @@
 """A shipped SQLite file and the reviewed facts beside it: unpacked once into the user's cache, then only read.
 
 The unpacked file's name says what is in it, `KIND-FORMAT-HASH-HASH.sqlite`, so that new data never meets an old file.
+A file beside it, `….sqlite.sum`, has the digest of what was unpacked and the file's size, times and inode. While those
+are the same the file is taken as it is; otherwise it is read once and compared, and unpacked again when it differs.
 """
 
 import contextlib
 import hashlib
 import os
 import sqlite3
+import stat
 import time
 from collections.abc import Callable
 from pathlib import Path
 
+from ...edges.files import read_chunks, read_file, read_with_status, write_file
 from ..cache import CACHE_VARIABLE
+from ..facts.store import FAULTS
 
 _STALE = 3600
+_SUM = ".sum"
+_SUM_BYTES = 1000
+# A change within this time of another may leave a file's times as they were.
+_TICK_NS = 20_000_000
+# Of shipped data; the largest has 2 MB, and 12 MB when it is unpacked.
+_PACKED_BYTES = 64 << 20
+_UNPACKED_BYTES = 256 << 20
 
 
 class SnapshotError(Exception):
@@ -28,7 +40,11 @@ def decompress(packed: Path, sha256: str, described: str) -> bytes:
     import zstandard
 
     try:
-        raw = zstandard.ZstdDecompressor().decompress(packed.read_bytes())
+        data = read_file(packed, _PACKED_BYTES)
+        # Memory for all that a file says to hold is taken before the first byte is unpacked.
+        if zstandard.frame_content_size(data) > _UNPACKED_BYTES:
+            raise SnapshotError(f"{packed}: claims to hold too much; install rosimpact again")
+        raw = zstandard.ZstdDecompressor().decompress(data, max_output_size=_UNPACKED_BYTES)
     except (OSError, zstandard.ZstdError) as error:
         raise SnapshotError(f"{packed}: {error}; install rosimpact again") from None
     if hashlib.sha256(raw).hexdigest() != sha256:
@@ -38,12 +54,48 @@ def decompress(packed: Path, sha256: str, described: str) -> bytes:
 
 def connect(path: Path, table: str) -> sqlite3.Connection | None:
     """Opens a finished file; None when there is none or it is not whole. table: one that the facts fill."""
-    if not path.is_file():
-        return None
     try:
-        return _connect(path, table)
-    except sqlite3.DatabaseError:
+        return _connect(path, table) if _is_whole(path) else None
+    except (OSError, *FAULTS):
         return None
+
+
+def distrust(path: Path) -> None:
+    """Lets later runs compare a file with what was unpacked, however whole it looks."""
+    with contextlib.suppress(OSError):
+        os.unlink(f"{path}{_SUM}")
+
+
+def _is_whole(path: Path) -> bool:
+    """Whether a file holds what was unpacked. Raises OSError."""
+    status = os.stat(path)
+    if not stat.S_ISREG(status.st_mode):
+        return False
+    data, noted = read_with_status(f"{path}{_SUM}", _SUM_BYTES)
+    digest, _, stamp = data.decode("ascii", "replace").partition(" ")
+    if stamp == _stamp(status) and noted.st_mtime_ns > status.st_ctime_ns + _TICK_NS:
+        return True
+    if _digest(path) != digest:
+        return False
+    _note(path, digest)
+    return True
+
+
+def _stamp(status: os.stat_result) -> str:
+    return f"{status.st_size} {status.st_mtime_ns} {status.st_ctime_ns} {status.st_ino}"
+
+
+def _digest(path: str | os.PathLike[str]) -> str:
+    found = hashlib.blake2b(digest_size=16, usedforsecurity=False)
+    for chunk in read_chunks(path):
+        found.update(chunk)
+    return found.hexdigest()
+
+
+def _note(path: Path, digest: str) -> None:
+    """Writes what is known of a file beside it; where that cannot be, every run compares."""
+    with contextlib.suppress(OSError):
+        write_file(f"{path}{_SUM}", f"{digest} {_stamp(os.stat(path))}".encode())
 
 
 def of_this_process(
@@ -65,8 +117,8 @@ def unpack(raw: bytes, add_facts: Callable[[sqlite3.Connection], None], path: Pa
     try:
         _write(raw, add_facts, path)
         return _connect(path, table)
-    except (OSError, sqlite3.DatabaseError):
-        return _in_memory(raw, add_facts)
+    except (OSError, *FAULTS):
+        return in_memory(raw, add_facts)
 
 
 def _connect(path: Path, table: str) -> sqlite3.Connection:
@@ -96,11 +148,13 @@ def _write(raw: bytes, add_facts: Callable[[sqlite3.Connection], None], path: Pa
             # A crash leaves only a .part file, so no journal is needed.
             connection.execute("PRAGMA journal_mode=OFF")
             add_facts(connection)
+        digest = _digest(name)
         os.replace(name, path)
     except BaseException:
         with contextlib.suppress(OSError):
             os.unlink(name)
         raise
+    _note(path, digest)
     _forget_old(path)
 
 
@@ -115,8 +169,9 @@ def _forget_old(path: Path) -> None:
     """
     for old in path.parent.glob(f"{_kind(path)}-*.sqlite"):
         if old.name != path.name:
-            with contextlib.suppress(OSError):
-                old.unlink()
+            for each in (old, f"{old}{_SUM}"):
+                with contextlib.suppress(OSError):
+                    os.unlink(each)
     for part in path.parent.glob(f".{_kind(path)}-*.part"):
         with contextlib.suppress(OSError):
             if part.stat().st_mtime < time.time() - _STALE:
@@ -128,7 +183,8 @@ def _deserializer(connection: sqlite3.Connection) -> Callable[[bytes], None] | N
     return getattr(connection, "deserialize", None)
 
 
-def _in_memory(raw: bytes, add_facts: Callable[[sqlite3.Connection], None]) -> sqlite3.Connection:
+def in_memory(raw: bytes, add_facts: Callable[[sqlite3.Connection], None]) -> sqlite3.Connection:
+    """The database in memory alone. Raises SnapshotError."""
     connection = sqlite3.connect(":memory:", check_same_thread=False)
     deserialize = _deserializer(connection)
     if deserialize is not None:

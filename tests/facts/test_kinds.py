@@ -4,7 +4,17 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.kinds import EXTRACTORS, FileFacts, decode, encode, extract, kind_of, version_of
+from rosimpact.edges.limits import size_text
+from rosimpact.impact.facts.kinds import (
+    EXTRACTORS,
+    FileFacts,
+    decode,
+    encode,
+    extract,
+    kind_of,
+    largest,
+    version_of,
+)
 
 NAMES = [
     ("package.xml", "manifest"),
@@ -83,8 +93,8 @@ def test_first_line_tells_scripts_apart(data, kind):
 
 @pytest.mark.parametrize("kind", sorted(set(EXTRACTORS) - {"script", "flow_script"}))
 def test_what_is_too_large_is_named_and_not_read(kind):
-    facts = extract(kind, b"#" * (8 * 1024 * 1024 + 1))
-    assert [p.message for p in facts.facts.problems] == ["larger than 8 MB"]
+    facts = extract(kind, b"#" * (largest(kind) + 1))
+    assert [p.message for p in facts.facts.problems] == [f"larger than {size_text(largest(kind))}"]
     assert decode(kind, encode(facts)) == facts
 
 

@@ -1,16 +1,21 @@
 """The store: what goes in comes out, whatever happens to the disk or to other processes meanwhile."""
 
+import contextlib
 import errno
 import os
+import random
 import signal
+import socket
 import sqlite3
 import subprocess
 import sys
 import time
+import zlib
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rosimpact.edges.limits import Limits
 from rosimpact.impact.cache import cache_folder
 from rosimpact.impact.facts import store as store_module
 from rosimpact.impact.facts.store import Store, fact_key, pack, unpack
@@ -84,10 +89,10 @@ DAMAGE = {
     "no database": lambda path: path.write_bytes(b"this is text, and more than a header of it" * 10),
     "cut off": lambda path: path.write_bytes(path.read_bytes()[:6000]),
     "zeros inside": lambda path: path.write_bytes(path.read_bytes()[:4096] + b"\0" * (path.stat().st_size - 4096)),
-    "made by a newer version": lambda path: sqlite3.connect(path).execute("PRAGMA user_version = 99").close(),
+    "its tables and another": lambda path: sqlite3.connect(path).executescript("CREATE TABLE more (a)").close(),
     "other tables": lambda path: (
         path.unlink(),
-        sqlite3.connect(path).executescript("CREATE TABLE facts (a); PRAGMA user_version = 1;").close(),
+        sqlite3.connect(path).executescript("CREATE TABLE facts (a); PRAGMA user_version = 2;").close(),
     ),
 }
 
@@ -283,3 +288,202 @@ def test_where_the_cache_lies(tmp_path, monkeypatch):
     monkeypatch.delenv("ROSIMPACT_CACHE")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
     assert "rosimpact" in os.path.basename(cache_folder())
+
+
+COLUMNS = ("id", "key", "used", "seal", "data")
+VALUES = {
+    "nothing": None,
+    "a number": 7,
+    "text": "x",
+    "wrong text": b"\xff",
+    "other bytes": b"zother",
+    "a bomb": b"bomb",
+}
+
+
+@pytest.mark.parametrize("column", COLUMNS)
+@pytest.mark.parametrize("value", VALUES.values(), ids=VALUES)
+def test_a_damaged_row_counts_as_lost_whatever_it_holds(tmp_path, column, value):
+    with Store(tmp_path) as store:
+        store.put(rows(0, 3))
+        store.remember("t", [(b"k", b"v" * 3000)])
+    with contextlib.closing(sqlite3.connect(tmp_path / "facts.sqlite")) as db:
+        # SQLite checks neither types nor NOT NULL of rows that are there already
+        db.execute("PRAGMA writable_schema = ON")
+        shape = db.execute("SELECT sql FROM sqlite_master WHERE name = 'facts'").fetchone()[0]
+        db.execute("UPDATE sqlite_master SET sql = replace(sql, ' NOT NULL', '')")
+        db.commit()
+    with contextlib.closing(sqlite3.connect(tmp_path / "facts.sqlite")) as db:
+        what = "CAST(? AS TEXT)" if value == b"\xff" else "?"
+        value = b"z" + zlib.compress(b"\0" * 10_000_000) if value == b"bomb" else value
+        for table in ("facts", "memo"):
+            with contextlib.suppress(sqlite3.Error):  # a key that is taken, an id that is no number
+                db.execute(f"UPDATE {table} SET {column} = {what} WHERE id = 1", [value])
+        db.execute("PRAGMA writable_schema = ON")
+        db.execute("UPDATE sqlite_master SET sql = replace(?, 'facts', name) WHERE sql IS NOT NULL", [shape])
+        db.commit()
+    with Store(tmp_path) as store:
+        found = dict(store.get([key(n) for n in range(5)]))
+        assert found.items() <= dict(rows(0, 3)).items() and {key(1), key(2)} <= found.keys()
+        assert store.memo("t", b"k") in (None, b"v" * 3000)
+        store.put(rows(0, 1))
+        store.remember("t", [(b"k", b"v" * 3000)])
+        assert dict(store.get([key(n) for n in range(5)])) == dict(rows(0, 3))
+        assert store.memo("t", b"k") == b"v" * 3000
+        assert store.notes == []
+
+
+def test_any_damage_of_the_file_gives_what_was_stored_or_nothing(tmp_path):
+    chance = random.Random(7)
+    with Store(tmp_path / "whole") as store:
+        store.put(rows(0, 200, size=300))
+        store.remember("t", [(b"%d" % n, b"%d" % n * 999) for n in range(50)])
+    whole = (tmp_path / "whole" / "facts.sqlite").read_bytes()
+    replaced = 0
+    for turn in range(150):
+        data = bytearray(whole)
+        reach = 100 if turn % 3 == 0 else len(data)
+        for _ in range((1, 1, 100)[turn % 3]):
+            data[chance.randrange(reach)] = chance.randrange(256)
+        if turn % 10 == 9:
+            del data[chance.randrange(len(data)) :]
+        folder = tmp_path / f"{turn}"
+        folder.mkdir()
+        (folder / "facts.sqlite").write_bytes(data)
+        if turn % 7 == 0:
+            (folder / "facts.sqlite-wal").write_bytes(chance.randbytes(5000))
+        with Store(folder, limit=10_000 if turn % 5 == 0 else 10**9) as store:
+            wanted = [key(n) for n in range(210)]
+            store.find(wanted)
+            assert dict(store.get(wanted)).items() <= dict(rows(0, 200, size=300)).items()
+            assert all(data == k * 999 for k, data in store.memos("t", [b"%d" % n for n in range(60)]).items())
+            store.put(rows(195, 10, size=300))
+            assert dict(store.get(wanted)).items() <= dict(rows(0, 205, size=300)).items()
+            assert len(store.notes) <= 1
+            replaced += len(store.notes)
+    assert 30 < replaced < 150
+
+
+def test_a_file_of_a_newer_version_is_left_alone(tmp_path):
+    with Store(tmp_path) as store:
+        store.put(rows(0, 3))
+    sqlite3.connect(tmp_path / "facts.sqlite").execute("PRAGMA user_version = 99").close()
+    before = (tmp_path / "facts.sqlite").read_bytes()
+    with Store(tmp_path) as store:
+        store.put(rows(5, 3))
+        assert store.find([key(1), key(6)]) == {key(6)}
+        assert len(store.notes) == 1 and "newer rosimpact" in store.notes[0]
+    assert (tmp_path / "facts.sqlite").read_bytes() == before
+
+
+def test_a_file_of_an_older_version_is_replaced_without_a_word(tmp_path):
+    old = "CREATE TABLE facts (id INTEGER PRIMARY KEY, key BLOB, used INTEGER, data BLOB); PRAGMA user_version = 1;"
+    sqlite3.connect(tmp_path / "facts.sqlite").executescript(old).close()
+    with Store(tmp_path) as store:
+        store.put(rows(5, 3))
+        assert store.notes == []
+    assert contents(tmp_path) == {key(n) for n in range(5, 8)}
+
+
+OTHER_FILES = {
+    "a named pipe": os.mkfifo,
+    "a folder": os.mkdir,
+    "a link to a device": lambda path: os.symlink("/dev/zero", path),
+    "a link to nothing": lambda path: os.symlink(path.parent.parent / "made", path),
+    "a link to a file": lambda path: os.symlink(path.parent.parent / "other", path),
+    "a socket": lambda path: socket.socket(socket.AF_UNIX).bind(os.fspath(path)),
+}
+
+
+@pytest.mark.parametrize("suffix", ["", "-wal", "-shm"])
+@pytest.mark.parametrize("make", OTHER_FILES.values(), ids=OTHER_FILES)
+def test_what_is_no_file_is_done_without(tmp_path, monkeypatch, make, suffix):
+    (tmp_path / "other").write_bytes(b"")
+    (tmp_path / "c").mkdir()
+    monkeypatch.chdir(tmp_path)
+    make(tmp_path / "c" / f"facts.sqlite{suffix}")
+    with Store(tmp_path / "c") as store:
+        store.put(rows(0, 3))
+        store.remember("t", [(b"k", b"v")])
+        assert store.find([key(1), key(7)]) == {key(1)}
+        assert store.memo("t", b"k") == b"v"
+        assert len(store.notes) == 1 and f"remove `facts.sqlite{suffix}`" in store.notes[0]
+    assert (tmp_path / "other").read_bytes() == b"" and not (tmp_path / "made").exists()
+
+
+def test_a_link_to_the_folder_is_followed(tmp_path):
+    (tmp_path / "c").mkdir()
+    (tmp_path / "link").symlink_to("c")
+    with Store(tmp_path / "link") as store:
+        store.put(rows(0, 3))
+        assert store.notes == []
+    assert contents(tmp_path / "c") == {key(0), key(1), key(2)}
+
+
+def test_a_file_that_another_process_replaced(tmp_path):
+    with Store(tmp_path) as first, Store(tmp_path) as second:
+        first.put(rows(0, 3))
+        second.put(rows(3, 3))
+        second._start_anew(sqlite3.DatabaseError("of a page that only this one read"))
+        second._opened = False
+        second.put(rows(10, 3))
+        first.put(rows(20, 3))
+        assert first.find([key(1), key(21)]) == {key(1), key(21)}, "it keeps what it had open"
+        first._failed(sqlite3.DatabaseError("the same page"))
+        first.put(rows(30, 3))
+        assert first.find([key(1), key(11), key(31)]) == {key(11), key(31)}
+        assert first.notes == []
+    assert contents(tmp_path) == {key(n) for n in (10, 11, 12, 30, 31, 32)}
+    with contextlib.closing(sqlite3.connect(tmp_path / "facts.sqlite")) as db:
+        assert db.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def test_a_file_that_is_damaged_again_and_again_is_done_without(tmp_path):
+    with Store(tmp_path) as store:
+        for n in range(5):
+            store.put(rows(n, 1))
+            store._failed(sqlite3.DatabaseError("malformed"))
+        store.put(rows(9, 1))
+        assert store.find([key(9)]) == {key(9)}
+        assert len(store.notes) == 3
+
+
+@pytest.mark.parametrize("before", [b"", b"SQLite format 3\0" + b"\7" * 9000])
+def test_ten_processes_that_begin_on_a_damaged_file(tmp_path, before):
+    (tmp_path / "facts.sqlite").write_bytes(before)
+    processes = [writer(tmp_path, 100 * start, 30) for start in range(10)]
+    for process in processes:
+        process.stdin.write("\n")
+        process.stdin.flush()
+    notes = 0
+    for process in processes:
+        output, _ = process.communicate(timeout=60)
+        assert process.returncode == 0
+        assert output.endswith("[]\n") or "started anew" in output.splitlines()[-1]
+        notes += not output.endswith("[]\n")
+    assert notes <= 1, "one of them replaces it"
+    assert contents(tmp_path) == {key(100 * start + n) for start in range(10) for n in range(30)}
+    with contextlib.closing(sqlite3.connect(tmp_path / "facts.sqlite")) as db:
+        assert db.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def test_a_clock_that_goes_back(tmp_path, monkeypatch):
+    future = time.time() + 10_000 * 86_400
+    monkeypatch.setattr(store_module.time, "time", lambda: future)
+    with Store(tmp_path) as store:
+        store.put([(key(n), b"-" + os.urandom(1500)) for n in range(100)])
+    monkeypatch.undo()
+    with Store(tmp_path, limit=250_000) as store:
+        store.put([(key(n), b"-" + os.urandom(1500)) for n in range(1000, 1050)])
+    assert {key(n) for n in range(1000, 1050)} <= contents(tmp_path), "what was used today is not the oldest"
+
+
+def test_a_row_larger_than_its_limit_is_kept_for_this_run_only(tmp_path, monkeypatch):
+    monkeypatch.setattr(store_module, "limits", lambda: Limits(row=1000))
+    with Store(tmp_path) as store:
+        store.put([(key(1), b"-" + b"x" * 2000), (key(2), b"-x")])
+        assert {k for k, _ in store.get([key(1), key(2)])} == {key(1), key(2)}
+        assert store.notes == []
+    assert contents(tmp_path) == {key(2)}
+    with pytest.raises(ValueError, match="larger"):
+        unpack(b"z" + zlib.compress(b"\0" * 2000))

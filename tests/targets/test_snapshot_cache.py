@@ -23,10 +23,11 @@ def answers(snapshot):
 def test_it_is_unpacked_once(tmp_path):
     first = Snapshot(cache=tmp_path)
     assert answers(first)
-    (made,) = tmp_path.iterdir()
+    made, sum = sorted(tmp_path.iterdir())
+    assert sum.name == f"{made.name}.sum"
     stamp = made.stat().st_mtime_ns
     assert answers(Snapshot(cache=tmp_path))
-    assert [p.name for p in tmp_path.iterdir()] == [made.name]
+    assert sorted(tmp_path.iterdir()) == [made, sum]
     assert made.stat().st_mtime_ns == stamp
 
 
@@ -50,8 +51,82 @@ def test_a_broken_file_is_made_again(tmp_path, damage):
     assert answers(Snapshot(cache=tmp_path))
 
 
+def test_a_changed_byte_is_noticed_whatever_it_says(tmp_path):
+    """SQLite notices damage of its tables, and none of what they hold."""
+    snapshot = Snapshot(cache=tmp_path)
+    assert answers(snapshot)
+    path = snapshot.path()
+    whole = path.read_bytes()
+    changed = whole.replace(b"16.0.8", b"16.0.9")
+    assert changed != whole
+    for _ in range(2):
+        path.write_bytes(changed)
+        assert answers(Snapshot(cache=tmp_path))
+        assert path.read_bytes() == whole
+
+
+def test_times_that_changed_cost_a_look_and_nothing_else(tmp_path):
+    snapshot = Snapshot(cache=tmp_path)
+    assert answers(snapshot)
+    path = snapshot.path()
+    inode = path.stat().st_ino
+    os.utime(path, (1_000_000_000, 1_000_000_000))
+    assert answers(Snapshot(cache=tmp_path))
+    assert path.stat().st_ino == inode
+    assert str(path.stat().st_mtime_ns) in Path(f"{path}.sum").read_text()
+
+
+SUMS = {
+    "nothing": Path.unlink,
+    "empty": lambda path: path.write_bytes(b""),
+    "bytes": lambda path: path.write_bytes(bytes(range(256))),
+    "another file's": lambda path: path.write_text("0" * 32 + path.read_text()[32:]),
+    "much": lambda path: path.write_bytes(b"0" * 10_000_000),
+    "a named pipe": lambda path: (path.unlink(), os.mkfifo(path)),
+    "a folder": lambda path: (path.unlink(), path.mkdir()),
+    "a link": lambda path: (path.unlink(), path.symlink_to("/dev/zero")),
+}
+
+
+@pytest.mark.parametrize("damage", SUMS.values(), ids=SUMS)
+def test_whatever_lies_where_the_sum_is_kept(tmp_path, damage):
+    snapshot = Snapshot(cache=tmp_path)
+    assert answers(snapshot)
+    damage(Path(f"{snapshot.path()}.sum"))
+    assert answers(Snapshot(cache=tmp_path))
+    assert answers(Snapshot(cache=tmp_path))
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, lambda path: path.symlink_to("/dev/zero"), os.mkdir])
+def test_what_is_no_file_in_place_of_the_data(tmp_path, make):
+    make(Snapshot(cache=tmp_path).path())
+    assert answers(Snapshot(cache=tmp_path))
+
+
+def test_a_file_that_breaks_while_it_is_read(tmp_path):
+    snapshot = Snapshot(cache=tmp_path)
+    assert answers(snapshot)
+    path = snapshot.path()
+    with open(path, "r+b") as file:
+        file.seek(4096)
+        file.write(os.urandom(path.stat().st_size - 4096))
+    snapshot.rows("PRAGMA shrink_memory")
+    assert {answers(snapshot), len(snapshot.rows("SELECT * FROM release")) > 1000} == {True}
+
+
+def test_a_bomb_in_place_of_an_update(tmp_path, monkeypatch):
+    import zstandard
+
+    monkeypatch.setattr(unpacked, "_UNPACKED_BYTES", 1 << 20)
+    bomb = zstandard.ZstdCompressor(level=19).compress(bytes(2 << 20))
+    (tmp_path / "x.zst").write_bytes(bomb)
+    with pytest.raises(SnapshotError, match="claims to hold too much"):
+        unpacked.decompress(tmp_path / "x.zst", "", "x.json")
+
+
 def test_files_of_other_data_and_of_killed_runs_are_removed(tmp_path):
-    (tmp_path / "distros-1-old-old.sqlite").write_bytes(b"")
+    for name in ("distros-1-old-old.sqlite", "distros-1-old-old.sqlite.sum"):
+        (tmp_path / name).write_bytes(b"")
     (tmp_path / "somebody-elses.sqlite").write_bytes(b"")
     for name, age in ((".distros-killed.part", 7200), (".distros-at-work.part", 10)):
         (tmp_path / name).write_bytes(b"")
@@ -59,7 +134,7 @@ def test_files_of_other_data_and_of_killed_runs_are_removed(tmp_path):
     assert answers(Snapshot(cache=tmp_path))
     names = {path.name for path in tmp_path.iterdir()}
     assert {"somebody-elses.sqlite", ".distros-at-work.part"} < names
-    assert not names & {"distros-1-old-old.sqlite", ".distros-killed.part"}
+    assert not names & {"distros-1-old-old.sqlite", "distros-1-old-old.sqlite.sum", ".distros-killed.part"}
 
 
 def test_without_a_writable_folder_it_lives_in_memory(tmp_path):
@@ -102,7 +177,7 @@ def test_two_runs_at_once_both_answer(tmp_path):
     said = {run.communicate()[0].strip() for run in runs}
     assert all(run.returncode == 0 for run in runs)
     assert said == {DistroTarget("jazzy").version("rclcpp")}
-    assert [path.suffix for path in tmp_path.iterdir()] == [".sqlite"]
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".sqlite", ".sum"]
 
 
 def test_what_an_update_made_is_used_while_it_is_newer_and_whole(tmp_path, monkeypatch):
@@ -121,7 +196,11 @@ def test_what_an_update_made_is_used_while_it_is_newer_and_whole(tmp_path, monke
     assert answers(Snapshot(updated))
     write("2001-01-01")
     assert snapshots._newest_folder() == DATA
-    (updated / "snapshot.json").write_text("{")
+    for text in ("{", "[" * 100_000, json.dumps({**info, "date": "tomorrow"}), json.dumps({**info, "sha256": "../x"})):
+        (updated / "snapshot.json").write_text(text)
+        assert snapshots._newest_folder() == DATA
+    (updated / "snapshot.json").unlink()
+    os.mkfifo(updated / "snapshot.json")
     assert snapshots._newest_folder() == DATA
 
 

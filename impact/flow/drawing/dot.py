@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ....edges.console import visible
 from ...model.flow.graph import Graph
-from ...report.report import safe
 from ..select import Selection
 from .edges import Edge, edges, names_of
 
@@ -21,8 +21,8 @@ def render(selection: Selection, base: Graph | None) -> str:
         lines.append(f"  {quoted('n ' + node)} [shape=ellipse, label={_label(names[node])}];")
     for kind, name in sorted({(edge.kind, edge.name) for edge in found}):
         types = sorted({t for edge in found if (edge.kind, edge.name) == (kind, name) for t in edge.types})
-        label = "\n".join([name, *types])
-        lines.append(f"  {quoted(f'{kind} {name}')} [shape={_SHAPES[kind]}, style=rounded, label={_label(label)}];")
+        label = _label(name, *types)
+        lines.append(f"  {quoted(f'{kind} {name}')} [shape={_SHAPES[kind]}, style=rounded, label={label}];")
     lines.extend(_edge(edge) for edge in found)
     return "\n".join([*lines, "}"]) + "\n"
 
@@ -33,16 +33,16 @@ def _edge(edge: Edge) -> str:
     if edge.kind != "topic":
         style.append("style=dashed")
     if edge.mark:
-        style += [f'color="{COLOURS[edge.mark]}"', "penwidth=2", f"tooltip={quoted(edge.mark + ' ' + edge.why)}"]
+        style += [f'color="{COLOURS[edge.mark]}"', "penwidth=2", f"tooltip={_label(edge.mark + ' ' + edge.why)}"]
     tail = f" [{', '.join(style)}]" if style else ""
     return f"  {' -> '.join(ends if edge.outward else reversed(ends))}{tail};"
 
 
-def _label(text: str) -> str:
-    """A label: as a string, in which `&amp;` and the like would be one character."""
-    return quoted(text.replace("&", "&amp;"))
+def _label(*lines: str) -> str:
+    """A label: as a string, in which `\\n` ends a line, and `&amp;` and the like would be one character."""
+    return '"' + "\\n".join(quoted(line.replace("&", "&amp;"))[1:-1] for line in lines) + '"'
 
 
 def quoted(text: str) -> str:
-    """A quoted string of DOT: a backslash is itself, a line's end is `\\n`, what moves a cursor is a placeholder."""
-    return '"' + safe(text).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+    """A quoted string of DOT on one line: a backslash is itself, what a terminal or CI obeys is shown escaped."""
+    return '"' + visible(text).replace("\\", "\\\\").replace('"', '\\"') + '"'

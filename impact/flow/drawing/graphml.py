@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ....edges.console import visible, visible_in_page
 from ...model.flow.graph import Graph
 from ..select import Selection
 from .edges import edges, names_of
@@ -29,7 +30,8 @@ def render(selection: Selection, base: Graph | None) -> str:
         guards = " or ".join(text for text in map(guard_text, edge.publishes) if text)
         ends = (node, name) if edge.outward else (name, node)
         drawn.add_edge(*ends, role=edge.role, place=place, guards=guards, change=edge.mark)
-    return "\n".join(networkx.generate_graphml(_clean(drawn))) + "\n"
+    # What stands between the tags has no `#` of ours, so that its entity can stand for it anywhere.
+    return "\n".join(networkx.generate_graphml(_clean(drawn))).replace("##", "&#35;&#35;") + "\n"
 
 
 def _clean(drawn):
@@ -45,4 +47,5 @@ def _clean(drawn):
 
 
 def _printable(text: str) -> str:
-    return "".join(c if c.isprintable() or c in "\t\n" else "\ufffd" for c in text)
+    """Text of one line that XML can hold."""
+    return visible_in_page(text).replace("\n", visible("\n")).replace("\t", visible("\t"))

@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from ....corpus import __version__
-from ...findings import printable
+from ....edges.console import json_text
 from ...model.flow.graph import Coverage, Endpoint, Graph, Node, ParameterUse, Publish, Timer
 from ..select import Selection, endpoints_of
 from .edges import edges
@@ -53,7 +53,7 @@ def render(selection: Selection, base: Graph | None) -> str:
             for edge in edges(graph, base)
             if edge.mark
         ]  # fmt: skip
-    return printable(json.dumps(found, indent=1, ensure_ascii=False)) + "\n"
+    return json_text(found) + "\n"
 
 
 def schema() -> str:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ....edges.console import visible
 from ...model.flow.graph import Graph
-from ...report.report import safe
 from ..select import Selection
 from .dot import COLOURS
 from .edges import Edge, edges, names_of
@@ -58,4 +58,4 @@ def _kept(found: list[Edge], names: dict[str, str]) -> list[Edge]:
 
 def escaped(text: str) -> str:
     """A label's text: what Mermaid would read as its own is written as an entity."""
-    return "".join(c if c.isalnum() or c in " /_-.:~" else f"#{ord(c)};" for c in safe(text))
+    return "".join(c if c.isalnum() or c in " /_-.:~" else f"#{ord(c)};" for c in visible(text))

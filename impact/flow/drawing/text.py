@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from ....edges.console import counted
 from ...model.flow.graph import Coverage, Endpoint, Graph, GuardAt, Publish, Trigger, Unresolved
 from ...report.columns import UNBROKEN, Piece, laid_out
-from ...report.report import one_line
 from ...report.text import PLAIN, Style
 from ..select import Selection
 from .edges import Edge, conditions, edges, loops, names_of
@@ -47,9 +46,7 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
 
 
 def _line(pieces: Sequence[Piece], style: Style, indent: int, hang: int = _HANG) -> Iterator[str]:
-    return laid_out(
-        [piece._replace(text=one_line(piece.text), path=one_line(piece.path)) for piece in pieces], style, indent, hang
-    )
+    return laid_out(pieces, style, indent, hang)
 
 
 def _head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style) -> Iterator[str]:
@@ -66,10 +63,9 @@ def _head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style) -> Ite
 
 def _name(group: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
     types = sorted({kind for edge in group for kind in edge.types})
-    kind = "" if group[0].kind == "topic" else f" ({group[0].kind})"
-    yield from _line(
-        [Piece(group[0].name + kind, "bold"), Piece(" or ".join(types) if types else "type not known")], style, 0
-    )
+    # No name begins a line: CI systems read what is there.
+    name = Piece(f"{group[0].kind} {group[0].name}", "bold")
+    yield from _line([name, Piece(" or ".join(types) if types else "type not known")], style, 0)
     for same in _alike(group):
         yield from _edge(same, names, style)
 

@@ -1,0 +1,47 @@
+"""Limits are the user's: every name, unit and mistake of ROSIMPACT_LIMITS."""
+
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+from rosimpact.edges.limits import KB, MB, LimitError, Limits, of_environment, parse, size_text
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", Limits()),
+        ("cpp=32MB", Limits(cpp=32 * MB)),
+        (" cpp = 32 mb , seconds=60,", Limits(cpp=32 * MB, seconds=60)),
+        ("manifest=10k,index=1g", Limits(manifest=10 * KB, index=1024 * MB)),
+        ("nodes=17", Limits(nodes=17)),
+    ],
+)
+def test_limits_are_read(text, expected):
+    assert parse(text) == of_environment({"ROSIMPACT_LIMITS": text}) == expected
+
+
+@pytest.mark.parametrize("text", ["cpp", "cpp=", "cpp=-1", "cpp=0", "cpp=1TB", "cxx=1MB", "cpp=" + "9" * 5000, "cpp=²"])
+def test_a_wrong_limit_is_an_error_that_shows_how_to_write_one(text):
+    with pytest.raises(LimitError, match=r"ROSIMPACT_LIMITS: .* write for example cpp=32MB; known are manifest, cmake"):
+        parse(text)
+
+
+@pytest.mark.parametrize(
+    ("size", "text"), [(0, "0 bytes"), (900, "900 bytes"), (1536, "1.5 KB"), (8 * MB, "8 MB"), (3 << 30, "3 GB")]
+)
+def test_sizes_as_people_write_them(size, text):
+    assert size_text(size) == text
+
+
+def test_the_documentation_lists_every_limit_with_its_default():
+    page = (Path(__file__).parents[2] / "docs" / "security.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"(?m)^\| `(\w+)` \| .* \| ([^|]+) \|$", page))
+    counts, seconds = {"entries", "depth", "nodes"}, {"seconds"}
+    expected = {}
+    for field in fields(Limits):
+        value = field.default
+        unit = f"{value:,}" if field.name in counts else f"{value} s" if field.name in seconds else size_text(value)
+        expected[field.name] = unit
+    assert rows == expected
