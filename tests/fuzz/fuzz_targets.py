@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import fnmatch
 import io
+import json
 import posixpath
 import re
 import struct
@@ -36,7 +37,6 @@ from rosimpact.impact.model.build import extras_of, interpret
 from rosimpact.impact.model.cmake import regex
 from rosimpact.impact.model.conditions import Environment, holds
 from rosimpact.impact.report import github, markdown
-from rosimpact.impact.report.report import one_line, safe
 from rosimpact.impact.targets import capture, resolve, unpacked_deb, version
 from rosimpact.impact.targets.distro import TargetError
 from rosimpact.impact.tree import Entry
@@ -434,10 +434,10 @@ def printed(data: bytes) -> None:
     require(not _CONTROL.search(_COLOUR.sub("", out)), "write() lets a control character through")
     require(not any(line.lstrip().startswith("::") for line in out.split("\n")), "write() lets a command through")
     require(not _COMMAND_ANYWHERE.search(out), "write() lets a command through")
-    for shown in (safe(text), one_line(text), tree.shown(text)):
-        shown.encode()
-    for told in (github._data(text), github._property(text)):
-        require("\n" not in told and "\r" not in told, "a workflow command of two lines")
+    told = console.json_text(text)
+    require(json.loads(told) == text and not console.is_obeyed(told), "JSON of a text says something else")
+    for parameter in (github._data(text), github._property(text)):
+        require("\n" not in parameter and "\r" not in parameter, "a workflow command of two lines")
 
 
 @cache
@@ -450,17 +450,14 @@ def _markdown() -> Any:
 def marked(data: bytes) -> None:
     """A text of a workspace in a table and a paragraph of Markdown."""
     text = data.decode("utf-8", "replace")
-    for shown in (markdown.escaped(text), markdown.code(one_line(text))):
+    for shown in (markdown.escaped(text), markdown.code(text)):
         require("\n" not in shown and not _CONTROL.search(shown), "Markdown of two lines")
         for token in _markdown().parse(f"x {shown} y"):
             for child in token.children or ():
-                require(
-                    child.type in ("text", "code_inline") or child.content == "<!-- -->",
-                    f"Markdown makes {child.type} of a text",
-                )
-    table = _markdown().parse(f"| a | b |\n|---|---|\n| {markdown.escaped(text)} | end |\n")
-    cells = [token.content for token in table if token.type == "inline"]
-    require(len(cells) == 4 and cells[3] == "end", "a text breaks a table")
+                require(child.type in ("text", "code_inline"), f"Markdown makes {child.type} of a text")
+        table = _markdown().parse(f"| a | b |\n|---|---|\n| {markdown.cell(shown)} | end |\n")
+        cells = [token.content for token in table if token.type == "inline"]
+        require(len(cells) == 4 and cells[3] == "end", "a text breaks a table")
 
 
 # The corpus
