@@ -198,6 +198,7 @@ def about_others(report: Report) -> list[dict]:
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory) -> Path:
+    """A folder for the cache and, in a folder of its own to which links may lead, the workspace."""
     return tmp_path_factory.mktemp("unchanged")
 
 
@@ -205,7 +206,7 @@ def place(tmp_path_factory) -> Path:
 def expected(place) -> list[dict]:
     """The findings without any hostile file."""
     for name, content in HEALTHY.items():
-        path = place / "ws" / name
+        path = place / "around" / "ws" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(content)
     report = checked(place)
@@ -216,7 +217,7 @@ def expected(place) -> list[dict]:
 
 
 def checked(place: Path) -> Report:
-    return check(place / "ws", Options(targets=("jazzy",), cache=place / "cache", jobs=1))
+    return check(place / "around" / "ws", Options(targets=("jazzy",), cache=place / "cache", jobs=1))
 
 
 def all_formats(report: Report) -> Iterator[str]:
@@ -228,7 +229,7 @@ def all_formats(report: Report) -> Iterator[str]:
 @given(st.lists(hostile(), min_size=1, max_size=8))
 @example([Hostile(b"src/hostile/package.xml", MANIFEST_OF_HOSTILE)])
 def test_unchanged(place, expected, files):
-    root = place / "ws"
+    root = place / "around" / "ws"
     added = [Hostile(b"src/hostile/package.xml", MANIFEST_OF_HOSTILE), *files]
     for one in added:
         add(os.fsencode(root), one)
