@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from ..edges.documents import DocumentError, load_yaml_texts
 from .report import KINDS, CorpusError, Label
 
 LIKELY, SURE, UNMAPPED = "likely", "sure", "unmapped"
@@ -243,12 +242,19 @@ def _pull_of(record: Mapping[str, Any]) -> str:
 
 def _parsed(path: Path) -> Mapping[str, Any]:
     """A record with every scalar as text: `1e09040` is a commit and no number. Raises ValueError."""
+    import yaml
+
     try:
-        record = load_yaml_texts(path.read_bytes())
+        # Not libyaml's loader, which ends the process on deep nesting.
+        record = yaml.load(path.read_bytes(), yaml.BaseLoader)
     except OSError as error:
         raise ValueError(f"cannot be read: {error.strerror}") from None
-    except DocumentError as error:
-        raise ValueError(f"is no YAML{f' in line {error.line}' if error.line else ''}: {error}") from None
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = f" in line {mark.line + 1}" if mark is not None else ""
+        raise ValueError(f"is no YAML{line}: {getattr(error, 'problem', None) or 'unreadable'}") from None
+    except RecursionError:
+        raise ValueError("is nested too deeply") from None
     if not isinstance(record, Mapping) or "bug" not in record:
         raise ValueError("is no record of ROBUST: it has no `bug`")
     return record

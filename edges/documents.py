@@ -27,20 +27,10 @@ def load_yaml(data: bytes | str) -> Any:
 
     Mappings whose keys are no plain values, and values that Python cannot build (a date in month 13), are errors.
     """
-    return _loaded(data, "SafeLoader")
-
-
-def load_yaml_texts(data: bytes | str) -> Any:
-    """The same with every plain value as the text it is written with: `no`, `2013` and `1e9` stay so. Raises
-    DocumentError."""
-    return _loaded(data, "BaseLoader")
-
-
-def _loaded(data: bytes | str, loader: str) -> Any:
     import yaml
 
     try:
-        return _construct(data, yaml, getattr(yaml, f"C{loader}", getattr(yaml, loader)))
+        return _construct(data, yaml)
     except DocumentError:
         raise
     except yaml.MarkedYAMLError as error:
@@ -52,7 +42,8 @@ def _loaded(data: bytes | str, loader: str) -> Any:
         raise DocumentError("nested too deeply") from None
 
 
-def _construct(data: bytes | str, yaml: Any, base: Any) -> Any:
+def _construct(data: bytes | str, yaml: Any) -> Any:
+    base = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     budget = limits()
     _check_depth(data, yaml, base, budget.depth)
     loader = base(data)

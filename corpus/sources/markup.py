@@ -22,12 +22,8 @@ def soup(html: str):
 
 
 def markdown(html: str | Tag) -> str:
-    """The Markdown of a post's HTML, without blank lines at its ends; of what is nested too deeply, its text."""
-    element = soup(html) if isinstance(html, str) else html
-    try:
-        return _tidy(_blocks(element))
-    except RecursionError:
-        return _tidy(element.get_text())
+    """The Markdown of a post's HTML, without blank lines at its ends."""
+    return _tidy(_blocks(soup(html) if isinstance(html, str) else html))
 
 
 def _tidy(text: str) -> str:

@@ -19,7 +19,6 @@ from urllib.parse import urlsplit
 
 import msgspec
 
-from ...edges.documents import DocumentError, load_yaml_texts
 from ..polite import Client, Refused, service_address
 from ..report import CorpusError, Report
 from ..store import Asked, Gathered, Page, digest_of
@@ -281,11 +280,15 @@ def _asked_for(id: str, data: bytes, name: str) -> Asked:
 def parse_archived(data: bytes, name: str) -> tuple[Gathered, str] | None:
     """(the question, the id of its migrated copy or nothing) of a file of the archive; None for one of Gazebo Answers.
     Raises CorpusError, naming the file, when it is no question."""
+    import yaml
+
+    loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)  # everything is text: titles like `2013` or `no` stay so
     found = _HEAD.match(data.decode("utf-8-sig", "replace"))
     try:
-        head = load_yaml_texts(found[1]) if found else None
-    except DocumentError as error:
-        at = f", line {error.line + 1}" if error.line else ""
+        head = yaml.load(found[1], Loader=loader) if found else None
+    except yaml.YAMLError as error:
+        place = getattr(error, "problem_mark", None)
+        at = f", line {place.line + 2}" if place else ""
         raise CorpusError(f"{name}{at}: is no YAML; mend it, or take the file out") from None
     if not found or not isinstance(head, dict):
         raise CorpusError(f"{name}: has no YAML between lines of `---` at its top; take the file out")
