@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..edges.console import counted, run_command, say
-from .report import LABELS_FILE, SOURCES, CorpusError, Report
+from .report import LABELS_FILE, SOURCES, CorpusError, Report, repository_of
 
 FORMATS = ("text", "json")
 
@@ -37,7 +37,9 @@ def _label(
         from .label_screen import need_terminal
 
         need_terminal()
-    texts = chosen(_reports(reports), sources, repositories)
+    there = _reports(reports)
+    _need_repositories(repositories, there)
+    texts = chosen(there, sources, repositories)
     if listed:
         found = current_labels(file)
         shown = offered(texts, found, read_journal(journal_of(file)), mode, name)
@@ -75,6 +77,17 @@ def _nothing(mode: str, texts: list[Report]) -> str:
         return "no report is left by --source and --repository; leave one of them out"
     kind = {"first": "unlabelled", "second": "read by one annotator other than you", "disagreements": "disputed"}[mode]
     return f"none of {counted(len(texts), 'report')} is {kind}"
+
+
+def _need_repositories(names: Sequence[str], reports: list[Report]) -> None:
+    """Raises CorpusError for a repository of which there is no report: its name is misspelt, or it is not gathered."""
+    there = {repository_of(report.id) for report in reports} if names else set()
+    for name in names:
+        if name.lower() not in there:
+            raise CorpusError(
+                f"--repository {name}: no report is of it; check the name, or gather it with "
+                f"`rosimpact corpus gather github:{name}`"
+            )
 
 
 def _own_labels() -> Path:

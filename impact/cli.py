@@ -541,4 +541,6 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    from ..edges.start import main as start
+
+    start()

@@ -6,8 +6,10 @@ import sys
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..edges.console import UserError
 
-class ConfigError(ValueError):
+
+class ConfigError(UserError, ValueError):
     """rosimpact.toml cannot be used; the message names the file and what to change."""
 
 

@@ -10,6 +10,7 @@ from functools import lru_cache
 from hashlib import blake2b
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..edges.console import UserError
 from .facts.place import Allow
 from .rules.rule import SEVERITIES, Cure, Finding, Hit, Rule
 
@@ -37,7 +38,7 @@ class Suppression(NamedTuple):
     unused: list[tuple[str, int, str]]
 
 
-class SettingsError(ValueError):
+class SettingsError(UserError, ValueError):
     """A setting that cannot be obeyed; the text names it and what to write instead."""
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from ..edges.console import counted
+from ..edges.console import UserError, counted
 from . import processes
 from .facts import elf
 from .facts.elf import Elf
@@ -46,7 +46,7 @@ _PREFIX_OF_COLCON = re.compile(r'^COLCON_CURRENT_PREFIX="([^"$]+)"', re.M)
 _PREFIXES_OF_CATKIN = re.compile(r"CMAKE_PREFIX_PATH = r?'([^']*)'")
 
 
-class InstallError(Exception):
+class InstallError(UserError):
     """There is no install space to read; the text says what to do."""
 
 
@@ -270,7 +270,7 @@ def shelves(installed: Installed, targets: Sequence[Chosen], config: Config) -> 
     from .targets.sonames import default_sonames
 
     base = config.path.parent if config.path else Path()
-    underlays = [str(base / Path(underlay).expanduser()) for underlay in config.underlays]
+    underlays = [str(base / os.path.expanduser(underlay)) for underlay in config.underlays]
     sourced = [str(prefix) for prefix in prefixes(Path("/"), dict(os.environ))]
     own, near = _library_folders(underlays), _library_folders([*installed.underlays, *sourced])
     platform = normal_platform(platform_of(Path("/")))

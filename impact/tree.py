@@ -26,6 +26,7 @@ from typing import Any, Protocol
 
 import msgspec
 
+from ..edges.console import UserError
 from ..edges.console import visible as shown
 
 IGNORE_MARKERS = frozenset(
@@ -56,7 +57,7 @@ class PathProblem(msgspec.Struct, frozen=True, array_like=True, gc=False, order=
     message: str
 
 
-class TreeError(Exception):
+class TreeError(UserError):
     """There is no tree to read: no such folder, no such repository, no such revision. The text says what to do."""
 
 

@@ -13,6 +13,7 @@ from collections.abc import Generator, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ...edges.console import UserError
 from ..cache import code_digest
 from ..tree import TreeError
 from .build_history import git_directory
@@ -26,7 +27,7 @@ _REACH = 5
 _LOST = 30
 
 
-class ClusterError(Exception):
+class ClusterError(UserError):
     """A cluster that cannot do the work; the message says why and what to do."""
 
 

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from ...edges.console import UserError
 from . import snapshot as snapshots
 from .platform import library_name, normal_platform, python_minor
 from .rosdep import decode_rule, resolve_rule, split_platform
@@ -23,7 +24,7 @@ from .snapshot import KINDS, Snapshot
 from .target import Change, ReleasedDependency, Resolution, Target
 
 
-class TargetError(Exception):
+class TargetError(UserError):
     """A target that cannot be made; the message says what is known instead."""
 
 

@@ -10,12 +10,14 @@ import tarfile
 from pathlib import Path
 from typing import NamedTuple
 
+from ...edges.console import UserError
+
 _MAGIC = b"!<arch>\n"
 _LARGEST = 64 * 1024 * 1024
 """Bytes above which a file of a package is left out: nobody writes such a header."""
 
 
-class DebError(Exception):
+class DebError(UserError):
     """A file that is no Debian package, or is broken; the message names it and says what to do."""
 
 
