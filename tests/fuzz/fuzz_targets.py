@@ -39,7 +39,7 @@ from rosimpact.impact.model.conditions import Environment, holds
 from rosimpact.impact.report import github, markdown
 from rosimpact.impact.targets import capture, resolve, unpacked_deb, version
 from rosimpact.impact.targets.distro import TargetError
-from rosimpact.impact.tree import Entry
+from rosimpact.impact.tree import Entry, ignore, working
 
 for _module, _, _ in kinds.EXTRACTORS.values():
     if _module:  # they are imported when they are first needed, which no check should pay for
@@ -304,7 +304,7 @@ class _Files:
     def entries(self) -> list[Entry]:
         return [Entry(path, len(data)) for path, data in sorted(self.files.items())]
 
-    def read(self, path: str) -> bytes:
+    def read(self, path: str, limit: int = 0) -> bytes:
         if path not in self.files:
             raise FileNotFoundError(2, "No such file or directory", path)
         return self.files[path]
@@ -406,9 +406,11 @@ class _Memo:
 def memories(data: bytes) -> None:
     """What a run remembers for the next one: findings, the tree's stamps, git's index."""
     memo.recall_flow(_Memo(data), b"key")  # pyright: ignore[reportArgumentType]
-    for path, (stamp, content) in tree._decode_memory(data).items():
+    for path, (stamp, content) in working._decode_memory(data).items():
         require(isinstance(path, str) and len(stamp) == 4 and len(content) == 40, "a memory of another shape")
-    tree._Index(str(_folder()), data).tracks_below("build")
+    # Version 4 is read path by path, the others are searched first.
+    for index in (data, data[:4] + b"\0\0\0\4" + data[8:]):
+        ignore.Index(index).tracks_below("build")
 
 
 # What is printed
@@ -600,7 +602,7 @@ def _memory_seeds() -> dict[str, bytes]:
         None,
     )
     return {
-        "stamps": tree._encode_memory(stamps),
+        "stamps": working._encode_memory(stamps),
         "hits": msgspec.msgpack.encode(((row,), {"packages": ("a",)})),
         "index": b"DIRC\0\0\0\2\0\0\0\1" + bytes(62) + b"build/a\0\0\0" + bytes(20),
     }
