@@ -16,6 +16,8 @@ _ALIASES = "".join(f"a{n + 1}: &a{n + 1} {{x: *a{n}, y: *a{n}}}\n" for n in rang
 FOUND: list[tuple[str, str, bytes]] = [
     ("facts_parameters_yaml", "libyaml's composer ended the process", b"[" * 200_000),
     ("facts_parameters_yaml", "aliases doubled the work in each line", b"a0: &a0 {k: {type: int}}\n" + _ALIASES),
+    ("facts_pyproject", "ValueError for an integer of 4,400 digits", b"[project]\nx = " + b"9" * 4_400),
+    ("facts_pyproject", "dotted keys take quadratic time", b"a" + b".a" * 100_000 + b" = 1"),
     ("archived", "libyaml's composer ended the process", b"---\n" + b"[" * 200_000 + b"\n---\nx"),
     ("pages", "RecursionError", b"<b>" * 5_000),
     ("memories", "UnicodeDecodeError", b"\x92\x91\x9b\xa1\xa5\xa0\0\0\xa0\xa0\xa0\xa0\xa0\x90\xc0\x80"),
