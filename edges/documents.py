@@ -97,7 +97,20 @@ def _count(node: Any, yaml: Any, budget: int, depth: int) -> None:
     size(node, 0)
 
 
-_DOTTED = re.compile(r"(?m)^[ \t]*\[{0,2}[^=\n\"'#\[\]]*")
+# Parts of keys, and what stands between them; anything else ends a key.
+_PART = re.compile(r"(?P<part>[\w-]+|\"(?:[^\"\\\n]|\\.)*\"?|'[^'\n]*'?)|(?P<dot>[ \t]*\.[ \t]*)|[ \t]+|.")
+
+
+def _parts(line: str, most: int) -> bool:
+    """Whether a line has a key of more parts than that."""
+    count, last = 0, ""
+    for match in _PART.finditer(line):
+        kind = match.lastgroup or ""
+        count = count + 1 if kind == "dot" and last == "part" else count if kind == "part" and last == "dot" else 0
+        if count >= most:
+            return True
+        last = kind
+    return False
 
 
 def load_toml(text: str) -> dict[str, Any]:
@@ -110,9 +123,9 @@ def load_toml(text: str) -> dict[str, Any]:
         import tomli as tomllib  # pyright: ignore[reportMissingImports]
 
     depth = limits().depth
-    for match in _DOTTED.finditer(text):
-        if match[0].count(".") > depth:
-            raise DocumentError(f"a key of more than {depth} parts", text.count("\n", 0, match.start()) + 1)
+    for number, line in enumerate(text.split("\n"), 1):
+        if line.count(".") >= depth and _parts(line, depth):
+            raise DocumentError(f"a key of more than {depth} parts", number)
     try:
         return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, ValueError) as error:

@@ -25,9 +25,7 @@ TOKEN = re.compile(
     re.DOTALL,
 )
 # A name is looked for once, from where it begins on.
-ATTRIBUTE = re.compile(
-    r"(?<![\w:.-])(?:(?![A-Za-z_])[\w:.-])*([A-Za-z_][\w:.-]*)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')"
-)
+ATTRIBUTE = re.compile(r"(?<![\w:.-])(?:(?![A-Za-z_])[\w:.-])*([A-Za-z_][\w:.-]*)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 DECLARED_ENCODING = re.compile(rb"^\s*<\?xml[^>]{0,200}?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']")
 ENTITY = re.compile(r"&(#[0-9]{1,7}|#[xX][0-9a-fA-F]{1,6}|lt|gt|amp|quot|apos);")
 PREDEFINED = {"lt": "<", "gt": ">", "amp": "&", "quot": '"', "apos": "'"}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ast
 import re
-import sys
 import warnings
 from collections.abc import Iterable
 from typing import Any
 
 import msgspec
 
+from ...edges.documents import DocumentError, load_toml
 from .markup import decode
 from .place import Problem
 from .python import PythonFile
@@ -396,19 +396,12 @@ def _setup_cfg(data: bytes) -> SetupFile:
 
 
 def _pyproject(data: bytes) -> SetupFile:
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib  # pyright: ignore[reportMissingImports]
-
     text = decode(data)
     try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        said = str(error)
-        at = re.search(r"at line (\d+)", said)
-        line = int(at.group(1)) if at is not None else text.count("\n") + 1
-        return SetupFile(problems=(Problem(min(line, text.count("\n") + 1), f"not readable as TOML: {said}"),))
+        document = load_toml(text)
+    except DocumentError as error:
+        line = error.line or text.count("\n") + 1
+        return SetupFile(problems=(Problem(min(line, text.count("\n") + 1), f"not readable as TOML: {error}"),))
     lines = _Lines(text)
     project = _table(document, "project")
     setuptools = _table(document, "tool", "setuptools")
