@@ -22,7 +22,8 @@ _OTHER_SIDE = {
     "action server": "action client", "action client": "action server",
 }  # fmt: skip
 # Pairs that are looked at under one name: publishers times subscribers, which hostile code has by the ten thousand.
-_MOST_PAIRS = 100_000
+_MOST_PAIRS = 10_000
+_MOST_PAIRS_IN_ALL = 100_000
 _SIDES = (("publisher", "subscriber"), ("server", "client"), ("action server", "action client"))
 _WHAT = {"publisher": "topic", "subscriber": "topic", "server": "service", "client": "service"}
 
@@ -132,6 +133,7 @@ class Flow:
         """Every two sure endpoints that meet under a name, each two places of source once; of a name that very many
         meet under, the first."""
         seen = set()
+        in_all = _MOST_PAIRS_IN_ALL
         for giving, taking in _SIDES:
             givers: dict[str, list[Sure]] = {}
             for one in self.sure(giving):
@@ -139,8 +141,9 @@ class Flow:
             left = dict.fromkeys(givers, _MOST_PAIRS)
             for taker in self.sure(taking):
                 topic = taker.endpoint.topic
-                for giver in givers.get(topic, ())[: left.get(topic, 0)]:
+                for giver in givers.get(topic, ())[: min(left.get(topic, 0), in_all)]:
                     left[topic] -= 1
+                    in_all -= 1
                     key = (*_place(giver.endpoint), *_place(taker.endpoint))
                     if key not in seen:
                         seen.add(key)
