@@ -80,7 +80,8 @@ PACKAGE = Offer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
         ),
         (
             [answer("package", PACKAGE, used=("a/b.cpp:1",), undeclared=("a",), changes=("c",))],
-            "on jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\n  c\nused at 1 place:\n  a/b.cpp:1\n"
+            "on jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\n  c\n"
+            "used at 1 place:\n  a/b.cpp:1\n"
             "not safe: used and not declared in a",
         ),
         (
