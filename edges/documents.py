@@ -32,8 +32,20 @@ def load_yaml(data: bytes | str) -> Any:
     """
     import yaml
 
+    return _loaded(data, yaml, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+
+
+def load_yaml_as_text(data: bytes | str) -> Any:
+    """The same with every value as text, as it is written: `1e09040` is a commit and no number, `no` a title. Raises
+    DocumentError."""
+    import yaml
+
+    return _loaded(data, yaml, getattr(yaml, "CBaseLoader", yaml.BaseLoader))
+
+
+def _loaded(data: bytes | str, yaml: Any, base: Any) -> Any:
     try:
-        return _construct(data, yaml)
+        return _construct(data, yaml, base)
     except DocumentError:
         raise
     except yaml.MarkedYAMLError as error:
@@ -45,8 +57,7 @@ def load_yaml(data: bytes | str) -> Any:
         raise DocumentError("nested too deeply") from None
 
 
-def _construct(data: bytes | str, yaml: Any) -> Any:
-    base = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+def _construct(data: bytes | str, yaml: Any, base: Any) -> Any:
     budget = limits()
     _check_depth(data, yaml, base, budget.depth)
     loader = base(data)

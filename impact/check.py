@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..corpus import __version__
-from ..edges.console import unforeseen
+from ..edges.console import UserError, unforeseen
 from ..edges.limits import limits
 from . import findings as after
 from . import memo
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from .targets.shelf import Shelf
 
 
-class CheckError(Exception):
+class CheckError(UserError):
     """The check cannot be run; the text names what is wrong and what to do."""
 
 
@@ -68,11 +68,13 @@ DEFAULTS = Options()
 
 
 class Checked(NamedTuple):
-    """What a check gives: the report, and what it was made with."""
+    """What a check gives: the report, and what it was made with. originals: what the files held that fixes change, when
+    the fixes were made."""
 
     report: Report
     config: Config
     tree: Tree
+    originals: Mapping[str, bytes]
 
 
 Progress = Callable[[int, int], None]
@@ -147,10 +149,11 @@ def judged(
         found, parted = with_evidence(found, views)
         if parted and "unguarded-split" in chosen:
             found = after.in_order([*found, *_splits(parted, opened, chosen, settings, sources)])
+    originals: dict[str, bytes] = {}
     if any(finding.fix for finding in found):
         from . import fix
 
-        found = fix.made(found, reader(tree))
+        found = fix.made(found, reader(tree), originals)
     known: Sequence[Finding] = ()
     if options.baseline:
         found, known = after.without_known(found, after.known_from(options.baseline))
@@ -177,7 +180,7 @@ def judged(
         failure="; ".join(failures),
         impact=reached,
     )
-    return Checked(report, config, tree)
+    return Checked(report, config, tree, originals)
 
 
 def _splits(

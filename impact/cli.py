@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import io
 import sys
+import warnings
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
@@ -525,6 +526,9 @@ def _print_usage_error(error: Any) -> None:
 def main() -> None:
     """Entry point."""
     hold_streams()
+    if not sys.warnoptions:
+        # Those of Python quote what it parses, which is the workspace's.
+        warnings.simplefilter("ignore")
     for argument in sys.argv[1:]:
         if "\0" in argument:
             # No shell can pass one; who calls from Python can, and the system's calls would end in a ValueError.
@@ -552,4 +556,6 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    from ..edges.start import main as start
+
+    start()

@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..edges import files
+from ..edges.console import UserError
 from ..edges.documents import DocumentError, load_toml
 from ..edges.limits import limits
 
 
-class ConfigError(ValueError):
+class ConfigError(UserError, ValueError):
     """rosimpact.toml cannot be used; the message names the file and what to change."""
 
 

@@ -189,7 +189,11 @@ def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] 
 
 def output_of(command: list[str]) -> str:
     try:
-        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False).stdout
+        found = subprocess.run(
+            command, stdin=subprocess.DEVNULL, capture_output=True, encoding="utf-8", errors="replace", timeout=60,
+            check=False,
+        )  # fmt: skip
+        return found.stdout
     except (OSError, subprocess.TimeoutExpired):
         return ""
 
@@ -227,7 +231,7 @@ def name_and_version(manifest: Path) -> tuple[str, str]:
 
 def platform_of(root: Path) -> str:
     try:
-        text = (root / "etc" / "os-release").read_text(encoding="utf-8")
+        text = files.read_text(root / "etc" / "os-release", limits().settings, "replace")
     except OSError:
         return ""
     fields = dict(re.findall(r'^(\w+)="?([^"\n]*)"?$', text, re.M))

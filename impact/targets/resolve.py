@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import os
 import posixpath
 import re
@@ -120,14 +121,14 @@ def _configured(
 def _captured(path: Path, text: str) -> DistroTarget:
     from .capture import load_capture
 
-    if not path.is_file():
+    if not os.path.exists(path):
         raise TargetError(f"{text}: there is no such file; write one with `rosimpact env capture -o {text}`")
     return load_capture(path)
 
 
 # dpkg listings
 
-_STAMP = re.compile(r"-\d+([a-z]+)\.(\d{4})(\d\d)(\d\d)(?:\.\d+)?$")
+_STAMP = re.compile(r"-\d+([a-z]+)\.(2\d{3})(\d\d)(\d\d)(?:\.\d+)?$", re.ASCII)
 
 
 class DpkgRow(NamedTuple):
@@ -164,11 +165,19 @@ def _dpkg(path: Path, text: str, data: Snapshot | None) -> DistroTarget:
     if not distro:
         raise TargetError(f"{text}: lists no package of a ROS distro (ros-<distro>-...)")
     stamps = [match for row in rows if row.name.startswith(f"ros-{distro}-") and (match := _STAMP.search(row.version))]
-    date = max(("-".join(match.groups()[1:]) for match in stamps), default=None)
+    date = max(filter(_is_day, ("-".join(match.groups()[1:]) for match in stamps)), default=None)
     codename = Counter(match[1] for match in stamps).most_common(1)
     platform = normal_platform(codename[0][0]) if codename else None
     name = posixpath.basename(text).removesuffix(_DPKG)
     return DistroTarget(distro, date, platform, {**libraries, **packages}, name, data)
+
+
+def _is_day(text: str) -> bool:
+    try:
+        datetime.date.fromisoformat(text)
+    except ValueError:
+        return False
+    return True
 
 
 # Docker images

@@ -11,6 +11,7 @@ from typing import Protocol
 
 import msgspec
 
+from ...edges.console import UserError
 from ...edges.console import visible as shown
 from ...edges.limits import limits
 
@@ -43,7 +44,7 @@ class PathProblem(msgspec.Struct, frozen=True, array_like=True, gc=False, order=
     message: str
 
 
-class TreeError(Exception):
+class TreeError(UserError):
     """There is no tree to read: no such folder, no such repository, no such revision. The text says what to do."""
 
 
