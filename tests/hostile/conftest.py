@@ -1,0 +1,35 @@
+"""Which attacks are made: a sample with a fixed seed, all of them with --attacks=all or ROSIMPACT_ATTACKS=all."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import pytest
+
+from .harness import Range
+from .table import attacks, sample
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--attacks", choices=("sample", "all"), default=None, help="a sample of the attacks, or all of them"
+    )
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """One test for each attack of the module's GROUPS."""
+    if "attack" not in metafunc.fixturenames:
+        return
+    groups = metafunc.module.GROUPS
+    chosen = metafunc.config.getoption("--attacks") or os.environ.get("ROSIMPACT_ATTACKS", "sample")
+    rows = [row for row in (attacks() if chosen == "all" else sample()) if row.group in groups]
+    metafunc.parametrize(
+        "attack", rows, ids=[f"{row.group}: {row.name}".encode("ascii", "backslashreplace").decode() for row in rows]
+    )
+
+
+@pytest.fixture(scope="session")
+def shooting_range(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Range]:
+    with Range(root=tmp_path_factory.mktemp("hostile")) as place:
+        yield place

@@ -1,0 +1,11 @@
+"""Attacks by bombs: every row of their tables must hold."""
+
+from __future__ import annotations
+
+from .harness import Attack, Range
+
+GROUPS = ("bombs",)
+
+
+def test_attack(shooting_range: Range, attack: Attack) -> None:
+    assert shooting_range.attempt(attack).failures == []

@@ -1,0 +1,15 @@
+"""Attacks by links, pipes, files: every row of their tables must hold."""
+
+from __future__ import annotations
+
+from .harness import Attack, Range
+
+GROUPS = (
+    "links",
+    "pipes",
+    "files",
+)
+
+
+def test_attack(shooting_range: Range, attack: Attack) -> None:
+    assert shooting_range.attempt(attack).failures == []

@@ -1,0 +1,15 @@
+"""Attacks by git, cache, environment: every row of their tables must hold."""
+
+from __future__ import annotations
+
+from .harness import Attack, Range
+
+GROUPS = (
+    "git",
+    "cache",
+    "environment",
+)
+
+
+def test_attack(shooting_range: Range, attack: Attack) -> None:
+    assert shooting_range.attempt(attack).failures == []
