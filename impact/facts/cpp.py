@@ -98,7 +98,7 @@ _HIDDEN = re.compile(
     | '(?:(?<=[0-9a-fA-F]')(?<!u8')(?<!case')(?=[0-9a-fA-F])              # digit separator
         | (?:[^'\\\n]+|\\[\s\S])*'?)
     | \#[ \t]*(?:include(?:_next)?|import)\b(?:[ \t]|\\\n|/\*[^*\n]*\*/)*
-        (?:<(?P<angled>[^>\n]*)>|"(?P<quoted>[^"\n]*)"|(?P<computed>[A-Za-z_]\w*))
+        (?:<(?P<angled>[^>\n]{0,1000})>|"(?P<quoted>[^"\n]{0,1000})"|(?P<computed>[A-Za-z_]\w*))
     | \#[ \t]*(?:error|warning|pragma|line|ident)\b[^\n]*(?:(?<=\\)\n[^\n]*)*
     """,
     re.VERBOSE,

@@ -52,6 +52,7 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 Place = tuple[int, int, tuple[Condition, ...], str]
 _FAR = 160
+_LONGEST_LINE = 500
 _LONGEST = 4000
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _SPACE = re.compile(r"\s*")
@@ -177,10 +178,10 @@ def declares(data: bytes, function: str) -> bool:
     at the end of the line before where it begins its own."""
     for at, end in _places(function.encode(), data):
         if _OPENED.match(data, end) is not None:
-            start = data.rfind(b"\n", 0, at) + 1
+            start = _line_start(data, at)
             ahead = _SCOPES.sub(b"", data[start:at])
             if not ahead and start:
-                ahead = data[data.rfind(b"\n", 0, start - 1) + 1 : start - 1].rstrip() + b" "
+                ahead = data[_line_start(data, start - 1) : start - 1].rstrip() + b" "
             found = _TYPE_AHEAD.search(ahead)
             if found is not None and found.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
                 return True
@@ -193,7 +194,7 @@ def initialises(data: bytes, variable: str) -> bool:
         before = data[at - 1 : at]
         if _ASSIGNED.match(data, end) is None or before.isalnum() or before == b"_":
             continue
-        begins = max(data.rfind(b"\n", 0, at) + 1, at - _FAR)
+        begins = max(_line_start(data, at), at - _FAR)
         ahead = _TYPE_OF_VARIABLE.search(data[begins:at])
         if ahead is not None and ahead.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
             return True
@@ -203,9 +204,15 @@ def initialises(data: bytes, variable: str) -> bool:
 def names_a_variable(data: bytes, type_: str) -> bool:
     """Whether a line of a C++ file declares a variable or member of this type itself, not a pointer or reference."""
     return any(
-        _NAMED.match(data, end) and _BEFORE_MEMBER.fullmatch(data, data.rfind(b"\n", 0, at) + 1, at)
+        _NAMED.match(data, end) and _BEFORE_MEMBER.fullmatch(data, _line_start(data, at), at)
         for at, end in _places(type_.encode(), data)
     )
+
+
+def _line_start(data: bytes, at: int) -> int:
+    """Where the line that a place stands in begins, or the last part of one that nobody wrote by hand."""
+    earliest = max(0, at - _LONGEST_LINE)
+    return max(data.rfind(b"\n", earliest, at) + 1, earliest)
 
 
 def _places(name: bytes, data: bytes) -> Iterator[tuple[int, int]]:
