@@ -24,6 +24,7 @@ from typing import Any, NamedTuple
 import msgspec
 from fuzz_words import WORDS
 from rosimpact.corpus import robust
+from rosimpact.corpus.polite import Answer
 from rosimpact.corpus.report import CorpusError, read_labels, read_reports
 from rosimpact.corpus.sources import markup, ros_answers, stack_exchange
 from rosimpact.edges import console
@@ -35,6 +36,7 @@ from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.model import discovery, launch, launch_text
 from rosimpact.impact.model.build import extras_of, interpret
 from rosimpact.impact.model.cmake import regex
+from rosimpact.impact.model.cmake.interpreter import MAX_STEPS
 from rosimpact.impact.model.conditions import Environment, holds
 from rosimpact.impact.report import github, markdown
 from rosimpact.impact.targets import capture, resolve, unpacked_deb, version
@@ -200,10 +202,25 @@ def cmake_build(data: bytes) -> None:
     extras_of("pkg", glob)
 
 
+class _Spent(Exception):
+    """A match costs more than a package may."""
+
+
 def cmake_regex(data: bytes) -> None:
     """First line: a regular expression of CMake; the rest: a text."""
     pattern, _, text = data.decode("utf-8", "surrogateescape").partition("\n")
-    found = regex.match(pattern, text)
+    left = MAX_STEPS
+
+    def spend(steps: int) -> None:
+        nonlocal left
+        left -= steps
+        if left < 0:
+            raise _Spent
+
+    try:
+        found = regex.match(pattern, text, spend)
+    except _Spent:
+        return
     require(found is None or found is False or all(isinstance(group, str) for group in found), "groups are no texts")
 
 
@@ -475,8 +492,8 @@ def reports(data: bytes) -> None:
         except CorpusError:
             continue
     try:
-        item = load_json(data)
-    except DocumentError:
+        item = Answer(200, "", {}, data).json()
+    except ValueError:
         return
     if isinstance(item, dict):
         for parse in (ros_answers.parse_item, stack_exchange.gathered):
