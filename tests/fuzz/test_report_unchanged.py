@@ -77,8 +77,8 @@ NAMES = (
     "package.xml", "CMakeLists.txt", "setup.py", "setup.cfg", "pyproject.toml", "a.cmake", "a.msg", "a.srv", "a.action",
     "a.idl", "a.cpp", "a.hpp", "a.h.in", "a.py", "__init__.py", "a.launch", "a.launch.py", "a.launch.xml",
     "a.launch.yaml", "a.yaml", "plugins.xml", "a.xacro", "a.urdf", "run", "run.sh", "a.cfg", "colcon.pkg",
-    "package_ROS1.xml", "package_ROS2.xml", "manifest.xml", ".repos", "a.repos", "a.in", "README.md", "a.bin",
-    "libx.so",
+    ".gitmodules", ".git", "package_ROS1.xml", "package_ROS2.xml", "manifest.xml", ".repos", "a.repos", "a.in",
+    "README.md", "a.bin", "libx.so",
 )  # fmt: skip
 # These set up the whole workspace at its root, so that only nonsense in them must change nothing.
 AT_ROOT = (
@@ -98,8 +98,8 @@ ODD_NAMES = (
     b"...", b"COM1.cmake",
 )  # fmt: skip
 LINKS = (
-    "/etc/passwd", "/dev/zero", "/dev/tty", "/proc/self/environ", "/proc/self/mem", "nowhere", ".", "..", "../..",
-    "a.cpp", "../camera/CMakeLists.txt", "../camera", "../../src", "self", "/proc/self/fd/0", "x" * 4000,
+    "/etc/passwd", "/dev/zero", "/dev/tty", "/proc/self/environ", "/proc/self/mem", "nowhere", ".", "..", "/", "/etc",
+    "../..", "a.cpp", "../camera/CMakeLists.txt", "../camera", "../../src", "self", "/proc/self/fd/0", "x" * 4000,
 )  # fmt: skip
 MANIFEST_OF_HOSTILE = MANIFEST.format(name="hostile", build="ament_cmake", depends="<depend>rclcpp</depend>").encode()
 
@@ -161,7 +161,9 @@ def hostile(draw: st.DrawFn) -> Hostile:
 def add(root: bytes, one: Hostile) -> None:
     path = os.path.join(root, one.path)
     os.makedirs(os.path.dirname(path), exist_ok=True)
-    with contextlib.suppress(FileNotFoundError, IsADirectoryError):
+    if os.path.isdir(path) and not os.path.islink(path):
+        shutil.rmtree(path)
+    with contextlib.suppress(FileNotFoundError):
         os.remove(path)
     if one.what.startswith("link:"):
         os.symlink(one.what[5:], path)
@@ -231,9 +233,9 @@ def all_formats(report: Report) -> Iterator[str]:
 def test_unchanged(place, expected, files):
     root = place / "around" / "ws"
     added = [Hostile(b"src/hostile/package.xml", MANIFEST_OF_HOSTILE), *files]
-    for one in added:
-        add(os.fsencode(root), one)
     try:
+        for one in added:
+            add(os.fsencode(root), one)
         with in_time():
             report = checked(place)
             shown = list(all_formats(report))
