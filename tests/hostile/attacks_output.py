@@ -577,7 +577,7 @@ OPTIONS: dict[str, tuple[str, ...]] = {
     "check --baseline": (*COMMANDS["check"], "--baseline", "{ws}/TEXT"),
     "check --config": (*COMMANDS["check"], "--config", "TEXT"),
     "check --install": (*COMMANDS["check"], "--install", "TEXT"),
-    "check --output": (*COMMANDS["check"], "--output", "{ws}/nowhere/TEXT/x"),
+    "check --output": (*COMMANDS["check"], "--output", "{out}/nowhere/TEXT/x"),
     "check of a path": ("check", "{ws}/TEXT", "-t", "jazzy"),
     "graph --launch": (*COMMANDS["graph"], "--launch", "TEXT"),
     "graph --set": (*COMMANDS["graph"], "--launch", "healthy.launch.py", "--set", "TEXT"),
