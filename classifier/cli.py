@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
@@ -45,6 +46,10 @@ def triage(
 
 
 def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: Collection[str]) -> None:
+    from itertools import chain
+
+    from ..edges.files import too_large
+    from ..edges.limits import limits
     from .model import ClassifierError, load
     from .triage import as_json, as_text, from_argument, from_text, post_of, triage_all
     from .triage import triage as judge
@@ -56,11 +61,14 @@ def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: 
         name = "standard input" if found is None else str(found)
         try:
             with _text_of(found) as stream:
-                first = stream.readline()
+                lines = _lines(stream, name)
+                first = next(lines, "")
                 if jsonl or (first.lstrip().startswith("{") and post_of(first) is not None):
-                    triage_all(model, _chain(first, stream), name)
+                    triage_all(model, chain([first], lines), name)
                     return
-                text = first + stream.read()
+                text = first + stream.read(limits().text)
+                if stream.read(1):
+                    raise too_large(name, limits().text)
                 if found is not None and "\0" in text:
                     raise ClassifierError(f"{name}: is no text; give a report as text or as JSON Lines")
                 found = from_text(text, name)
@@ -73,18 +81,26 @@ def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: 
     if not (found.title or found.body):
         raise ClassifierError("the report is empty; give a text, a file, an address or - for standard input")
     answer = judge(model, found, commands)
-    _write(as_json(answer) + "\n" if format == "json" else as_text(answer))
+    _print(as_json(answer) if format == "json" else as_text(answer), format)
 
 
-def _chain(first: str, rest: IO[str]):
-    yield first
-    yield from rest
+def _lines(stream: IO[str], name: str) -> Iterator[str]:
+    """The lines of a stream, of which none may be longer than a text. Raises OSError."""
+    from ..edges.files import too_large
+    from ..edges.limits import limits
+
+    while line := stream.readline(limits().text + 1):
+        if len(line) > limits().text:
+            raise too_large(name, limits().text)
+        yield line
 
 
 def _text_of(file: Path | None) -> IO[str]:
-    if file is None:
-        return io.TextIOWrapper(sys.stdin.buffer, "utf-8", "replace")
-    return file.open(encoding="utf-8", errors="replace")
+    """A file, or standard input, as text without a byte-order mark. Raises OSError."""
+    from ..edges.files import open_regular
+
+    source = sys.stdin.buffer if file is None else os.fdopen(open_regular(file), "rb")
+    return io.TextIOWrapper(source, "utf-8-sig", "replace")
 
 
 @app.command()
@@ -110,10 +126,11 @@ def train(
             made = fit(examples(file, reports, progress), seed, progress)
             made.save(output)
         about = made.about
-        _write(
+        _print(
             f"{output}: {counted(about['reports'], 'report')}, {counted(len(made.labels), 'label')}, "
             f"abstains below {made.threshold:.2f}\n"
-            f"labels {about['labels_digest']}\ntexts  {about['texts_digest']}\n"
+            f"labels {about['labels_digest']}\ntexts  {about['texts_digest']}\n",
+            "text",
         )
 
     _end(work)
@@ -145,9 +162,9 @@ def evaluate(
         if format == "json":
             import json
 
-            _write(json.dumps(result, indent=1) + "\n")
+            _print(json.dumps(result, indent=1), format)
         else:
-            _write(as_text(result))
+            _print(as_text(result), format)
 
     _end(work)
 
@@ -190,7 +207,10 @@ def _end(work: Callable[[], None], interrupted: str = "interrupted; nothing was 
     raise typer.Exit(run_command(lambda: work() or 0, interrupted, "the classifier"))
 
 
-def _write(text: str) -> None:
-    sys.stdout.flush()
-    sys.stdout.buffer.write(text.encode("utf-8", "backslashreplace"))
-    sys.stdout.flush()
+def _print(text: str, format: str) -> None:
+    from ..edges.console import escape_json, write, write_json
+
+    if format == "json":
+        write_json(escape_json(text))
+    else:
+        write(text)

@@ -56,7 +56,8 @@ def count(readings: Iterable[Reading], groups: Sequence[str]) -> Counts:
 
     readings: in the order of groups, the repository of each; read once, one at a time. Most n-grams stand in one
     report: a table of hashes tells those that surely do, so that their names need not be held. The readings wait in a
-    temporary file until it is full.
+    temporary file until it is full. That file has no name and ends with this process, so that nobody else can have
+    written what marshal reads.
     """
     seen = np.zeros(_BUCKETS, np.uint8)
     signs = array("d")

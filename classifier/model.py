@@ -7,6 +7,7 @@ has to match. What has to match are the signs of signs.py and the format: a mode
 
 from __future__ import annotations
 
+import io
 import json
 import zipfile
 from pathlib import Path
@@ -14,6 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..edges.console import UserError
+from ..edges.files import read_file, writing
+from ..edges.limits import limits, size_text
 from .reading import VIEWS, Reading
 from .signs import DIGEST, LIMIT, SIGNS
 
@@ -21,7 +25,7 @@ FORMAT = 2
 SHIPPED = Path(__file__).parent / "data" / "model.npz"
 
 
-class ClassifierError(Exception):
+class ClassifierError(UserError):
     """What was asked for cannot be done; the text names the file or place and what to do."""
 
 
@@ -59,7 +63,7 @@ class Model:
         try:
             self.about: dict = json.loads(arrays["about"].tobytes())
             format, digest = self.about["format"], self.about["signs"]
-        except (KeyError, ValueError, TypeError):
+        except (KeyError, ValueError, TypeError, RecursionError):
             raise ClassifierError(f"{name}: is no model of rosimpact; {cure}") from None
         if format != FORMAT or digest != DIGEST:
             raise ClassifierError(
@@ -82,10 +86,20 @@ class Model:
                 self._names.extend((view, gram) for gram in grams)
             self._weights = arrays["weights"].astype(np.float64)
             words = len(self._names)
-            shapes = (self._coefficients.shape, self._weights.shape, arrays["projection"].shape[0])
-            if shapes != ((words + len(SIGNS), len(self.labels)), (words,), words):
-                raise ValueError(shapes)
-        except (KeyError, ValueError, TypeError, IndexError):
+            size, reports = arrays["vectors"].shape[1], len(self.seen)
+            expected = {
+                "coefficients": (len(self.labels), words + len(SIGNS)), "intercept": (len(self.labels),),
+                "weights": (words,), "projection": (words, size), "vectors": (reports, size),
+                "sign means": (len(SIGNS),), "sign scales": (len(SIGNS),),
+            }  # fmt: skip
+            for name, shape in expected.items():
+                if arrays[name].shape != shape or arrays[name].dtype.kind != "f":
+                    raise ValueError(name)
+            if not self.labels or not all(isinstance(label, str) for label in self.labels):
+                raise ValueError("labels")
+            if not all(len(known) == 3 and all(isinstance(text, str) for text in known) for known in self.seen):
+                raise ValueError("known")
+        except (KeyError, ValueError, TypeError, IndexError, RecursionError):
             raise ClassifierError(f"{name}: is incomplete; {cure}") from None
 
     def scores(self, reading: Reading) -> np.ndarray:
@@ -158,8 +172,7 @@ class Model:
     def save(self, file: Path) -> None:
         """Writes the model; the same model gives the same bytes. Raises ClassifierError."""
         try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            with file.open("wb") as stream:
+            with writing(file) as stream:
                 np.savez_compressed(stream, allow_pickle=False, **self.arrays)
         except OSError as error:
             raise ClassifierError(f"{file}: cannot be written: {error.strerror}; give another file") from None
@@ -168,15 +181,24 @@ class Model:
 def load(file: Path | None = None) -> Model:
     """Reads a model, by default the one that is shipped. Raises ClassifierError."""
     file = file or SHIPPED
+    none = f"{file}: is no model of rosimpact; make one with `rosimpact classifier train`"
     try:
-        with np.load(file, allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
+        data = read_file(file, limits().report)
     except OSError as error:
         raise ClassifierError(
             f"{file}: cannot be read: {error.strerror or error}; make one with `rosimpact classifier train`"
         ) from None
-    except (ValueError, EOFError, KeyError, AttributeError, zipfile.BadZipFile):
-        raise ClassifierError(f"{file}: is no model of rosimpact; make one with `rosimpact classifier train`") from None
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as packed:
+            # zipfile gives no more bytes than it says here, and reads nothing of what is packed otherwise
+            if sum(member.file_size for member in packed.infolist()) > limits().report:
+                raise ClassifierError(f"{file}: unpacks to more than {size_text(limits().report)}; give another model")
+        with np.load(io.BytesIO(data), allow_pickle=False) as stored:
+            arrays = {name: stored[name] for name in stored.files}
+    except ClassifierError:
+        raise
+    except Exception:  # whatever zipfile, zlib and NumPy raise over a file that is damaged, or none of theirs
+        raise ClassifierError(none) from None
     return Model(arrays, str(file))
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import sys
 from collections.abc import Collection, Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import NamedTuple
 from urllib.parse import urlsplit
 
 from ..corpus.distros import DISTROS, ROS2
+from ..edges.console import escape_json, visible, write_json
 from .model import ClassifierError, Known, Model, Reason, Verdict, load
 from .reading import read
 
@@ -29,12 +29,17 @@ CHECKS: dict[str, tuple[tuple[str, str], ...]] = {
 }
 """By label, what looks into such a report: the command it needs, and how it is called. Only what exists is named."""
 
-_ISSUE = re.compile(r"/([\w.-]+)/([\w.-]+)/(?:issues|pull)/(\d+)(?:/.*)?\Z")
-_QUESTION = re.compile(r"/(?:questions|q)/(\d+)(?:/.*)?\Z")
+_ISSUE = re.compile(r"/([\w.-]+)/(?!\.{1,2}/)([\w.-]+)/(?:issues|pull)/(\d{1,12})(?:/.*)?\Z", re.ASCII)
+_QUESTION = re.compile(r"/(?:questions|q)/(\d{1,12})(?:/.*)?\Z", re.ASCII)
+_SITE = re.compile(r"([a-z0-9-]+)\.stackexchange\.com\Z")
+_LIKE = "https://github.com/OWNER/NAME/issues/1"
+_LOOPBACK = ("localhost", "127.0.0.1", "::1")
 _DISTRO = re.compile(rf"\b(?:{'|'.join(DISTROS)})\b", re.IGNORECASE)
 _TARGETED = ("kinetic", "lunar", "melodic", "noetic", *ROS2)
-_ADDRESS = re.compile(r"https?://\S+\Z")
+_ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*://\S*\Z")
 _BARE_ADDRESS = re.compile(r"(?:www\.)?(?:github\.com|[\w.]*stackexchange\.com|answers\.ros\.org)/\S+\Z")
+# One word with a slash or with a short ending, as names of files have it: no report is that short.
+_PATH = re.compile(r"\S*[/\\]\S*|~\S*|\.\S+|\S*[^\s.]\.[A-Za-z]\w{0,7}")
 _TIMEOUT = 20.0
 _PATIENCE = 15.0
 _TRIES = 3
@@ -129,7 +134,7 @@ def as_text(found: Triage) -> str:
         lines.append("no check looks into reports of this label")
     else:
         lines.append(f"no command of this version looks into reports of the label {verdict.label} yet")
-    return "\n".join(lines) + "\n"
+    return "\n".join(map(visible, lines)) + "\n"
 
 
 def row(model: Model, post: Post) -> str:
@@ -141,14 +146,19 @@ def row(model: Model, post: Post) -> str:
 
 
 def posts(lines: Iterable[str], name: str) -> Iterator[Post]:
-    """The reports of JSON Lines with `id`, `title` and `body`. name: of the file. Raises ClassifierError."""
+    """The reports of JSON Lines with `id`, `title` and `body`. name: of the file. Raises ClassifierError, also when
+    there is none."""
+    found = False
     for number, line in enumerate(lines, 1):
         if not line.strip():
             continue
+        found = True
         post = post_of(line)
         if post is None:
             raise ClassifierError(f"{name}:{number}: is no JSON object with `title` or `body` as texts; mend the line")
         yield post
+    if not found:
+        raise ClassifierError(f"{name}: holds no report; give JSON Lines with `id`, `title` and `body`")
 
 
 def post_of(line: str) -> Post | None:
@@ -177,56 +187,97 @@ def is_address(text: str) -> bool:
 
 
 def fetch(url: str) -> Post:
-    """A GitHub issue or pull request, or a question of Stack Exchange. Raises ClassifierError."""
+    """A GitHub issue or pull request, or a question of Stack Exchange. Nobody is asked but the API of the host that the
+    address names: those of github.com and stackexchange.com, and the GitHub server of $ROSIMPACT_GITHUB_API. Raises
+    ClassifierError."""
     from ..corpus.polite import Client
     from ..corpus.report import CorpusError
     from ..corpus.sources import github, stack_exchange
     from ..corpus.tokens import github_token, stack_exchange_key
 
-    place = urlsplit(url)
-    host = (place.hostname or "").removeprefix("www.")
-    issue = _ISSUE.match(place.path.rstrip("/"))
-    question = _QUESTION.match(place.path.rstrip("/"))
+    host, path, shown = _place(url)
+    issue = _ISSUE.match(path)
+    question = _QUESTION.match(path)
+    site = _SITE.match(host)
     if host == "answers.ros.org":
         raise ClassifierError(
-            f"{url}: answers.ros.org is gone; give the question's address on robotics.stackexchange.com, or its text"
+            f"{shown}: answers.ros.org is gone; give the question's address on robotics.stackexchange.com, or its text"
         )
 
     def client(service: str, secret: str) -> Client:
         return Client(service, patience=_PATIENCE, timeout=_TIMEOUT, tries=_TRIES, secrets=(secret,))
 
     try:
-        if issue and "stackexchange" not in host:
+        api = _github_api(host, github.API)
+        if not api and not site:
+            raise ClassifierError(
+                f"{shown}: is no issue, pull request or question of a host that is known; known are github.com and "
+                f"stackexchange.com; for a GitHub Enterprise server set {GITHUB_API} to https://HOST/api/v3, or give "
+                "the text itself"
+            )
+        if issue and api:
             owner, name, number = issue.groups()
-            api = os.environ.get(GITHUB_API) or github.API
             token = github_token(api)
             server = github.GitHub(client("GitHub", token), api, token)
             (asked,) = server.ask([(f"{owner}/{name}#{number}", "")])
-        elif question and host.endswith(".stackexchange.com"):
+        elif question and site:
             api = os.environ.get(STACK_API) or stack_exchange.API
             key = stack_exchange_key(api)
-            site = host.split(".")[0]
-            server = stack_exchange.StackExchange(client("Stack Exchange", key), api, key, site)
-            (asked,) = server.ask([(f"{site}:{question.group(1)}", "")])
+            exchange = stack_exchange.StackExchange(client("Stack Exchange", key), api, key, site[1])
+            (asked,) = exchange.ask([(f"{site[1]}:{question[1]}", "")])
         else:
             raise ClassifierError(
-                f"{url}: is no issue, pull request or question that can be fetched; give one of GitHub or "
+                f"{shown}: is no issue, pull request or question that can be fetched; give one of GitHub or "
                 "robotics.stackexchange.com, or the text itself"
             )
     except CorpusError as error:
         raise ClassifierError(
-            f"{url}: {str(error).partition(';')[0]}; try again later, or give the text itself"
+            f"{shown}: {str(error).partition(';')[0]}; try again later, or give the text itself"
         ) from None
     if asked.gathered is None:
         raise ClassifierError(
-            f"{url}: is not there, or not public; check the address, set GITHUB_TOKEN, or give the text itself"
+            f"{shown}: is not there, or not public; check the address, set GITHUB_TOKEN, or give the text itself"
         )
     report = asked.gathered.report
     return Post(report.id, report.title, report.body)
 
 
+def _place(url: str) -> tuple[str, str, str]:
+    """(host, path, the address without what may be secret) of a page. Raises ClassifierError for one that is none."""
+    try:
+        parts = urlsplit(url)
+        plain = parts.port is None and parts.username is None and "\\" not in url
+        known = parts.scheme.lower() in ("http", "https") and bool(parts.hostname)
+    except ValueError:  # half of an IPv6 address, a port that is no number, signs that stand for `/`
+        raise ClassifierError(f"the address cannot be read; give one like {_LIKE}") from None
+    host = (parts.hostname or "").rstrip(".").removeprefix("www.")
+    shown = f"{parts.scheme}://{parts.hostname or ''}{parts.path}"
+    if not known or not plain:
+        raise ClassifierError(
+            f"{shown}: is no address of a page; give one like {_LIKE}, without user name and port"
+        )
+    return host, parts.path.rstrip("/"), shown
+
+
+def _github_api(host: str, public: str) -> str:
+    """The API that has the issues of a host; empty when it is no GitHub server that is known. A server of this machine
+    may stand for github.com. Raises ClassifierError."""
+    named = os.environ.get(GITHUB_API, "")
+    try:
+        own = (urlsplit(named).hostname or "").lower()
+    except ValueError:
+        raise ClassifierError(f"{GITHUB_API}: is no address; give one like {public}") from None
+    if host == "github.com":
+        return named if own in _LOOPBACK else public
+    return named if own and own in (host, f"api.{host}") else ""
+
+
 def from_argument(argument: str) -> Post | Path | None:
-    """What an argument of the command line means: a report, a file to read, or None for standard input."""
+    """What an argument of the command line means: a report, a file to read, or None for standard input.
+
+    An existing file is read. Otherwise one word that holds a slash or ends as names of files do is a path or an address
+    that is none, which is an error; all else is a report's text. Raises ClassifierError.
+    """
     if argument == "-":
         return None
     if is_address(argument):
@@ -237,18 +288,23 @@ def from_argument(argument: str) -> Post | Path | None:
         path = Path(argument)
         if path.is_file():
             return path
-        folder = bool(argument.strip()) and path.is_dir()
+        there = bool(argument.strip()) and path.exists()
+        folder = there and path.is_dir()
     except (OSError, ValueError):
-        folder = False
+        there = folder = False
     if folder:
         raise ClassifierError(f"{argument}: is a folder; give a file, an address or a text")
-    if re.fullmatch(r"\S+\.(?:jsonl?|md|txt)", argument):
-        raise ClassifierError(f"{argument}: there is no such file; give an existing one, an address or a text")
+    if there:
+        raise ClassifierError(f"{argument}: is not a regular file; give a file, or - for standard input")
+    if _PATH.fullmatch(argument):
+        raise ClassifierError(
+            f"{argument}: there is no such file; give an existing one, an address or a text; one word that is a text "
+            "goes through standard input, with -"
+        )
     return from_text(argument)
 
 
 def triage_all(model: Model, lines: Iterable[str], name: str) -> None:
     """JSON Lines to JSON Lines on standard output, each written as soon as it is known."""
     for post in posts(lines, name):
-        sys.stdout.write(row(model, post) + "\n")
-        sys.stdout.flush()
+        write_json(escape_json(row(model, post)))

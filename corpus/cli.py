@@ -36,8 +36,12 @@ _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")]
 def _manner(
     store: _Store = None, api: _Api = "", wait: _Wait = 60.0, verbose: _Verbose = False, quiet: _Quiet = False
 ) -> Manner:
+    from math import isfinite
+
     from .gather_commands import Manner
 
+    if not isfinite(wait):
+        raise typer.BadParameter("--wait takes a number of minutes, such as 60")
     return Manner(store, api, wait, verbose, quiet)
 
 

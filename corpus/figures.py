@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import io
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..edges.files import write_file, writing
 from .curves import Curve
 from .report import LABELS_FILE, CorpusError
 
@@ -117,12 +119,9 @@ class Page:
         kept = [list(row) for row in rows]
         if not kept:
             raise ValueError(f"table `{name}` is empty")
-        folder = self.output / "tables"
-        folder.mkdir(parents=True, exist_ok=True)
-        with (folder / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(columns)
-            writer.writerows(kept)
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows([columns, *kept])
+        write_file(self.output / "tables" / f"{name}.csv", text.getvalue().encode())
         lines = ["| " + " | ".join(columns) + " |", "|" + "|".join("---" for _ in columns) + "|"]
         lines += ["| " + " | ".join(_cell(value) for value in row) + " |" for row in kept[:most]]
         if len(kept) > most:
@@ -183,11 +182,12 @@ def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
     Returns both files. Raises OSError."""
     import matplotlib.pyplot as plt
 
-    folder.mkdir(parents=True, exist_ok=True)
     drawn, picture = folder / f"{name}.svg", folder / f"{name}.png"
     try:
-        figure.savefig(drawn, bbox_inches="tight", metadata={"Date": None, "Creator": "rosimpact"})
-        figure.savefig(picture, bbox_inches="tight", metadata={"Software": "rosimpact"})
+        with writing(drawn) as file:
+            figure.savefig(file, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": "rosimpact"})
+        with writing(picture) as file:
+            figure.savefig(file, format="png", bbox_inches="tight", metadata={"Software": "rosimpact"})
     finally:
         plt.close(figure)
     return drawn, picture

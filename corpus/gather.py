@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple, Protocol
 
 from .report import Report, repository_of
 from .store import Asked, Gathered, Page, Store, Taken
 
+_NUMBER = re.compile("[0-9]{1,12}")
 _REFRESH = "refresh"
 _AT_ONCE = 100
 
@@ -53,7 +55,7 @@ def service_of(id: str) -> str:
     if repository_of(id):
         return "github"
     name, _, number = id.partition(":")
-    return name if name in ("ros-answers", "robotics-se") and number.isdigit() else ""
+    return name if name in ("ros-answers", "robotics-se") and _NUMBER.fullmatch(number) else ""
 
 
 def missing(store: Store, ids: Iterable[str]) -> dict[str, list[str]]:

@@ -13,7 +13,7 @@ from datetime import date, datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..edges.console import counted, run_command, say
+from ..edges.console import counted, run_command, say, visible, write
 from .polite import Client, Later, service_address
 from .progress import Reporter, outcome, span
 from .report import LABELS_FILE, SOURCES, CorpusError, read_labels, read_reports, write_rows
@@ -70,7 +70,8 @@ def hydrate(labels: Path | None, texts: Path | None, *, archive: Path | None, ma
             store.want(ids)
             if texts:
                 taken, others = jobs.import_reports(read_reports(texts), store, frozenset(ids))
-                print(f"{texts}: {outcome(taken)}{f'; {others:,} without a label left out' if others else ''}")
+                left_out = f"; {others:,} without a label left out" if others else ""
+                write(f"{visible(str(texts))}: {outcome(taken)}{left_out}")
             try:
                 if not texts:
                     _ask_for_missing(jobs.missing(store, ids), store, archive, manner)
@@ -96,7 +97,7 @@ def refresh(sources: Sequence[str], limit: int | None, *, archive: Path | None, 
             services = _services(store, archive, manner, reporter)
             chosen = [source for source in ("ros-answers", "robotics-se", "github") if not sources or source in sources]
             taken = jobs.refresh(services, store, chosen, limit, reporter.page)
-        print(f"refresh: {outcome(taken)}")
+        write(f"refresh: {outcome(taken)}")
         return 0
 
     return run_command(lambda: _until_later(work), _INTERRUPTED)
@@ -116,7 +117,7 @@ def export(file: Path, *, store: Path | None) -> int:
             count = write_parquet(file, open_reports(path))
         else:
             raise CorpusError(f"{file}: of no known format; name it *.jsonl or *.parquet")
-        print(f"{file}: {counted(count, 'report')}")
+        write(f"{visible(str(file))}: {counted(count, 'report')}")
         return 0
 
     return run_command(work)
@@ -127,18 +128,18 @@ def status(*, store: Path | None) -> int:
 
     def work() -> int:
         with Store(_existing(store)) as opened:
-            print(f"{opened.path}: {opened.path.stat().st_size / 1e6:.1f} MB")
+            write(f"{opened.path}: {opened.path.stat().st_size / 1e6:.1f} MB")
             for source, here, labelled, gone in opened.counts():
-                print(f"  {source}: {counted(here, 'report')}, {labelled:,} of them labelled; {gone:,} gone")
+                write(f"  {source}: {counted(here, 'report')}, {labelled:,} of them labelled; {gone:,} gone")
             copied = opened.copied()
             if copied:
-                print(f"  {copied:,} left out of the export, as copies of others")
+                write(f"  {copied:,} left out of the export, as copies of others")
             gatherings = opened.gatherings()
             if gatherings:
-                print("gatherings:")
+                write("gatherings:")
             for name, finished, updated in gatherings:
                 day = datetime.fromtimestamp(updated, timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
-                print(f"  {name}: {'up to date' if finished else 'not finished'}, {day}")
+                write(f"  {name}: {'up to date' if finished else 'not finished'}, {day}")
         return 0
 
     return run_command(work)
@@ -210,7 +211,7 @@ def _gathered(source: Source, client: Client | None, store: Store, manner: Manne
         taken = jobs.gather(source, store, reporter.page)
     for line in getattr(source, "unread", ()):
         say(f"rosimpact: left out: {line}")
-    print(f"{source.name}: {outcome(taken)}")
+    write(f"{source.name}: {outcome(taken)}")
 
 
 def _ask_for_missing(todo: dict[str, list[str]], store: Store, archive: Path | None, manner: Manner) -> None:
@@ -232,9 +233,9 @@ def _tell_hydrated(store: Store, ids: list[str]) -> None:
     gone = [id for id, known in kept.items() if known is not None and known.gone]
     here = sum(known is not None and not known.gone for known in kept.values())
     for id in gone:
-        print(f"gone: {id}")
+        write(f"gone: {id}")
     rest = len(ids) - here - len(gone)
-    print(f"{len(ids):,} labelled: {here:,} at hand, {len(gone):,} gone, {rest:,} to be gathered")
+    write(f"{len(ids):,} labelled: {here:,} at hand, {len(gone):,} gone, {rest:,} to be gathered")
 
 
 def _services(store: Store, archive: Path | None, manner: Manner, reporter: Reporter) -> Callable[[str, int], Service]:

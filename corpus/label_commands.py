@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..edges.console import counted, run_command, say
-from .report import LABELS_FILE, SOURCES, CorpusError, Report
+from ..edges.console import counted, escape_json, json_text, run_command, say, visible, write, write_json
+from .report import LABELS_FILE, SOURCES, CorpusError, Report, repository_of
 
 FORMATS = ("text", "json")
 
@@ -37,14 +37,16 @@ def _label(
         from .label_screen import need_terminal
 
         need_terminal()
-    texts = chosen(_reports(reports), sources, repositories)
+    there = _reports(reports)
+    _need_repositories(repositories, there)
+    texts = chosen(there, sources, repositories)
     if listed:
         found = current_labels(file)
         shown = offered(texts, found, read_journal(journal_of(file)), mode, name)
         for report in shown:
             known = found.get(report.id)
             given = "\t" + " / ".join(known.annotators) if known and mode == "disagreements" else ""
-            print(f"{report.id}{given}\t{_line(report.title)}")
+            write(f"{visible(report.id)}{given}\t{_line(report.title)}")
         say(f"{len(shown):,} of {counted(len(texts), 'report')}")
         return 0
     from .label_screen import run
@@ -77,6 +79,17 @@ def _nothing(mode: str, texts: list[Report]) -> str:
     return f"none of {counted(len(texts), 'report')} is {kind}"
 
 
+def _need_repositories(names: Sequence[str], reports: list[Report]) -> None:
+    """Raises CorpusError for a repository of which there is no report: its name is misspelt, or it is not gathered."""
+    there = {repository_of(report.id) for report in reports} if names else set()
+    for name in names:
+        if name.lower() not in there:
+            raise CorpusError(
+                f"--repository {name}: no report is of it; check the name, or gather it with "
+                f"`rosimpact corpus gather github:{name}`"
+            )
+
+
 def _own_labels() -> Path:
     """The labels of the corpus, where this is a checkout; an installed copy would be lost at the next upgrade."""
     if (LABELS_FILE.parents[1] / "pyproject.toml").exists():
@@ -103,7 +116,7 @@ def _login() -> str:
 
 
 def _line(text: str) -> str:
-    return " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
+    return visible(" ".join(text.split()))
 
 
 def stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
@@ -130,7 +143,7 @@ def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path |
     texts = open_reports(path) if reports is not None or path.exists() else None
     numbers = stats_of(found, texts)
     if format == "json":
-        print(as_json(numbers))
+        write_json(escape_json(as_json(numbers)))
     else:
         print_text(numbers)
     if plots is not None:
@@ -155,16 +168,16 @@ def _import_robust(folder: Path, output: Path | None, format: str) -> int:
     records = read_robust(folder)
     say(records.licence)
     for path, fault in records.unreadable:
-        say(f"{path}: passed over: {fault}")
+        say(f"rosimpact: {path}: passed over: {fault}")
     if format == "json":
         import msgspec
 
-        print(msgspec.json.format(msgspec.json.encode(records.mapped), indent=1).decode())
+        write_json(json_text(msgspec.to_builtins(records.mapped)))
     else:
-        print(f"{'':16}{''.join(f'{name:>10}' for name in CONFIDENCES)}")
+        write(f"{'':16}{''.join(f'{name:>10}' for name in CONFIDENCES)}")
         for name, counts in summary(records.mapped).items():
-            print(f"{name:16}{''.join(f'{counts[level]:>10,}' for level in CONFIDENCES)}")
-        print(counted(len(records.mapped), "record"))
+            write(f"{name:16}{''.join(f'{counts[level]:>10,}' for level in CONFIDENCES)}")
+        write(counted(len(records.mapped), "record"))
     if output is not None:
         written = write_rows(output, rows_of(records.mapped))
         say(f"{output}: {counted(written, 'label')}; texts come with `rosimpact corpus hydrate --labels {output}`")

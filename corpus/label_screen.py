@@ -18,6 +18,7 @@ from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
+from ..edges.console import visible_lines
 from .labelling import WHY_LIMIT, Given, Session
 from .report import KINDS, LABELS, PHASES, CorpusError, Report
 
@@ -41,7 +42,6 @@ _KEYS = (
 _MARKDOWN_LIMIT = 60_000
 _NARROW = 90
 # By Unicode category: spaces of all widths, ends of lines, marks of direction and joining.
-_STAND_INS = {"Zs": " ", "Zl": "\n", "Zp": "\n", "Cf": ""}
 
 
 class Screen:
@@ -283,16 +283,20 @@ class Screen:
         if self.session.mode == "disagreements" and self.session.current:
             for key, given in zip("ab", self.session.opinions, strict=False):
                 told = ", ".join(part for part in (given.label, given.kind, given.phase) if part)
-                parts.append(Text(f"{key}  {told}: {given.why or 'no reason at hand'}", style="magenta"))
+                parts.append(Text(clean(f"{key}  {told}: {given.why or 'no reason at hand'}"), style="magenta"))
         chosen = " \u203a ".join(part for part in (self._label, self._kind, self._phase) if part)
         if self.step == "why":
-            parts += [Text(chosen, style="bold"), Text("why, in a few words of your own:"), Text(f"{self._why}\u2588")]
+            parts += [
+                Text(chosen, style="bold"),
+                Text("why, in a few words of your own:"),
+                Text(clean(f"{self._why}\u2588")),
+            ]
             parts.append(Text("Enter saves, esc goes back", style="dim"))
         elif self.step != "done":
             parts.append(Text(f"{chosen} \u203a {self.step}?" if chosen else f"{self.step}?", style="bold"))
             parts += [Text(f" {i}  {choice}") for i, choice in enumerate(self._choices(), 1)]
         if self._suggestion:
-            parts.append(Text(f"suggestion: {self._suggestion}", style="yellow"))
+            parts.append(Text(clean(f"suggestion: {self._suggestion}"), style="yellow"))
         if self.message:
             parts.append(Text(clean(self.message), style="red"))
         if self.step != "why":
@@ -316,10 +320,15 @@ class _Lines:
 
 
 def clean(text: str) -> str:
-    """A text that changes nothing on a terminal: control characters become a sign, marks of direction go."""
-    kept = text.replace("\r\n", "\n").replace("\r", "\n").expandtabs(4)
+    """A text that changes nothing on a terminal: control characters, marks of direction and what has no known width are
+    shown escaped."""
     return "".join(
-        sign if sign == "\n" or sign.isprintable() else _STAND_INS.get(category(sign), "\ufffd") for sign in kept
+        sign
+        if sign == "\n" or sign.isprintable()
+        else " "
+        if category(sign) == "Zs"
+        else sign.encode("unicode_escape").decode()
+        for sign in visible_lines(text.replace("\r\n", "\n").replace("\r", "\n").expandtabs(4))
     )
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import os
+import stat
 from collections.abc import Iterable, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
@@ -17,6 +18,8 @@ from types import TracebackType
 
 import msgspec
 
+from ..edges.files import check_writable_path, read_file
+from ..edges.limits import limits
 from .report import CorpusError, Label, Report, faults_of, read_labels, repository_of, write_rows
 
 MODES = ("first", "second", "disagreements")
@@ -24,6 +27,7 @@ MODES = ("first", "second", "disagreements")
 DISPUTED = "disputed"
 WHY_LIMIT = 200
 """Most characters of a `why`: a reason in a few words."""
+_JOURNAL = os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | getattr(os, "O_NOFOLLOW", 0) | os.O_NONBLOCK
 
 
 class Given(msgspec.Struct, frozen=True):
@@ -268,11 +272,14 @@ class _Journal:
         self.path = path
         self.events: list[Event] = []
         try:
+            check_writable_path(path)
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
+            self._file = os.open(path, _JOURNAL, 0o666)
         except OSError as error:
             raise CorpusError(f"{path}: cannot be written: {error.strerror}; give another file with --labels") from None
         try:
+            if not stat.S_ISREG(os.fstat(self._file).st_mode):
+                raise CorpusError(f"{path}: is no regular file; give another file with --labels")
             _lock(self._file, path)
             data = _bytes_of(path)
             self.events, whole = _parsed(path, data)
@@ -311,7 +318,7 @@ def _lock(file: int, path: Path) -> None:
 
 def _bytes_of(path: Path) -> bytes:
     try:
-        return path.read_bytes()
+        return read_file(path, limits().report)
     except FileNotFoundError:
         return b""
     except OSError as error:
@@ -327,7 +334,7 @@ def _parsed(path: Path, data: bytes) -> tuple[list[Event], int]:
         try:
             if line.strip():
                 events.append(decoder.decode(line))
-        except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
             if at + len(line) == len(data) and not line.endswith(b"\n"):
                 break
             raise CorpusError(f"{path}:{number}: is no line of a journal ({error}); mend or remove it") from None

@@ -6,12 +6,17 @@ import errno
 import os
 from pathlib import Path
 
+from ..edges.files import check_writable_path
 from .report import CorpusError
 
 
 def need_file(file: Path) -> None:
     """Raises CorpusError when a file cannot be written, as far as that can be told without trying."""
     fault = unwritable(file) if not os.path.isdir(file) else os.strerror(errno.EISDIR)
+    try:
+        check_writable_path(file)
+    except OSError as error:
+        fault = fault or error.strerror
     if fault:
         raise CorpusError(f"{file}: cannot be written: {fault}; give another file")
 

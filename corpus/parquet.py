@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-import tempfile
 from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
 
 import msgspec
 
+from ..edges.files import writing
 from .report import CorpusError, Report
 
 _AT_ONCE = 5_000
@@ -28,20 +26,11 @@ def write_parquet(path: Path, reports: Iterable[Report]) -> int:
     schema = pyarrow.schema([*texts, ("tags", pyarrow.list_(pyarrow.string()))])
     count = 0
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
-        os.close(handle)
-        try:
-            rest = iter(reports)
-            with parquet.ParquetWriter(name, schema, compression="zstd") as writer:
-                while part := [msgspec.structs.asdict(report) for report in islice(rest, _AT_ONCE)]:
-                    writer.write_table(pyarrow.Table.from_pylist(part, schema=schema))
-                    count += len(part)
-            os.replace(name, path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                os.unlink(name)
-            raise
+        rest = iter(reports)
+        with writing(path) as file, parquet.ParquetWriter(file, schema, compression="zstd") as writer:
+            while part := [msgspec.structs.asdict(report) for report in islice(rest, _AT_ONCE)]:
+                writer.write_table(pyarrow.Table.from_pylist(part, schema=schema))
+                count += len(part)
     except OSError as error:
         raise CorpusError(f"{path}: cannot be written: {error.strerror or error}; give another file") from None
     return count

@@ -8,12 +8,12 @@ What the services ask of a client, and where that is written:
 from __future__ import annotations
 
 import contextlib
-import json
 import logging
 import os
 import random
 import re
 import time
+import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from datetime import datetime, timedelta, timezone
 from email.utils import parsedate_to_datetime
@@ -22,8 +22,10 @@ from typing import IO, Any, NamedTuple
 from urllib.parse import urlencode, urljoin, urlsplit, urlunsplit
 
 import requests
-from urllib3.exceptions import DecodeError, HTTPError, ReadTimeoutError
+from urllib3.exceptions import HTTPError, ReadTimeoutError
 
+from ..edges.documents import load_json
+from ..edges.limits import size_text
 from .report import CorpusError
 
 AGENT = "rosimpact-corpus (https://pypi.org/project/rosimpact)"
@@ -35,6 +37,11 @@ _SECONDARY = 60.0
 _REDIRECTS = (301, 302, 303, 307, 308)
 _CHUNK = 1 << 16
 _LARGEST = 64 << 20
+_LARGEST_FILE = 1 << 30
+_FILE_SECONDS = 3_600.0
+_LONGEST_WAIT = 366 * 86_400.0
+_LONE_SURROGATE = re.compile("[\ud800-\udfff]")
+_ESCAPED_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 _SECONDARY_WORDS = re.compile(r"secondary rate limit|abuse detection|rate limit exceeded|too many requests", re.I)
 
 
@@ -74,8 +81,9 @@ class Answer(NamedTuple):
     body: bytes
 
     def json(self) -> Any:
-        """The body, parsed. Raises ValueError."""
-        return json.loads(self.body)
+        """The body, parsed; halves of characters, which no file can hold, are replaced. Raises ValueError."""
+        found = load_json(self.body)
+        return _whole(found) if _ESCAPED_SURROGATE.search(self.body) else found
 
     @property
     def links(self) -> dict[str, str]:
@@ -120,7 +128,7 @@ class Client:
         self._last = 0.0
         self._not_before: dict[str, tuple[float, str]] = {}
         self._session = requests.Session()
-        self._session.headers.update({"User-Agent": AGENT, "Accept-Encoding": "gzip, deflate"})
+        self._session.headers.update({"User-Agent": AGENT, "Accept-Encoding": "gzip"})
         # Otherwise requests would take a password from ~/.netrc, and would send it instead of ours.
         self._session.auth = lambda request: request
         _hide(secrets)
@@ -130,7 +138,7 @@ class Client:
 
     def hold(self, lane: str, seconds: float, why: str) -> None:
         """Lets no request of a lane (a part of the service with limits of its own) go out for so long."""
-        until = self.clock.now() + seconds
+        until = self.clock.now() + min(seconds, _LONGEST_WAIT)
         if until > self._not_before.get(lane, (0.0, ""))[0]:
             self._not_before[lane] = (until, why)
 
@@ -143,7 +151,7 @@ class Client:
         lane: str = "",
         accept: Iterable[int] = (),
     ) -> Answer:
-        """Fetches an address. Redirects are followed; credentials stay behind when they lead to another host.
+        """Fetches an address. Redirects are followed on the same host alone, never from https to http.
 
         accept: statuses besides 200 that are an answer and no fault (304, 404, 410). Waits and tries again on rate
         limits, on 5xx, and on connections that fail, stall or end early. Raises Later when that would take longer than
@@ -195,7 +203,7 @@ class Client:
 
     def wait(self, seconds: float, why: str) -> None:
         """Waits, or raises Later when patience does not last so long."""
-        seconds = max(0.0, seconds)
+        seconds = min(max(0.0, seconds), _LONGEST_WAIT)
         if seconds == 0:
             return
         until = self.clock.now() + seconds
@@ -264,16 +272,14 @@ class Client:
                 raise _Fault("has a certificate that cannot be verified") from None
             except (requests.ConnectionError, requests.exceptions.ChunkedEncodingError):
                 raise _Fault("cannot be reached") from None
-            except requests.RequestException as error:
+            except (requests.RequestException, HTTPError, ValueError) as error:
                 raise CorpusError(
                     f"{self.service}: {_place(url)}: cannot be asked ({type(error).__name__}); check the address"
                 ) from None
             with response:
                 place = response.headers.get("location", "")
                 if response.status_code in _REDIRECTS and place:
-                    onward = urljoin(url, place)
-                    if urlsplit(onward).scheme not in ("http", "https"):
-                        raise _Fault("redirects to an address that is none")
+                    onward = _onward(self.service, url, place)
                     if _origin(onward) != _origin(url):
                         headers.pop("Authorization", None)
                     url = onward
@@ -287,32 +293,37 @@ class Client:
         raise _Fault("redirects in circles")
 
     def _body(self, response: requests.Response, target) -> bytes:
-        """The whole body; a fault when it stalls, ends early or cannot be unpacked."""
-        until = time.monotonic() + 10 * self._timeout
+        """The whole body; a fault when it stalls, ends early or cannot be unpacked. Raises CorpusError for one that is
+        too large, packed or unpacked."""
+        largest, seconds = (_LARGEST, 10 * self._timeout) if target is None else (_LARGEST_FILE, _FILE_SECONDS)
+        until = time.monotonic() + seconds
         parts: list[bytes] = []
         size = 0
         if target is not None:
             target.seek(0)
             target.truncate()
         try:
-            for chunk in _chunks(response):
+            for chunk in _unpacked(response):
                 size += len(chunk)
-                if target is not None:
-                    target.write(chunk)
-                    continue
-                parts.append(chunk)
+                if size > largest:
+                    raise CorpusError(
+                        f"{self.service}: {_place(response.url or '')} sends more than {size_text(largest)}; "
+                        "check the address"
+                    )
                 if time.monotonic() > until:
                     raise _Fault("sends its answer too slowly")
-                if size > _LARGEST:
-                    raise _Fault(f"sends more than {_LARGEST >> 20} MB")
-        except (requests.exceptions.ContentDecodingError, DecodeError):
+                if target is not None:
+                    target.write(chunk)
+                else:
+                    parts.append(chunk)
+        except zlib.error:
             raise _Fault("sent a body that cannot be unpacked") from None
         except (requests.RequestException, HTTPError) as error:
             stalled = isinstance(error, requests.Timeout | ReadTimeoutError) or "timed out" in str(error)
             raise _Fault("sends its answer too slowly" if stalled else "ended its answer early") from None
         promised = response.headers.get("content-length", "")
         # urllib3 before 2 does not compare; tell() counts bytes as they came, before unpacking
-        if promised.isdigit() and response.raw is not None and response.raw.tell() < int(promised):
+        if _is_number(promised) and response.raw is not None and response.raw.tell() < int(promised):
             raise _Fault("ended its answer early")
         return b"".join(parts)
 
@@ -330,7 +341,7 @@ class Client:
     def _heed(self, answer: Answer, lane: str) -> None:
         """Keeps in mind that nothing remains of a quota, rather than running into its end."""
         reset = answer.headers.get("x-ratelimit-reset", "")
-        if answer.headers.get("x-ratelimit-remaining") == "0" and reset.isdigit():
+        if answer.headers.get("x-ratelimit-remaining") == "0" and _is_number(reset):
             self.hold(lane, int(reset) + 1 - self.clock.now(), "the rate limit is reached")
 
     def _limit(self, answer: Answer, before: int) -> float | None:
@@ -344,7 +355,7 @@ class Client:
         if asked is not None:
             return asked
         reset = answer.headers.get("x-ratelimit-reset", "")
-        if answer.headers.get("x-ratelimit-remaining") == "0" and reset.isdigit():
+        if answer.headers.get("x-ratelimit-remaining") == "0" and _is_number(reset):
             return max(1.0, int(reset) + 1 - self.clock.now())
         if answer.status == 429 or _SECONDARY_WORDS.search(answer.body[:4000].decode("utf-8", "replace")):
             return _SECONDARY * 2**before * random.uniform(1.0, 1.25)
@@ -375,21 +386,79 @@ def service_address(api: str, like: str) -> str:
     none."""
     try:
         parts = urlsplit(api)
-    except ValueError:  # half of an IPv6 address
-        parts = urlsplit("")
-    if parts.scheme not in ("http", "https") or not parts.hostname:
+        usable = parts.scheme in ("http", "https") and bool(parts.hostname) and (parts.port or 1) > 0
+    except ValueError:  # half of an IPv6 address, a port that is none
+        usable, parts = False, urlsplit("")
+    if parts.username is not None or parts.query or parts.fragment:
+        raise CorpusError(f"--api: takes no user name, password or query; give an address like {like}")
+    if not usable or re.search(r"[\s\x00-\x20\\]", api):
         raise CorpusError(f"--api {api}: is no address; give one like {like}")
     return api.rstrip("/")
 
 
 def _chunks(response: requests.Response) -> Iterator[bytes]:
-    """A body as it arrives. requests itself waits for whole chunks, so a body that drips would never be given up."""
+    """A body as it arrives, still packed. requests itself waits for whole chunks, so a body that drips would never be
+    given up."""
     read = getattr(response.raw, "read1", None)
     if read is None:  # urllib3 before 2
-        yield from response.iter_content(1 << 10)
+        while chunk := response.raw.read(1 << 10, decode_content=False):
+            yield chunk
         return
-    while chunk := read(_CHUNK, decode_content=True):
+    while chunk := read(_CHUNK, decode_content=False):
         yield chunk
+
+
+def _unpacked(response: requests.Response) -> Iterator[bytes]:
+    """A body in small pieces, however many bytes one that arrives stands for. Raises zlib.error."""
+    coding = response.headers.get("content-encoding", "").strip().lower()
+    if coding in ("", "identity"):
+        yield from _chunks(response)
+        return
+    if coding not in ("gzip", "x-gzip"):
+        raise _Fault("packed its answer in a way that was not asked for")
+    unpacker = zlib.decompressobj(31)
+    for chunk in _chunks(response):
+        while chunk:
+            yield unpacker.decompress(chunk, _CHUNK)
+            chunk = unpacker.unconsumed_tail
+    yield unpacker.flush()
+    if not unpacker.eof:
+        raise zlib.error("ended early")
+
+
+def _onward(service: str, url: str, place: str) -> str:
+    """Where a redirect leads, which is the same host: nobody asked for another one, and who answers may not choose
+    which addresses this machine asks. Raises CorpusError, and _Fault for what is no address."""
+    try:
+        onward = urljoin(url, place)
+        here, there = urlsplit(url), urlsplit(onward)
+        ports = here.port, there.port
+    except ValueError:
+        raise _Fault("redirects to an address that is none") from None
+    if there.scheme not in ("http", "https") or not there.hostname:
+        raise _Fault("redirects to an address that is none")
+    encrypted = (here.scheme, there.scheme) == ("http", "https") and ports == (None, None)
+    if here.hostname != there.hostname or there.username or not (_origin(url) == _origin(onward) or encrypted):
+        raise CorpusError(
+            f"{service}: {_place(url)} redirects to {there.scheme}://{there.hostname}, which is not asked; "
+            "check the address"
+        )
+    return onward
+
+
+def _whole(value: Any) -> Any:
+    """What was read from JSON, with U+FFFD for halves of characters."""
+    if isinstance(value, str):
+        return _LONE_SURROGATE.sub("\ufffd", value)
+    if isinstance(value, list):
+        return [_whole(each) for each in value]
+    if isinstance(value, dict):
+        return {_whole(name): _whole(each) for name, each in value.items()}
+    return value
+
+
+def _is_number(text: str) -> bool:
+    return re.fullmatch(r"[0-9]{1,15}", text) is not None
 
 
 class _Fault(Exception):
@@ -399,7 +468,7 @@ class _Fault(Exception):
 def _refusal(service: str, at: str, answer: Answer) -> Refused:
     said = ""
     with contextlib.suppress(ValueError, AttributeError):
-        said = str(answer.json().get("message") or answer.json().get("error_message") or "")[:200]
+        said = _clean(str(answer.json().get("message") or answer.json().get("error_message") or ""))[:200]
     help = {
         401: "the token is not accepted: give a valid one, or none",
         403: "give a token that may read it",
@@ -414,13 +483,13 @@ def _refusal(service: str, at: str, answer: Answer) -> Refused:
 def _retry_after(answer: Answer, now: float) -> float | None:
     """Seconds asked for by a Retry-After header, which holds seconds or a date; None without one."""
     value = answer.headers.get("retry-after", "").strip()
-    if value.isdigit():
+    if _is_number(value):
         return max(1.0, float(value))
     if not value:
         return None
     try:
         return max(1.0, parsedate_to_datetime(value).timestamp() - now)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return None
 
 
@@ -436,7 +505,10 @@ def _with_query(url: str, params: Mapping[str, object] | None) -> str:
 
 
 def _place(url: str) -> str:
-    parts = urlsplit(url)
+    try:
+        parts = urlsplit(url)
+    except ValueError:
+        return "an address that is none"
     return f"{parts.hostname or ''}{parts.path}"
 
 
@@ -462,14 +534,19 @@ def _span(seconds: float) -> str:
 _hidden: set[str] = set()
 
 
+def _clean(text: str) -> str:
+    """A text without secrets, which who answers may have repeated."""
+    for secret in _hidden:
+        text = text.replace(secret, "***")
+    return text
+
+
 class _Hider(logging.Filter):
     """Takes secrets out of log records: urllib3 logs whole addresses when somebody asks it to."""
 
     def filter(self, record: logging.LogRecord) -> bool:
         text = record.getMessage()
-        clean = text
-        for secret in _hidden:
-            clean = clean.replace(secret, "***")
+        clean = _clean(text)
         if clean != text:
             record.msg, record.args = clean, ()
         return True

@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from types import TracebackType
 from typing import TYPE_CHECKING, TextIO
 
+from ..edges.console import UserError, visible, write
 from .gather import Progress
 from .store import Taken
 
@@ -52,7 +54,7 @@ class Reporter:
         self._verbose = verbose
         self._bars: Bars | None = None
         self._task: TaskID | None = None
-        self._terminal = not quiet and self._stream.isatty()
+        self._terminal = not quiet and self._stream is not None and self._stream.isatty()
         self._estimate = Estimate()
 
     def __enter__(self) -> Reporter:
@@ -90,9 +92,10 @@ class Reporter:
     def line(self, text: str) -> None:
         """A line that stays: why the job waits, for one."""
         if self._bars is not None:
-            self._bars.console.print(text, markup=False, highlight=False)
-        else:
-            print(text, file=self._stream, flush=True)
+            self._bars.console.print(visible(text), markup=False, highlight=False)
+        elif self._stream is not None:
+            with suppress(UserError, BrokenPipeError):
+                write(text, self._stream)
 
 
 def described(progress: Progress, left: float | None) -> str:

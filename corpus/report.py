@@ -14,6 +14,8 @@ from typing import TypeVar
 import msgspec
 
 from ..edges.console import UserError
+from ..edges.files import open_regular, writing
+from ..edges.limits import limits, size_text
 
 LABELS = ("library-update", "dependency", "inconsistency", "message-logic", "other")
 KINDS = {
@@ -134,54 +136,35 @@ def faults_of(label: Label) -> str:
 
 def write_rows(path: Path, rows: Iterable[msgspec.Struct | msgspec.Raw]) -> int:
     """Writes rows as JSON Lines, whole or not at all. Returns how many. Raises CorpusError."""
-    import os
-    import tempfile
-
     encode = msgspec.json.Encoder().encode
     count = 0
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                for row in rows:
-                    file.write(encode(row) + b"\n")
-                    count += 1
-                file.flush()
-                os.fsync(handle)
-            os.chmod(name, _mode(path))
-            os.replace(name, path)
-        except BaseException:
-            os.unlink(name)
-            raise
+        with writing(path) as file:
+            for row in rows:
+                file.write(encode(row) + b"\n")
+                count += 1
     except OSError as error:
         raise CorpusError(f"{path}: cannot be written: {error.strerror}; give another file") from None
     return count
 
 
-def _mode(path: Path) -> int:
-    """The permissions of a file that is replaced, or those of a new one."""
-    import os
-
-    if path.exists():
-        return path.stat().st_mode & 0o777
-    mask = os.umask(0)
-    os.umask(mask)
-    return 0o666 & ~mask
-
-
 def _read(path: Path, kind: type[_Row]) -> Iterator[_Row]:
     decoder = msgspec.json.Decoder(kind)
+    longest = limits().text
     try:
-        with path.open("rb") as file:
-            for number, line in enumerate(file, 1):
+        with open(open_regular(path), "rb") as file:
+            number = 0
+            while line := file.readline(longest + 1):
+                number += 1
+                if len(line) > longest:
+                    raise CorpusError(f"{path}:{number}: is longer than {size_text(longest)}; mend the line")
                 if number == 1:
                     line = line.removeprefix(codecs.BOM_UTF8)
                 if not line.strip():
                     continue
                 try:
                     yield decoder.decode(line)
-                except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+                except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
                     raise CorpusError(
                         f"{path}:{number}: is no {kind.__name__.lower()} ({error}); mend the line"
                     ) from None

@@ -8,6 +8,7 @@ has the mapping as a table. Nothing of a record's text is taken: ids, codes and 
 
 from __future__ import annotations
 
+import errno
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,6 +17,9 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from ..edges.documents import DocumentError, load_yaml_as_text
+from ..edges.files import read_file
+from ..edges.limits import limits
 from .report import KINDS, CorpusError, Label
 
 LIKELY, SURE, UNMAPPED = "likely", "sure", "unmapped"
@@ -242,19 +246,12 @@ def _pull_of(record: Mapping[str, Any]) -> str:
 
 def _parsed(path: Path) -> Mapping[str, Any]:
     """A record with every scalar as text: `1e09040` is a commit and no number. Raises ValueError."""
-    import yaml
-
     try:
-        # Not libyaml's loader, which ends the process on deep nesting.
-        record = yaml.load(path.read_bytes(), yaml.BaseLoader)
+        record = load_yaml_as_text(read_file(path, limits().settings, follow=False))
     except OSError as error:
-        raise ValueError(f"cannot be read: {error.strerror}") from None
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f" in line {mark.line + 1}" if mark is not None else ""
-        raise ValueError(f"is no YAML{line}: {getattr(error, 'problem', None) or 'unreadable'}") from None
-    except RecursionError:
-        raise ValueError("is nested too deeply") from None
+        raise ValueError(f"cannot be read: {_reason(error)}") from None
+    except DocumentError as error:
+        raise ValueError(f"is no YAML{f' in line {error.line}' if error.line else ''}: {error}") from None
     if not isinstance(record, Mapping) or "bug" not in record:
         raise ValueError("is no record of ROBUST: it has no `bug`")
     return record
@@ -271,9 +268,12 @@ def _texts(value: object) -> list[str]:
     return [text for item in value if (text := _text(item))] if isinstance(value, list) else []
 
 
+def _reason(error: OSError) -> str:
+    return "is a link" if error.errno == errno.ELOOP else error.strerror or type(error).__name__
+
+
 def _head(path: Path) -> str:
     try:
-        with path.open("rb") as file:
-            return file.read(2000).decode("utf-8", "replace")
+        return read_file(path, limits().text, follow=False)[:2000].decode("utf-8", "replace")
     except OSError:
         return ""

@@ -5,13 +5,17 @@ from __future__ import annotations
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import msgspec
 
-from ..edges.console import counted
+from ..edges.console import counted, visible, write
 from .agreement import Agreement, Interval, agreement
 from .distros import DISTROS, distros_in
 from .report import KINDS, LABELS, PHASES, Label, Report, repository_of
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 NONE_NAMED = "none named"
 UNDATED = "undated"
@@ -109,9 +113,15 @@ def print_text(stats: Stats, most: int = 15) -> None:
     """Prints the numbers as tables: in colour on a terminal, plain elsewhere. most: how many projects are listed."""
     from rich.console import Console
 
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False)
     if not console.is_terminal:  # whoever reads a pipe cuts lines by itself
-        console = Console(highlight=False, no_color=True, width=200, color_system=None)
+        console = Console(highlight=False, markup=False, no_color=True, width=200, color_system=None)
+    with console.capture() as printed:
+        _print_text(stats, most, console)
+    write(printed.get())
+
+
+def _print_text(stats: Stats, most: int, console: Console) -> None:
     console.print(counted(stats.reports, "label"))
     console.print(_labels_table(stats))
     tables: list[tuple[str, Table | None]] = [
@@ -130,7 +140,7 @@ def print_text(stats: Stats, most: int = 15) -> None:
         console.print(_agreement_table(stats.agreement))
         console.print(_rich("first \\ second", stats.agreement.confusion, total=False))
     for note in stats.notes:
-        console.print(f"note: {note}")
+        console.print(visible(f"note: {note}"))
 
 
 def _labels_table(stats: Stats):
@@ -143,10 +153,12 @@ def _labels_table(stats: Stats):
 
 
 def _rich(title: str, rows: Mapping[str, Mapping[str, int]], total: bool = True):
+    from rich.text import Text
+
     table = _new_table(title, *LABELS, *(["all"] if total else []))
     for name, counts in rows.items():
         cells = [f"{counts[label]:,}" if counts[label] else "\u00b7" for label in LABELS]
-        table.add_row(name, *cells, *([f"{sum(counts.values()):,}"] if total else []))
+        table.add_row(Text(visible(name)), *cells, *([f"{sum(counts.values()):,}"] if total else []))
     return table
 
 
@@ -174,7 +186,7 @@ def _new_table(first: str, *others: str):
     from rich.box import ASCII2, SIMPLE_HEAD
     from rich.table import Table as RichTable
 
-    box = SIMPLE_HEAD if "utf" in (sys.stdout.encoding or "").lower() else ASCII2
+    box = SIMPLE_HEAD if "utf" in (getattr(sys.stdout, "encoding", None) or "").lower() else ASCII2
     table = RichTable(box=box, pad_edge=False)
     table.add_column(first)
     for name in others:

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from ..edges.files import open_regular, read_start
 from .outputs import unwritable
 from .report import CorpusError, Report, read_reports, repository_of
 
@@ -145,8 +146,7 @@ def open_reports(path: Path) -> Iterator[Report]:
     by its id (see `hydrate`) is preferred, else the original.
     """
     try:
-        with path.open("rb") as file:
-            is_store = file.read(len(_MAGIC)) == _MAGIC
+        is_store = read_start(path, len(_MAGIC)) == _MAGIC
     except OSError as error:
         raise CorpusError(
             f"{path}: cannot be read: {error.strerror}; give a JSON Lines file, or a store made by "
@@ -170,7 +170,7 @@ class Store:
         self.path = path
         self.now = clock
         self._forgot = False
-        self._made = os.path.exists(path)
+        self._made = os.path.lexists(path)
         fault = "" if self._made else unwritable(path)
         if fault:
             raise CorpusError(f"{path}: cannot be opened ({fault}); give another file with --store")
@@ -255,7 +255,10 @@ class Store:
     def state(self, name: str) -> dict[str, Any] | None:
         """The state of a gathering, None when it was never begun."""
         rows = self._all("SELECT state FROM gathering WHERE name = ?", (name,))
-        return msgspec.json.decode(rows[0][0]) if rows else None
+        try:
+            return msgspec.json.decode(rows[0][0], type=dict) if rows else None
+        except (msgspec.MsgspecError, TypeError, RecursionError) as error:
+            raise self._damaged(error) from None
 
     def gatherings(self) -> list[tuple[str, bool, float]]:
         """(name, whether it came to its end, seconds since 1970 of its last page) of each gathering."""
@@ -270,12 +273,12 @@ class Store:
     def raw(self, id: str) -> bytes:
         """What is kept of the answer that a report was read from; empty when there is none."""
         rows = self._all("SELECT raw FROM report WHERE key = ?", (self._key(id),))
-        return zlib.decompress(rows[0][0]) if rows and rows[0][0] else b""
+        return self._unpacked(rows[0][0]) if rows and rows[0][0] else b""
 
     def report(self, id: str) -> Report | None:
         """One report by its id or by one it had before; None when it is not here or has no text any more."""
         rows = self._all(f"{_REPORTS} AND r.key = ?", (self._key(id),))
-        return _decoded(*rows[0][1:]) if rows else None
+        return self._decoded(*rows[0][1:]) if rows else None
 
     def reports(self) -> Iterator[Report]:
         """All reports with a text in the order of their keys, each thing reported once (see open_reports)."""
@@ -283,7 +286,7 @@ class Store:
         try:
             for key, *row in self._db.execute(f"{_REPORTS} ORDER BY r.key"):
                 if key not in left_out:
-                    yield _decoded(*row)
+                    yield self._decoded(*row)
         except sqlite3.Error as error:
             raise self._fault(error) from None
 
@@ -389,7 +392,7 @@ class Store:
             number = id.rpartition("#")[2]
             now_id = f"{new}#{number}"
             if packed is not None:
-                report = _decode(zlib.decompress(packed))
+                report = self._decoded(packed, None, None)
                 url = report.url.replace(f"/{old}/", f"/{new}/")
                 packed = zlib.compress(msgspec.json.encode(msgspec.structs.replace(report, id=now_id, url=url)), _LEVEL)
             self._db.execute("UPDATE report SET id = ?, report = ? WHERE key = ?", (now_id, packed, key))
@@ -429,6 +432,8 @@ class Store:
         """Goes on with the file; with what it had before when that cannot be opened."""
         before = self._db
         try:
+            if os.path.lexists(self.path):
+                os.close(open_regular(self.path))
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self._db = sqlite3.connect(self.path, timeout=_BUSY_SECONDS, isolation_level=None)
         except (OSError, sqlite3.Error) as error:
@@ -451,6 +456,9 @@ class Store:
                     f"{self.path}: made by a newer rosimpact (layout {version}); update rosimpact, or give another "
                     "file with --store"
                 )
+            self._db.execute("PRAGMA trusted_schema = OFF")
+            if version and self._all("SELECT 1 FROM sqlite_master WHERE type IN ('view', 'trigger')"):
+                raise CorpusError(f"{self.path}: is a database of something else; give another file with --store")
             with contextlib.suppress(sqlite3.OperationalError):  # network folders have no shared memory
                 self._db.execute("PRAGMA journal_mode = WAL")
             self._db.execute("PRAGMA synchronous = NORMAL")
@@ -488,6 +496,31 @@ class Store:
         except sqlite3.Error as error:
             raise self._fault(error) from None
 
+    def _decoded(self, packed: bytes, wanted: str | None, original: str | None) -> Report:
+        try:
+            report = _decode(self._unpacked(packed))
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+            raise self._damaged(error) from None
+        if not wanted and not original:
+            return report
+        return msgspec.structs.replace(report, id=wanted or report.id, same_as=original or "")
+
+    def _unpacked(self, packed: bytes) -> bytes:
+        unpacker = zlib.decompressobj()
+        try:
+            data = unpacker.decompress(packed, _LARGEST)
+        except (zlib.error, TypeError) as error:
+            raise self._damaged(error) from None
+        if not unpacker.eof:
+            raise self._damaged(ValueError("a report that is cut off or too large"))
+        return data
+
+    def _damaged(self, error: Exception) -> CorpusError:
+        """The store is left as it is: what can still be read of it belongs to its user."""
+        return CorpusError(
+            f"{self.path}: is damaged ({_clause(error)[:200]}); bring back a copy, or give another file with --store"
+        )
+
     def _fault(self, error: sqlite3.Error) -> CorpusError:
         if "locked" in str(error):
             return CorpusError(f"{self.path}: another process writes to it; wait until that has ended")
@@ -499,18 +532,13 @@ class Store:
 
 
 _LEVEL = 6
+_LARGEST = 256 << 20
+"""Bytes of one report, unpacked."""
 _REPORTS = (
     "SELECT r.key, r.report, (SELECT min(w.id) FROM wanted w WHERE w.key = r.key), c.original "
     "FROM report r LEFT JOIN copy c ON c.copy = r.key WHERE r.report IS NOT NULL"
 )
 _decode = msgspec.json.Decoder(Report).decode
-
-
-def _decoded(packed: bytes, wanted: str | None, original: str | None) -> Report:
-    report = _decode(zlib.decompress(packed))
-    if not wanted and not original:
-        return report
-    return msgspec.structs.replace(report, id=wanted or report.id, same_as=original or "")
 
 
 def _lower(pairs: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:

@@ -15,6 +15,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..edges.console import counted, run_command, say
+from ..edges.documents import load_json
+from ..edges.files import read_file, write_file
+from ..edges.limits import limits
 from .figures import SETTINGS
 from .report import CorpusError
 from .store import open_reports
@@ -135,7 +138,7 @@ def _metadata(path: Path) -> dict[str, Any]:
     """What a notebook says of itself: `figures`, the names of those it makes; `texts`, whether its full form reads
     reports. Nothing when it cannot be read: it then fails when it is executed."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))["metadata"].get("rosimpact", {})
+        return load_json(read_file(path, limits().report))["metadata"].get("rosimpact", {})
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return {}
 
@@ -148,7 +151,7 @@ def _execute(path: Path, settings: dict[str, Any], output: Path, progress: Calla
     from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
     try:
-        notebook = nbformat.read(path, as_version=4)
+        notebook = nbformat.reads(read_file(path, limits().report).decode(), as_version=4)
     except Exception as error:
         return Outcome(path.stem, (), f"is no notebook ({error}); take the file from the repository")
     expected = tuple(_metadata(path).get("figures", ()))
@@ -183,7 +186,10 @@ def _execute(path: Path, settings: dict[str, Any], output: Path, progress: Calla
     made = tuple(name for name in expected if _drawn(output / "figures", name))
     if not failure and len(made) < len(expected):
         failure = f"made no figure {', '.join(f'`{name}`' for name in expected if name not in made)}"
-    nbformat.write(_plain(notebook), output / path.name)
+    try:
+        write_file(output / path.name, (nbformat.writes(_plain(notebook)) + "\n").encode())
+    except OSError as error:
+        failure = failure or f"cannot be written: {error.strerror}"
     return Outcome(path.stem, made, failure)
 
 

@@ -14,6 +14,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from ..edges.console import run_command, say
+from ..edges.documents import load_json
+from ..edges.files import read_file, write_file
+from ..edges.limits import limits
 from .report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, group_of, read_labels
 
 if TYPE_CHECKING:
@@ -106,13 +109,10 @@ def predictions_of(found: Sequence[Example], judged: Judged) -> list[Prediction]
 
 def write(found: Measured, folder: Path) -> None:
     """Writes both files; they are replaced only when all is computed."""
-    folder.mkdir(parents=True, exist_ok=True)
     lines = b"".join(msgspec.json.encode(one) + b"\n" for one in found.predictions)
     text = json.dumps({**found.digests, "beside": found.beside}, indent=1) + "\n"
     for name, content in ((PREDICTIONS, lines), (BESIDE, text.encode())):
-        part = folder / f"{name}.part"
-        part.write_bytes(content)
-        part.replace(folder / name)
+        write_file(folder / name, content)
 
 
 def read(folder: Path) -> Measured:
@@ -123,7 +123,7 @@ def read(folder: Path) -> Measured:
     for number, line in enumerate(_bytes(path).splitlines(), 1):
         try:
             one = decoder.decode(line)
-        except msgspec.DecodeError as error:
+        except (msgspec.DecodeError, RecursionError) as error:
             raise CorpusError(f"{path}:{number}: {error}; {_AGAIN}") from None
         known = one.label in LABELS and one.source in SOURCES and one.wording in WORDINGS
         if not known or len(one.probabilities) != len(LABELS):
@@ -131,7 +131,7 @@ def read(folder: Path) -> Measured:
         predictions.append(one)
     path = folder / BESIDE
     try:
-        about = json.loads(_bytes(path))
+        about = load_json(_bytes(path))
         digests = {name: about[name] for name in ("labels_digest", "texts_digest")}
         return Measured(predictions, about["beside"], digests)
     except (ValueError, KeyError, TypeError) as error:
@@ -143,7 +143,7 @@ _AGAIN = "make it again with `rosimpact study predict`"
 
 def _bytes(path: Path) -> bytes:
     try:
-        return path.read_bytes()
+        return read_file(path, limits().report)
     except OSError as error:
         raise CorpusError(f"{path}: cannot be read: {error.strerror}; {_AGAIN}") from None
 

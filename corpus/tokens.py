@@ -21,7 +21,7 @@ def github_token(api: str, environment: Mapping[str, str] = os.environ) -> str:
     host = (parts.hostname or "").lower()
     if parts.scheme != "https" and host not in _LOOPBACK:
         return ""
-    own = ("api.github.com", (urlsplit(environment.get("GITHUB_API_URL", "")).hostname or "").lower())
+    own = ("api.github.com", _host(environment.get("GITHUB_API_URL", "")))
     names = ("GITHUB_TOKEN", "GH_TOKEN") if host in own else ("GH_ENTERPRISE_TOKEN", "GITHUB_ENTERPRISE_TOKEN")
     return _first(names, environment) or _kept(f"github@{host}")
 
@@ -33,6 +33,13 @@ def stack_exchange_key(api: str, environment: Mapping[str, str] = os.environ) ->
     if host not in _LOOPBACK and (parts.scheme, host) != ("https", "api.stackexchange.com"):
         return ""
     return _first(("STACK_EXCHANGE_KEY",), environment) or _kept(f"stack-exchange@{host}")
+
+
+def _host(address: str) -> str:
+    try:
+        return (urlsplit(address).hostname or "").lower()
+    except ValueError:  # half of an IPv6 address
+        return ""
 
 
 def _first(names: tuple[str, ...], environment: Mapping[str, str]) -> str:

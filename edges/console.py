@@ -19,6 +19,9 @@ import sys
 from collections.abc import Callable
 from typing import Any, TextIO
 
+from .interrupts import interruptible
+from .limits import LimitError, limits
+
 DEBUG = "ROSIMPACT_DEBUG"
 """Set by people who work on rosimpact itself: an unforeseen error then comes with its traceback."""
 
@@ -161,9 +164,12 @@ def write(text: str, stream: TextIO | None = None) -> None:
 
 
 def write_json(text: str) -> None:
-    """Prints JSON on standard output; what the stream's encoding cannot say is escaped as JSON does. Raises as write()
+    """Prints JSON on standard output, in ASCII with JSON's own escapes where that is not UTF-8. Raises as write()
     does."""
-    _put(text, sys.stdout, "rosimpact.json")
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    if codecs.lookup(encoding).name != "utf-8" and not text.isascii():
+        text = text.encode("ascii", "rosimpact.json").decode("ascii")
+    _put(text, sys.stdout, "backslashreplace")
 
 
 def write_exactly(text: str) -> None:
@@ -257,28 +263,64 @@ class UserError(Exception):
     """What was asked for cannot be done; the text names the file or place and what to do."""
 
 
-def run_command(work: Callable[[], int], interrupted: str = "interrupted", about: str = "the corpus") -> int:
+def run_command(
+    work: Callable[[], int],
+    interrupted: str = "interrupted",
+    about: object = "the corpus",
+    fail: Callable[[str], int] | None = None,
+) -> int:
     """Runs a command's work and returns its exit status.
 
     A failure is one line on standard error and the status 2. interrupted: what Ctrl-C leaves, as a clause; its status
-    is 130. about: what an error of the system without a file of its own is about.
+    is 130. about: what an error of the system without a file of its own is about. fail: says why the work failed, and
+    returns the status, where that takes more than a line. Raises BrokenPipeError when nobody reads any longer.
     """
-    try:
-        return work()
-    except UserError as error:
-        return _failed(str(error))
-    except KeyboardInterrupt:
-        say(f"rosimpact: {interrupted}")
-        return 130
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else about
-        return _failed(f"{place}: {error.strerror or error}; check that it can be read and written")
-    except Exception as error:
-        if os.environ.get(DEBUG):
+
+    def contained() -> int:
+        try:
+            limits()
+            return work()
+        except BrokenPipeError:
             raise
-        return _failed(unforeseen(error))
+        except Exception as error:
+            if os.environ.get(DEBUG) and not isinstance(error, (UserError, LimitError, OSError)):
+                raise
+            message = describe(error, about)
+        # Outside the handler, where what the work held is free again.
+        return (fail or _failed)(message)
+
+    return interruptible(contained, lambda: say(f"rosimpact: {interrupted}"))
+
+
+def describe(error: Exception, about: object = "") -> str:
+    """Why something failed and what to do, as a clause. about: what an error without a file of its own is about."""
+    if isinstance(error, (UserError, LimitError)):
+        return str(error)
+    if isinstance(error, OSError) and not _shortage(error):
+        place = error.filename if isinstance(error.filename, str | bytes) else str(about)
+        reason = f"{visible(os.fsdecode(place))}: {error.strerror or error}".removeprefix(": ")
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            return f"{reason}; make room there"
+        return f"{reason}; check that it can be read and written"
+    return unforeseen(error)
+
+
+def _shortage(error: BaseException) -> str:
+    """What the process ran out of, and what to do, as a clause; empty for other errors."""
+    number = error.errno if isinstance(error, OSError) else 0
+    if number in (errno.EMFILE, errno.ENFILE):
+        return "too many open files; allow more with `ulimit -n 4096`, or use fewer processes with --jobs"
+    # What the dynamic loader says when a module is imported.
+    unloaded = isinstance(error, ImportError) and ("failed to map" in str(error) or "allocate" in str(error))
+    if isinstance(error, MemoryError) or unloaded or number == errno.ENOMEM:
+        return "not enough memory; give it more, or use fewer processes with --jobs 1"
+    if number == errno.EAGAIN or (isinstance(error, RuntimeError) and "start new thread" in str(error)):
+        return "the system allows no more processes or threads; use fewer with --jobs 1, or allow more with `ulimit -u`"
+    if isinstance(error, RecursionError):
+        return f"something is nested too deeply to be read{_place(error)}; leave it out, or nest it less"
+    if any(kind.__name__ == "BrokenExecutor" for kind in type(error).__mro__):
+        return "a process that worked for this one died; give it more memory, or use fewer with --jobs 1"
+    return ""
 
 
 def steps() -> Callable[[str, int, int], None]:
@@ -316,13 +358,20 @@ def counted(number: int, noun: str) -> str:
 
 
 def unforeseen(error: BaseException) -> str:
-    """An error that nobody foresaw as a clause: its kind, where it was raised, its text, and what to do."""
+    """An error that nobody foresaw as a clause: its kind, where it was raised, its text, and what to do. Running out of
+    memory, open files or the like is no fault of rosimpact, and is said as it is."""
+    if shortage := _shortage(error):
+        return shortage
+    text = visible(" ".join(str(error).split())[:200])
+    what = f"{type(error).__name__}{_place(error)}{': ' + text if text else ''}"
+    return f"{what}; this is a fault of rosimpact, please report it"
+
+
+def _place(error: BaseException) -> str:
     trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
-    place = f" in {os.path.basename(trace.tb_frame.f_code.co_filename)}:{trace.tb_lineno}" if trace is not None else ""
-    text = " ".join(str(error).split())[:200]
-    return f"{type(error).__name__}{place}{': ' + text if text else ''}; this is a fault of rosimpact, please report it"
+    return f" in {os.path.basename(trace.tb_frame.f_code.co_filename)}:{trace.tb_lineno}" if trace is not None else ""
 
 
 def _failed(message: str) -> int:

@@ -13,6 +13,9 @@ from typing import Any
 
 from .limits import limits
 
+_DIGITS_AT_MOST = 1_000
+_NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
+
 
 class DocumentError(ValueError):
     """A document cannot be read, or exceeds a limit; the text is one clause. line: counted from 1, 0 when unknown."""
@@ -29,8 +32,20 @@ def load_yaml(data: bytes | str) -> Any:
     """
     import yaml
 
+    return _loaded(data, yaml, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+
+
+def load_yaml_as_text(data: bytes | str) -> Any:
+    """The same with every value as text, as it is written: `1e09040` is a commit and no number, `no` a title. Raises
+    DocumentError."""
+    import yaml
+
+    return _loaded(data, yaml, getattr(yaml, "CBaseLoader", yaml.BaseLoader))
+
+
+def _loaded(data: bytes | str, yaml: Any, base: Any) -> Any:
     try:
-        return _construct(data, yaml)
+        return _construct(data, yaml, base)
     except DocumentError:
         raise
     except yaml.MarkedYAMLError as error:
@@ -42,8 +57,7 @@ def load_yaml(data: bytes | str) -> Any:
         raise DocumentError("nested too deeply") from None
 
 
-def _construct(data: bytes | str, yaml: Any) -> Any:
-    base = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+def _construct(data: bytes | str, yaml: Any, base: Any) -> Any:
     budget = limits()
     _check_depth(data, yaml, base, budget.depth)
     loader = base(data)
@@ -83,7 +97,11 @@ def _count(node: Any, yaml: Any, budget: int, depth: int) -> None:
         if level > depth:
             raise DocumentError(f"nested deeper than {depth} levels", each.start_mark.line + 1)
         total = 1
-        if not isinstance(each, yaml.ScalarNode):
+        if isinstance(each, yaml.ScalarNode):
+            # Numbers in base 60 take quadratic time, and Python does not print those of thousands of digits.
+            if len(each.value) > _DIGITS_AT_MOST and each.tag in _NUMBERS:
+                raise DocumentError(f"a number of more than {_DIGITS_AT_MOST:,} digits", each.start_mark.line + 1)
+        else:
             open_nodes.add(id(each))
             children = each.value if isinstance(each, yaml.SequenceNode) else [n for pair in each.value for n in pair]
             for child in children:
@@ -98,6 +116,8 @@ def _count(node: Any, yaml: Any, budget: int, depth: int) -> None:
 
 
 _DOTTED = re.compile(r"(?m)^[ \t]*\[{0,2}[^=\n\"'#\[\]]*")
+# Reading a dotted key takes time quadratic in its parts, of which a line has at most one more than dots.
+_DOTS_SQUARED = 2_000_000
 
 
 def load_toml(text: str) -> dict[str, Any]:
@@ -113,6 +133,11 @@ def load_toml(text: str) -> dict[str, Any]:
     for match in _DOTTED.finditer(text):
         if match[0].count(".") > depth:
             raise DocumentError(f"a key of more than {depth} parts", text.count("\n", 0, match.start()) + 1)
+    left = _DOTS_SQUARED
+    for number, line in enumerate(text.split("\n"), 1):
+        left -= line.count(".") ** 2
+        if left < 0:
+            raise DocumentError("too many dotted keys, or keys of too many parts", number)
     try:
         return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, ValueError) as error:

@@ -10,9 +10,10 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import secrets
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import IO
 
 from .limits import size_text
@@ -20,9 +21,15 @@ from .limits import size_text
 _CHUNK = 1 << 20
 _READ = os.O_RDONLY | os.O_CLOEXEC | os.O_NOCTTY | os.O_NONBLOCK
 _FOLDER = os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY | os.O_NOFOLLOW
-# What a shell gives a command to write to; they are no files of anybody's.
-_STREAMS = ("/dev/null", "/dev/stdout", "/dev/stderr")
+# What a shell gives a command to write to, `>(tee log)` too; they are no files of anybody's.
+_STREAMS = {"/dev/stdout": 1, "/dev/stderr": 2}
+_NOWHERE = -1
+_DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/([0-9]{1,6})\Z")
+# Characters that HFS+ leaves out when it compares names, and the short name of `.git` on NTFS.
+_NOT_COMPARED = re.compile("[\u200c-\u200f\u202a-\u202e\u206a-\u206f\ufeff]")
+_GIT = (".git", "git~1")
 NOT_REGULAR = "not a regular file"
+CHANGED = "changed since it was read"
 
 Path = str | os.PathLike[str]
 
@@ -33,7 +40,11 @@ def open_regular(path: Path, *, follow: bool = True) -> int:
     Raises OSError: EINVAL with NOT_REGULAR for named pipes, devices, sockets; ENXIO, ELOOP, ENOENT and so on.
     """
     # Opening a device can have effects of its own, so the kind is asked before, and again on what was opened.
-    if not stat.S_ISREG((os.stat if follow else os.lstat)(path).st_mode):
+    try:
+        mode = (os.stat if follow else os.lstat)(path).st_mode
+    except ValueError:
+        raise _no_name(path) from None
+    if not stat.S_ISREG(mode):
         raise _not_regular(path)
     descriptor = os.open(path, _READ if follow else _READ | os.O_NOFOLLOW)
     try:
@@ -43,6 +54,10 @@ def open_regular(path: Path, *, follow: bool = True) -> int:
         os.close(descriptor)
         raise
     return descriptor
+
+
+def _no_name(path: Path) -> OSError:
+    return OSError(errno.EINVAL, "is no name that a file can have", os.fspath(path))
 
 
 def _not_regular(path: Path) -> OSError:
@@ -111,25 +126,28 @@ def read_text(path: Path, limit: int, errors: str = "strict") -> str:
     return read_file(path, limit).decode("utf-8-sig", errors)
 
 
-def write_file(path: Path, data: bytes, *, beneath: Path | None = None) -> None:
+def write_file(path: Path, data: bytes, *, beneath: Path | None = None, instead_of: bytes | None = None) -> None:
     """Writes a whole file, or leaves the old one whole; folders on the way are made.
 
     beneath: a folder that must hold the file without any link in between. Without it the user named the path, whose
     folders may be links. In both cases the last part may not be a link, may be nothing but a regular file if it is
-    there, and no part of the path may be called `.git`. The old file's permissions are kept.
+    there, and no part of the path may be called `.git`. instead_of: what the file must hold until it is replaced; an
+    error with CHANGED otherwise, and no folders are made. The old file's permissions are kept. A file of several names
+    (hard links) is replaced under this one alone: the others keep the old content.
     Raises OSError.
     """
     target = os.fspath(path)
-    if beneath is None and target in _STREAMS:
-        with open(target, "wb") as stream:
-            stream.write(data)
+    if beneath is None and (stream := _stream(target)) is not None:
+        if stream != _NOWHERE:
+            _write_all(stream, data)
         return
-    folder, name = _folder_of(target, None if beneath is None else os.fspath(beneath))
-    try:
+    with _opened(target, beneath, make=instead_of is None) as (folder, name):
         mode = _mode(folder, name, target)
-        _replace(folder, name, data, mode)
-    finally:
-        os.close(folder)
+        with _temporary(folder, name, mode) as file:
+            file.write(data)
+            if instead_of is not None:
+                file.flush()
+                _check_unchanged(folder, name, instead_of, target)
 
 
 @contextlib.contextmanager
@@ -139,83 +157,169 @@ def writing(path: Path) -> Iterator[IO[bytes]]:
     Refuses what write_file() refuses. Raises OSError.
     """
     target = os.fspath(path)
-    folder, name = _folder_of(target, None)
-    try:
+    with _opened(target, None) as (folder, name):
         mode = _mode(folder, name, target)
         with _temporary(folder, name, mode) as file:
             yield file
-    finally:
-        os.close(folder)
 
 
-def check_writable_path(path: Path) -> None:
-    """Raises OSError where write_file() would refuse the path, so that long work is not begun for nothing."""
+def check_writable_path(path: Path, *, beneath: Path | None = None) -> None:
+    """Raises OSError where write_file() would refuse the path, so that long work is not begun for nothing. Nothing is
+    written or made."""
     target = os.fspath(path)
-    if target in _STREAMS:
+    if beneath is None and (stream := _stream(target)) is not None:
+        if stream != _NOWHERE:
+            os.fstat(stream)
         return
-    _refuse_git(target)
-    with contextlib.suppress(FileNotFoundError):
-        _refuse_unless_regular(os.lstat(target).st_mode, target)
+    place, parts = _way(target, beneath)
+    for part in parts[:-1]:
+        place = os.path.join(place, part)
+        if beneath is not None and os.path.islink(place):
+            raise _link_on_the_way(part, target)
+        if os.path.lexists(place) and not os.path.isdir(place):
+            raise OSError(errno.ENOTDIR, f"`{part}` on the way is no folder", target)
+    _refuse_git(os.path.realpath(place), target)
+    try:
+        _refuse_unless_regular(os.lstat(os.path.join(place, parts[-1])), target)
+    except FileNotFoundError:
+        while not os.path.exists(place):
+            place = os.path.dirname(place)
+        if not os.access(place, os.W_OK | os.X_OK):
+            raise OSError(errno.EACCES, os.strerror(errno.EACCES), target) from None
+
+
+def outermost(path: Path, folders: Iterable[Path]) -> str | None:
+    """The first folder on the way to a path, as the path is written, that is one of some folders; None when it lies in
+    none of them. What lies below belongs to whoever made that folder, links included: see write_file(beneath=)."""
+    known = set()
+    for folder in folders:
+        with contextlib.suppress(OSError, ValueError):
+            status = os.stat(folder)
+            known.add((status.st_dev, status.st_ino))
+    place = ""
+    for part in os.path.dirname(os.path.abspath(path)).split(os.sep):
+        place = f"{place}{os.sep}" if place.strip(os.sep) else os.sep
+        place += part
+        try:
+            status = os.stat(place)
+        except (OSError, ValueError):
+            return None
+        if (status.st_dev, status.st_ino) in known:
+            return place
+    return None
 
 
 def append_file(path: Path, data: bytes) -> None:
     """Adds to the end of a file, which is made when it is missing. Refuses links and all but regular files."""
+    if _stream(os.fspath(path)) is not None:
+        write_file(path, data)
+        return
     flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
     descriptor = os.open(path, flags, 0o666)
     try:
-        _refuse_unless_regular(os.fstat(descriptor).st_mode, os.fspath(path))
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise _not_regular(path)
         _write_all(descriptor, data)
     finally:
         os.close(descriptor)
 
 
-def _refuse_git(target: str) -> None:
-    if any(part.lower() == ".git" for part in target.split(os.sep)):
+def _stream(target: str) -> int | None:
+    """The open descriptor that a path names, _NOWHERE for /dev/null, None for the path of a file."""
+    if target == os.devnull:
+        return _NOWHERE
+    if target in _STREAMS:
+        return _STREAMS[target]
+    match = _DESCRIPTOR.match(target)
+    return int(match[1]) if match else None
+
+
+def _refuse_git(path: str, target: str) -> None:
+    if any(_NOT_COMPARED.sub("", part).lower() in _GIT for part in path.split(os.sep)):
         raise OSError(errno.EPERM, "lies in a .git folder, where nothing is written", target)
 
 
-def _refuse_unless_regular(mode: int, target: str) -> None:
+def _link_on_the_way(part: str, target: str) -> OSError:
+    return OSError(errno.ELOOP, f"`{part}` on the way is a link, and links are not written through", target)
+
+
+def _refuse_unless_regular(status: os.stat_result, target: str) -> None:
+    mode = status.st_mode
     if stat.S_ISLNK(mode):
         raise OSError(errno.ELOOP, "is a link, and links are not written through", target)
     if stat.S_ISDIR(mode):
         raise OSError(errno.EISDIR, "is a folder", target)
     if not stat.S_ISREG(mode):
         raise OSError(errno.EINVAL, NOT_REGULAR, target)
+    if not mode & 0o222:
+        raise OSError(errno.EACCES, "is read-only", target)
 
 
-def _folder_of(target: str, beneath: str | None) -> tuple[int, str]:
-    """(descriptor of the folder that holds a file, the file's name). Raises OSError."""
-    relative = target if beneath is None else os.path.relpath(target, beneath)
-    _refuse_git(relative)
+def _way(target: str, beneath: Path | None) -> tuple[str, list[str]]:
+    """(folder to begin at, the folders from there to a file and its name). Raises OSError for a path that is refused
+    as it is written."""
+    try:
+        os.fsencode(target)
+    except ValueError:
+        raise _no_name(target) from None
+    if "\0" in target:
+        raise _no_name(target)
+    if target.endswith((os.sep, os.sep + ".")) or target in ("", "."):
+        raise OSError(errno.EISDIR, "is a folder", target)
     if beneath is None:
-        target = os.path.abspath(target)
-        os.makedirs(os.path.dirname(target), exist_ok=True)
-        return os.open(os.path.dirname(target), os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY), os.path.basename(target)
-    *folders, name = relative.split(os.sep)
-    if ".." in folders or name in ("", ".", "..") or os.path.isabs(relative):
+        absolute = os.path.abspath(target)
+        _refuse_git(absolute, target)
+        return os.sep, absolute.lstrip(os.sep).split(os.sep)
+    relative = os.path.relpath(os.path.abspath(target), os.path.abspath(beneath))
+    _refuse_git(relative, target)
+    parts = relative.split(os.sep)
+    # A name such as `a/../b` means something else where `a` is a link.
+    if ".." in (*parts, *target.split(os.sep)) or parts == ["."]:
         raise OSError(errno.EPERM, "lies outside of the folder that may be written", target)
-    descriptor = os.open(beneath, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)
+    return os.fspath(beneath), parts
+
+
+@contextlib.contextmanager
+def _opened(target: str, beneath: Path | None, *, make: bool = True) -> Iterator[tuple[int, str]]:
+    """(descriptor of the folder that holds a file, the file's name). make: also folders that are missing. Raises
+    OSError."""
+    start, (*folders, name) = _way(target, beneath)
+    if beneath is None:
+        start, folders = os.path.join(start, *folders), []
+        _refuse_git(os.path.realpath(start), target)
+        if make:
+            os.makedirs(start, exist_ok=True)
+    descriptor = os.open(start, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)
     try:
         for each in folders:
+            if make:
+                with contextlib.suppress(FileExistsError):
+                    os.mkdir(each, dir_fd=descriptor)
             inner = _enter(each, descriptor, target)
             os.close(descriptor)
             descriptor = inner
-    except BaseException:
+        yield descriptor, name
+    finally:
         os.close(descriptor)
-        raise
-    return descriptor, name
 
 
 def _enter(name: str, folder: int, target: str) -> int:
-    """A descriptor of a folder in a folder, made when it is missing; a link to one is refused."""
-    with contextlib.suppress(FileExistsError):
-        os.mkdir(name, dir_fd=folder)
+    """A descriptor of a folder in a folder; a link to one is refused."""
     try:
         return os.open(name, _FOLDER, dir_fd=folder)
     except OSError as error:
-        if error.errno in (errno.ELOOP, errno.ENOTDIR):
-            raise OSError(errno.ELOOP, f"`{name}` on the way is a link or no folder", target) from None
-        raise
+        if error.errno not in (errno.ELOOP, errno.ENOTDIR):
+            raise
+        if _is_link(name, folder):
+            raise _link_on_the_way(name, target) from None
+        raise OSError(errno.ENOTDIR, f"`{name}` on the way is no folder", target) from None
+
+
+def _is_link(name: str, folder: int) -> bool:
+    try:
+        return stat.S_ISLNK(os.lstat(name, dir_fd=folder).st_mode)
+    except OSError:
+        return False
 
 
 def _mode(folder: int, name: str, target: str) -> int | None:
@@ -224,21 +328,30 @@ def _mode(folder: int, name: str, target: str) -> int | None:
         status = os.stat(name, dir_fd=folder, follow_symlinks=False)
     except FileNotFoundError:
         return None
-    _refuse_unless_regular(status.st_mode, target)
+    _refuse_unless_regular(status, target)
     return stat.S_IMODE(status.st_mode)
 
 
-def _replace(folder: int, name: str, data: bytes, mode: int | None) -> None:
-    with _temporary(folder, name, mode) as file:
-        file.write(data)
+def _check_unchanged(folder: int, name: str, content: bytes, target: str) -> None:
+    """Raises OSError with CHANGED where a file is not what was read before."""
+    try:
+        descriptor = os.open(name, _READ | os.O_NOFOLLOW, dir_fd=folder)
+    except FileNotFoundError:
+        raise OSError(errno.ESTALE, CHANGED, target) from None
+    try:
+        if os.fstat(descriptor).st_size != len(content) or _read(descriptor, target, len(content)) != content:
+            raise OSError(errno.ESTALE, CHANGED, target)
+    finally:
+        os.close(descriptor)
 
 
 @contextlib.contextmanager
 def _temporary(folder: int, name: str, mode: int | None) -> Iterator[IO[bytes]]:
     """A new file beside another, whose name it gets at the end."""
-    temporary = f".{name[:100]}.{secrets.token_hex(6)}.part"
+    # Names end at 255 bytes. What others may not read is not readable while it is written either.
+    temporary = b"." + os.fsencode(name)[:100] + b"." + secrets.token_hex(6).encode() + b".part"
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW
-    descriptor = os.open(temporary, flags, 0o666, dir_fd=folder)
+    descriptor = os.open(temporary, flags, 0o666 if mode is None else 0o600, dir_fd=folder)
     try:
         with open(descriptor, "wb") as file:
             yield file

@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..edges import files
+from ..edges.documents import DocumentError, load_yaml
+from ..edges.limits import limits
 from . import memo
 from .gather import gather
 from .model.flow.wanted import code_kinds
@@ -82,16 +85,12 @@ def read_pinned(path: Path) -> dict[str, str]:
 
     Raises BaseError when there is no such file, or it is none of these.
     """
-    import yaml
-
     try:
-        # Not the C loader: it has no limit of depth and takes the process with it.
-        data: Any = yaml.load(path.read_bytes(), Loader=yaml.SafeLoader)
+        data: Any = load_yaml(files.read_file(path, limits().settings))
     except OSError as error:
         raise BaseError(f"{path}: cannot be read ({error.strerror}); give a revision or a .repos file") from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        reason = " ".join(str(getattr(error, "problem", None) or error).split())
-        raise BaseError(f"{path}: is no YAML ({reason}); `vcs export --exact` writes such a file") from None
+    except DocumentError as error:
+        raise BaseError(f"{path}: is no YAML ({error}); `vcs export --exact` writes such a file") from None
     found: dict[str, str] = {}
     if isinstance(data, dict) and isinstance(data.get("repositories"), dict):
         for name, entry in data["repositories"].items():

@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..corpus import __version__
-from ..edges.console import unforeseen
+from ..edges.console import UserError, unforeseen
+from ..edges.limits import limits
 from . import findings as after
 from . import memo
-from .config import Config, PathSetting, load, parse
+from .config import Config, ConfigError, PathSetting, load, parse
 from .facts.store import Store
 from .gather import Gathered, gather
 from .guarded import Split, with_evidence
@@ -27,7 +28,7 @@ from .rules.rule import Cure, Finding, Hit, Rule, all_rules
 from .targets.providers import default_providers
 from .targets.resolve import Chosen, choose_targets
 from .targets.version import compare
-from .tree import GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
+from .tree import LEAVES, GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
 
 if TYPE_CHECKING:
     from .flow.impact import Impact
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     from .targets.shelf import Shelf
 
 
-class CheckError(Exception):
+class CheckError(UserError):
     """The check cannot be run; the text names what is wrong and what to do."""
 
 
@@ -45,7 +46,8 @@ class Options(NamedTuple):
     targets: as given on the command line. rev: a git revision instead of the files on disk. base: the revision to
     compare with, PATH=REV pairs, or a pinned .repos file. select, ignore: rules or families, over those of the
     configuration. config: another rosimpact.toml. baseline: text of a baseline file. cache: folder of the facts.
-    install: an install space whose built files are checked too.
+    install: an install space whose built files are checked too. follow_links: also read what links lead to that leave
+    the workspace.
     """
 
     targets: tuple[str, ...] = ()
@@ -59,17 +61,20 @@ class Options(NamedTuple):
     baseline: str = ""
     cache: Path | None = None
     install: Path | None = None
+    follow_links: bool = False
 
 
 DEFAULTS = Options()
 
 
 class Checked(NamedTuple):
-    """What a check gives: the report, and what it was made with."""
+    """What a check gives: the report, and what it was made with. originals: what the files held that fixes change, when
+    the fixes were made."""
 
     report: Report
     config: Config
     tree: Tree
+    originals: Mapping[str, bytes]
 
 
 Progress = Callable[[int, int], None]
@@ -144,10 +149,11 @@ def judged(
         found, parted = with_evidence(found, views)
         if parted and "unguarded-split" in chosen:
             found = after.in_order([*found, *_splits(parted, opened, chosen, settings, sources)])
+    originals: dict[str, bytes] = {}
     if any(finding.fix for finding in found):
         from . import fix
 
-        found = fix.made(found, reader(tree))
+        found = fix.made(found, reader(tree), originals)
     known: Sequence[Finding] = ()
     if options.baseline:
         found, known = after.without_known(found, after.known_from(options.baseline))
@@ -174,7 +180,7 @@ def judged(
         failure="; ".join(failures),
         impact=reached,
     )
-    return Checked(report, config, tree)
+    return Checked(report, config, tree, originals)
 
 
 def _splits(
@@ -269,14 +275,17 @@ def open_workspace(
     options: Options = DEFAULTS,
     progress: Progress | None = None,
     chosen: Callable[[Config], Mapping[str, Rule]] | None = None,
+    tree: Tree | None = None,
 ) -> Iterator[Opened]:
     """Reads a workspace up to its views. The store is closed at the end. Raises as check() does.
 
-    chosen: gives the rules that will be asked, so that all facts they need are made in one pass.
+    chosen: gives the rules that will be asked, so that all facts they need are made in one pass. tree: what is read
+    instead of what is at the path.
     """
     root = Path(path)
-    tree = open_tree(root, options.rev)
-    config = settings_of(root, tree, options.config)
+    if tree is None:
+        tree = open_tree(root, options.rev, follow_links=options.follow_links)
+    config = settings_of(root, tree, options.config, follow_links=options.follow_links)
     asks_flow = chosen is not None and any(rule.flow for rule in chosen(config).values())
     with Store(options.cache) as store:
         second = code_kinds(tree) if asks_flow else None
@@ -308,30 +317,37 @@ def _left_out(workspace: Workspace, gathered: Gathered) -> Iterator[PathProblem]
             )
 
 
-def settings_of(root: Path, tree: Tree, file: Path | None) -> Config:
+def settings_of(root: Path, tree: Tree, file: Path | None, *, follow_links: bool = False) -> Config:
     """The configuration: the file given, else rosimpact.toml on disk, else that of the revision. Raises ConfigError."""
-    config = load(root, file)
+    config = load(root, file, follow_links=follow_links)
     name = "rosimpact.toml"
     if config.path is None and isinstance(tree, GitTree) and tree.exists(name) and not tree.is_dir(name):
-        return parse(tree.read(name), root / name)
+        try:
+            data = tree.read(name, limits().settings)
+        except OSError as error:
+            raise ConfigError(f"{root / name}: cannot be read: {error.strerror}; correct the file") from None
+        return parse(data, root / name, trusted=follow_links)
     return config
 
 
-def open_tree(root: Path, rev: str) -> Tree:
+def open_tree(root: Path, rev: str, *, follow_links: bool = False) -> Tree:
     """The files on disk, or a revision of the repository when one is asked for or the path is a bare repository.
 
-    A folder below a repository's root stays the root of what is read. Raises TreeError.
+    A folder below a repository's root stays the root of what is read. follow_links: whether links that leave it are
+    followed. Raises TreeError.
     """
     bare = (root / "objects").is_dir() and (root / "refs").is_dir() and (root / "HEAD").is_file()
     if not root.exists() or not (rev or bare):
-        return WorkingTree(root)
+        return WorkingTree(root, follow_links=follow_links)
     if not root.is_dir():
         raise TreeError(f"`{shown(os.fspath(root))}` is a file, not a folder; give the folder of a git repository")
-    tree = GitTree(root, rev or "HEAD")
+    tree = GitTree(root, rev or "HEAD", follow_links=follow_links)
     place = tree.repositories[""]
     folder = os.path.relpath(os.path.realpath(root), os.path.realpath(place))
     inside = folder != "." and not folder.startswith("..") and not bare and folder.split(os.sep)[0] != ".git"
-    return GitTree(root, rev or "HEAD", folder.replace(os.sep, "/")) if inside else tree
+    if not inside:
+        return tree
+    return GitTree(root, rev or "HEAD", folder.replace(os.sep, "/"), follow_links=follow_links)
 
 
 def reader(tree: Tree) -> Callable[[str], bytes | None]:
@@ -356,6 +372,11 @@ def nothing_analysed(path: str | os.PathLike[str], opened: Opened) -> str:
         more = f", and {len(ignored) - 3} more" if len(ignored) > 3 else ""
         cure = "remove the markers or give another folder"
         return f"{where}: no package is left to analyse, all are ignored ({named}{more}); {cure}"
+    linked = [problem for problem in opened.tree.problems if problem.message == LEAVES]
+    if linked:
+        named = ", ".join(f"`{shown(problem.path)}`" for problem in linked[:3])
+        more = f" and {len(linked) - 3} more" if len(linked) > 3 else ""
+        return f"{where}: no package was found; links lead out of it ({named}{more}), follow them with --follow-links"
     unread = [problem for problem in opened.gathered.problems if problem.path.rpartition("/")[2].startswith("package")]
     if unread:
         named = "; ".join(f"`{shown(problem.path)}`: {problem.message}" for problem in unread[:3])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import io
 import sys
+import warnings
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
@@ -40,6 +41,9 @@ app.add_typer(corpus_app, name="corpus")
 app.add_typer(classifier_app, name="classifier")
 app.command()(triage)
 app.add_typer(study_app, name="study")
+
+
+_FOLLOW_LINKS = "Also read what links lead to that leave the workspace. Not for workspaces of people you do not know."
 
 
 def _print_schema(value: bool) -> None:
@@ -111,6 +115,7 @@ def check(
     ] = False,
     diff: Annotated[bool, typer.Option("--diff", help="Print what --fix would change; change nothing.")] = False,
     config: Annotated[Path | None, typer.Option(help="Another rosimpact.toml.")] = None,
+    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
     schema: Annotated[
@@ -129,7 +134,7 @@ def check(
             path, targets=tuple(target or ()), format=format, output=output, rev=rev, base=tuple(base or ()),
             select=_names(select), ignore=_names(ignore), fail_on=fail_on, notes=notes, preview=preview,
             baseline=baseline, write_baseline=write_baseline, prune_baseline=prune_baseline, fix=fix, diff=diff,
-            config=config, jobs=jobs, quiet=quiet, install=install,
+            config=config, jobs=jobs, quiet=quiet, install=install, follow_links=follow_links,
         )
     )  # fmt: skip
 
@@ -149,6 +154,7 @@ def upgrade(
     packages: Annotated[list[str] | None, typer.Option(help="Only these packages.")] = None,
     rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
     config: Annotated[Path | None, typer.Option(help="Another rosimpact.toml.")] = None,
+    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, html.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
     fail_on: Annotated[
@@ -172,7 +178,7 @@ def upgrade(
     raise typer.Exit(
         run.upgrade(
             path, from_, to, packages=_names(packages), rev=rev, config=config, format=format, output=output,
-            fail_on=fail_on, jobs=jobs, quiet=quiet,
+            fail_on=fail_on, jobs=jobs, quiet=quiet, follow_links=follow_links,
         )
     )  # fmt: skip
 
@@ -182,14 +188,18 @@ def why(
     name: Annotated[
         str, typer.Argument(help="A header, package, rosdep key, CMake name, Python module or executable.")
     ],
-    path: Annotated[Path, typer.Argument(help="Workspace whose uses are shown.")] = Path("."),
+    path: Annotated[
+        Path | None,
+        typer.Argument(help="Workspace whose uses are shown; the current folder when it is one.", show_default=False),
+    ] = None,
     target: Annotated[list[str] | None, typer.Option("--target", "-t", help="As for check.")] = None,
+    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
 ) -> None:
     """Say who provides a name on a target, since when, and who in the workspace uses it."""
     from . import run
 
-    raise typer.Exit(run.why(name, path, tuple(target or ()), format))
+    raise typer.Exit(run.why(name, path, tuple(target or ()), format, follow_links=follow_links))
 
 
 @app.command()
@@ -212,6 +222,7 @@ def graph(
     base: Annotated[
         list[str] | None, typer.Option(help="Mark what is new, gone and changed against this revision, as for check.")
     ] = None,
+    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     format: Annotated[
         str, typer.Option("--format", "-f", help="One of text, json, graphml, dot, mermaid, html.")
     ] = "text",
@@ -233,7 +244,7 @@ def graph(
         run.graph(
             path, launch=launch, arguments=tuple(set_ or ()), nodes=_names(node), topics=_names(topic),
             packages=_names(package), around=around, hops=hops, rev=rev, base=tuple(base or ()), format=format,
-            output=output, everything=all, jobs=jobs, quiet=quiet,
+            output=output, everything=all, jobs=jobs, quiet=quiet, follow_links=follow_links,
         )
     )  # fmt: skip
 
@@ -263,6 +274,7 @@ def impact(
     node: Annotated[
         list[str] | None, typer.Option(help="Only changes in this node, or that reach it; `*` stands for any text.")
     ] = None,
+    follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
     all: Annotated[
@@ -283,7 +295,7 @@ def impact(
     raise typer.Exit(
         run.impact(
             path, base=tuple(base or ()), rev=rev, packages=_names(package), topics=_names(topic), nodes=_names(node),
-            format=format, output=output, everything=all, jobs=jobs, quiet=quiet,
+            format=format, output=output, everything=all, jobs=jobs, quiet=quiet, follow_links=follow_links,
         )
     )  # fmt: skip
 
@@ -514,6 +526,9 @@ def _print_usage_error(error: Any) -> None:
 def main() -> None:
     """Entry point."""
     hold_streams()
+    if not sys.warnoptions:
+        # Those of Python quote what it parses, which is the workspace's.
+        warnings.simplefilter("ignore")
     for argument in sys.argv[1:]:
         if "\0" in argument:
             # No shell can pass one; who calls from Python can, and the system's calls would end in a ValueError.
@@ -541,4 +556,6 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    from ..edges.start import main as start
+
+    start()

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-import sys
+import os
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..edges import files
+from ..edges.console import UserError
+from ..edges.documents import DocumentError, load_toml
+from ..edges.limits import limits
 
-class ConfigError(ValueError):
+
+class ConfigError(UserError, ValueError):
     """rosimpact.toml cannot be used; the message names the file and what to change."""
 
 
@@ -21,7 +26,8 @@ class PathSetting(NamedTuple):
 
 
 class Config(NamedTuple):
-    """What a rosimpact.toml says. path is None when there is none."""
+    """What a rosimpact.toml says. path is None when there is none. trusted: the user named the file, and so it may name
+    files outside of the workspace whose content is shown."""
 
     path: Path | None = None
     targets: dict[str, dict[str, Any]] = {}  # noqa: RUF012
@@ -36,41 +42,59 @@ class Config(NamedTuple):
     rosdep_sources: tuple[str, ...] = ()
     index: str = ""  # pyright: ignore[reportIncompatibleMethodOverride]
     private: tuple[str, ...] = ()
+    trusted: bool = False
 
 
 _TABLES = {"targets", "workspace", "check", "paths"}
 _FAIL_ON = ("error", "warning", "note", "never")
 
 
-def load(folder: Path, file: Path | None = None) -> Config:
+def load(folder: Path, file: Path | None = None, *, follow_links: bool = False) -> Config:
     """Reads rosimpact.toml of a workspace (or the given file). No file gives an empty Config.
 
-    Raises ConfigError for syntax errors, unknown keys and values of the wrong type.
+    A workspace's own file has to lie in it, unless follow_links. Raises ConfigError for what cannot be read, syntax
+    errors, unknown keys and values of the wrong type.
     """
     path = file or folder / "rosimpact.toml"
+    trusted = file is not None or follow_links
+    if not trusted and not lies_in(path, folder):
+        raise ConfigError(
+            f"{path}: is a link that leads out of the workspace and is not read; give the file with --config, or "
+            "follow links with --follow-links"
+        )
     try:
-        data = path.read_bytes()
+        data = files.read_file(path, limits().settings)
     except (FileNotFoundError, NotADirectoryError):
         if file is not None:
             raise ConfigError(f"{file}: there is no such file; give an existing configuration with --config") from None
         return Config()
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}; correct the file or remove it") from None
-    return parse(data, path)
+    return parse(data, path, trusted=trusted)
 
 
-def parse(data: bytes, path: Path) -> Config:
+def lies_in(path: str | os.PathLike[str], folder: str | os.PathLike[str]) -> bool:
+    """Whether a path really leads to something below a folder."""
+    real, top = os.path.realpath(path), os.path.realpath(folder)
+    return real == top or real.startswith(top.rstrip(os.sep) + os.sep)
+
+
+def check_inside(path: Path, config: Config, where: str) -> None:
+    """Raises ConfigError for a file named by a workspace's own configuration that lies elsewhere: what it holds is
+    shown, and CI shows it to everybody. where: the setting."""
+    if config.path is not None and not config.trusted and not lies_in(path, config.path.parent):
+        raise ConfigError(
+            f"{where}: lies outside of the workspace and is not read; move it there, or give the configuration with "
+            "--config"
+        )
+
+
+def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
     """What a rosimpact.toml says. data: its bytes. path: where it lies, for messages. Raises ConfigError."""
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib  # pyright: ignore[reportMissingImports]
     try:
-        tables = tomllib.loads(data.decode("utf-8-sig"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        tables = load_toml(data.decode("utf-8-sig"))
+    except (DocumentError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path}: cannot be read: {error}; correct the file or remove it") from None
-    except RecursionError:
-        raise ConfigError(f"{path}: cannot be read: it nests too deeply; correct the file or remove it") from None
     for key in tables:
         if key not in _TABLES:
             raise ConfigError(
@@ -102,6 +126,7 @@ def parse(data: bytes, path: Path) -> Config:
         rosdep_sources=_strings(path, workspace, "rosdep_sources"),
         index=_string(path, workspace, "index"),
         private=_strings(path, workspace, "private"),
+        trusted=trusted,
     )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -10,6 +9,8 @@ from functools import lru_cache
 from hashlib import blake2b
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..edges.console import UserError, json_text
+from ..edges.documents import load_json
 from .facts.place import Allow
 from .rules.rule import SEVERITIES, Cure, Finding, Hit, Rule
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from .config import PathSetting
 
 BASELINE_NAME = ".rosimpact-baseline.json"
+_MOST_OF_ONE = 1_000_000
 EVERYTHING = ("all", "*")
 
 _RANK = {name: rank for rank, name in enumerate(SEVERITIES)}
@@ -37,7 +39,7 @@ class Suppression(NamedTuple):
     unused: list[tuple[str, int, str]]
 
 
-class SettingsError(ValueError):
+class SettingsError(UserError, ValueError):
     """A setting that cannot be obeyed; the text names it and what to write instead."""
 
 
@@ -418,26 +420,31 @@ def baseline(findings: Iterable[Finding]) -> str:
     entries = [
         {
             "rule": finding.rule,
-            "path": printable(finding.path),
-            "subject": printable(finding.subject),
+            "path": finding.path,
+            "subject": finding.subject,
             "fingerprint": fingerprint,
             "count": counts[fingerprint],
         }
         for fingerprint, finding in sorted(facts.items(), key=lambda item: (*_sort_key(item[1]), item[0]))
     ]
-    return json.dumps({"schema": 1, "findings": entries}, indent=1, ensure_ascii=False) + "\n"
+    return json_text({"schema": 1, "findings": entries}) + "\n"
 
 
 def known_from(text: str | bytes) -> Counter[str]:
     """Fingerprints a baseline file knows, with their counts. Raises SettingsError when it is not a baseline file."""
     try:
-        data = json.loads(text)
+        data = load_json(text)
         if data["schema"] != 1:
             raise SettingsError(f"the baseline has schema {data['schema']}; this version reads schema 1")
-        return Counter({str(entry["fingerprint"]): int(entry.get("count", 1)) for entry in data["findings"]})
+        return Counter(
+            {
+                str(entry["fingerprint"]): max(0, min(int(entry.get("count", 1)), _MOST_OF_ONE))
+                for entry in data["findings"]
+            }
+        )
     except SettingsError:
         raise
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError) as error:
         raise SettingsError(f"the baseline cannot be read ({error}); write it anew with --write-baseline") from None
 
 
@@ -467,8 +474,3 @@ def fails(findings: Iterable[Finding], fail_on: str = "error") -> bool:
         return False
     least = _RANK[fail_on]
     return any(finding.new and rank(finding.severity) >= least for finding in findings)
-
-
-def printable(text: str) -> str:
-    """Text that UTF-8 can carry: in paths whose bytes are no UTF-8, those bytes are replaced."""
-    return text if text.isascii() else re.sub("[\ud800-\udfff]", "\ufffd", text)

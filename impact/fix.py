@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import re
-import stat
-import tempfile
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from ..edges.files import write_file
 from .rules.cure import Declare, Insert, Remove, Replace
 from .rules.rule import Cure, Edit, Finding
 
@@ -54,11 +52,14 @@ class Applied(NamedTuple):
     refused: list[tuple[Edit, str]]
 
 
-def made(findings: Iterable[Finding], read: Callable[[str], bytes | None]) -> list[Finding]:
+def made(
+    findings: Iterable[Finding], read: Callable[[str], bytes | None], originals: dict[str, bytes] | None = None
+) -> list[Finding]:
     """Findings whose fixes are byte edits: what rules propose by name and place is looked up in the files.
 
     read: bytes of a path, None when it cannot be read. A fix of which a part cannot be made, or would change nothing,
     is dropped. What several findings want of one dependency is declared once, in a form that holds for all.
+    originals: gets what was read, which the edits count in.
     """
     findings = list(findings)
     wanted: dict[tuple[str, str], set[str]] = {}
@@ -72,7 +73,9 @@ def made(findings: Iterable[Finding], read: Callable[[str], bytes | None]) -> li
         result: list[Edit] = []
         for cure in fix:
             if cure.path not in content:
-                content[cure.path] = read(cure.path)
+                content[cure.path] = data = read(cure.path)
+                if originals is not None and data is not None:
+                    originals[cure.path] = data
             data = content[cure.path]
             part = () if data is None else _made(cure, data, wanted)
             if not part:
@@ -179,33 +182,29 @@ def unified_diff(path: str, old: bytes, new: bytes) -> str:
     if old == new:
         return ""
     before, after = (re.findall(r"[^\n]*\n|[^\n]+", data.decode("utf-8", "surrogateescape")) for data in (old, new))
-    # Git ends a name that holds a space with a tab, so that no reader takes the rest for a date.
-    end = "\t" if " " in path else ""
     lines = []
-    for line in diff(before, after, f"a/{path}{end}", f"b/{path}{end}"):
+    for line in diff(before, after, _diff_name(f"a/{path}"), _diff_name(f"b/{path}")):
         lines.append(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n")
     return "".join(lines)
 
 
-def write(path: Path, data: bytes) -> None:
-    """Replaces a file's content in one step, keeping its mode. A symbolic link stays and its target is replaced.
+def _diff_name(path: str) -> str:
+    """A path as git writes it in a patch: in quotes where it holds control characters, ended with a tab where it holds
+    a space, so that no reader takes the rest for a date."""
+    if re.search("[\x00-\x1f\x7f]", path):
+        quoted = re.sub(r'["\\]', r"\\\g<0>", path)
+        return '"' + re.sub("[\x00-\x1f\x7f]", lambda match: f"\\{ord(match[0]):03o}", quoted) + '"'
+    return f"{path}\t" if " " in path else path
 
-    Raises OSError; the file is then as it was.
+
+def write(root: Path, path: str, data: bytes, original: bytes) -> None:
+    """Replaces the content of a file of a workspace in one step, keeping its mode.
+
+    original: what the fixes were made for; a file that holds anything else by now is left alone. So is one that is a
+    link, or that is reached through a link: its fix belongs to where it lies. Raises OSError; the file is then as it
+    was.
     """
-    target = Path(os.path.realpath(path))
-    mode = stat.S_IMODE(target.stat().st_mode)
-    handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:100]}.", dir=target.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(temporary, mode)
-        os.replace(temporary, target)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
-        raise
+    write_file(os.path.join(root, path), data, beneath=root, instead_of=original)
 
 
 def offset_of(data: bytes, line: int, column: int = 1) -> int:

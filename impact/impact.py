@@ -26,16 +26,16 @@ class Reached(NamedTuple):
 
 def reached(
     path: Path, base: Sequence[str], *, rev: str = "", jobs: int | None = None,
-    progress: Callable[[int, int], None] | None = None, cache: Path | None = None,
+    progress: Callable[[int, int], None] | None = None, cache: Path | None = None, follow_links: bool = False,
 ) -> Reached:  # fmt: skip
     """What the changes since the base reach in the workspace at a path.
 
-    base, rev, jobs, cache: as for check. progress: called with (done, total) bytes while files are parsed. Raises
-    CheckError, TreeError and BaseError with a text for the user.
+    base, rev, jobs, cache, follow_links: as for check. progress: called with (done, total) bytes while files are
+    parsed. Raises CheckError, TreeError and BaseError with a text for the user.
     """
     from .base import base_tree
 
-    tree = open_tree(path, rev)
+    tree = open_tree(path, rev, follow_links=follow_links)
     with Store(cache) as store:
         old_tree, notes = base_tree(tree, tuple(base))
         now = linked(tree, store, jobs, progress)

@@ -5,22 +5,27 @@ Install spaces of catkin (devel and install), of colcon (isolated and merged), a
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
 import re
 import stat
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from ..edges.console import counted
+from ..edges.console import UserError, counted
+from ..edges.files import read_start, read_text
+from ..edges.limits import limits
 from . import processes
 from .facts import elf
 from .facts.elf import Elf
 from .facts.store import Store, fact_key, pack, unpack
+from .targets.loader import open_library
 from .tree import PathProblem, shown
 
 if TYPE_CHECKING:
@@ -42,11 +47,13 @@ _LEFT_OUT = frozenset((".debug", ".git", "CMakeFiles"))
 # Below this, reading takes less time than starting processes.
 _ALONE_BYTES = 20_000_000
 _PARTS_PER_JOB = 4
+# that an install space is said to be built on
+_PREFIXES = 100
 _PREFIX_OF_COLCON = re.compile(r'^COLCON_CURRENT_PREFIX="([^"$]+)"', re.M)
 _PREFIXES_OF_CATKIN = re.compile(r"CMAKE_PREFIX_PATH = r?'([^']*)'")
 
 
-class InstallError(Exception):
+class InstallError(UserError):
     """There is no install space to read; the text says what to do."""
 
 
@@ -128,7 +135,9 @@ def read_installed(
             f"--install {label}: holds no built program or library (no ELF file){unread}; build the workspace first, "
             "or give another folder"
         )
-    return Installed(label, tuple(binaries), frozenset(names), tuple(problems), tuple(_underlays(folder)))
+    return Installed(
+        label, tuple(binaries), frozenset(names), tuple(problems), tuple(islice(_underlays(folder), _PREFIXES))
+    )
 
 
 def _joined(label: str, path: str) -> str:
@@ -142,8 +151,16 @@ def _candidates(folder: Path, problems: list[PathProblem]) -> Iterator[tuple[str
         where = os.path.relpath(os.fsdecode(error.filename or folder), folder)
         problems.append(PathProblem(_joined(shown(os.fspath(folder)), shown(where)), _reason(error)))
 
+    entries = 0
     for here, folders, names in os.walk(folder, onerror=unread):
         folders[:] = sorted(name for name in folders if name not in _LEFT_OUT)
+        if folders and here.count(os.sep) - os.fspath(folder).count(os.sep) >= limits().depth:
+            unread(OSError(errno.ELOOP, f"folders nested deeper than {limits().depth}", here))
+            folders.clear()
+        entries += len(names)
+        if entries > limits().entries:
+            unread(OSError(errno.EFBIG, f"more than {limits().entries:,} files, the others are left out", here))
+            return
         for name in sorted(names):
             if name.endswith(_TEXT_ENDS):
                 continue
@@ -164,11 +181,10 @@ def _facts(paths: Iterable[str], store: Store, jobs: int) -> dict[str, Elf | str
     sizes: dict[str, int] = {}
     for path in dict.fromkeys(paths):
         try:
-            with open(path, "rb") as file:
-                if file.read(4) == elf.MAGIC:
-                    sizes[path] = os.fstat(file.fileno()).st_size
-                else:
-                    result[path] = None
+            if read_start(path, 4) == elf.MAGIC:
+                sizes[path] = os.stat(path).st_size
+            else:
+                result[path] = None
         except OSError as error:
             result[path] = _reason(error)
     keys: dict[str, bytes] = {}
@@ -224,7 +240,8 @@ def _extracted(items: Iterable[tuple[bytes, str]]) -> list[tuple[bytes, bytes]]:
     rows = []
     for key, path in items:
         try:
-            found = elf.read(Path(path).read_bytes())
+            with open_library(path) as file:
+                found = elf.read(file)
         except OSError:
             found = None
         rows.append((key, pack(msgspec.msgpack.encode(found)) if found is not None else b""))
@@ -233,7 +250,7 @@ def _extracted(items: Iterable[tuple[bytes, str]]) -> list[tuple[bytes, bytes]]:
 
 def _content_id(path: str) -> str:
     """git's id of the file's content."""
-    with open(path, "rb") as file:
+    with open_library(path) as file:
         digest = hashlib.sha1(b"blob %d\0" % os.fstat(file.fileno()).st_size, usedforsecurity=False)
         while chunk := file.read(1 << 20):
             digest.update(chunk)
@@ -270,7 +287,7 @@ def shelves(installed: Installed, targets: Sequence[Chosen], config: Config) -> 
     from .targets.sonames import default_sonames
 
     base = config.path.parent if config.path else Path()
-    underlays = [str(base / Path(underlay).expanduser()) for underlay in config.underlays]
+    underlays = [str(base / os.path.expanduser(underlay)) for underlay in config.underlays]
     sourced = [str(prefix) for prefix in prefixes(Path("/"), dict(os.environ))]
     own, near = _library_folders(underlays), _library_folders([*installed.underlays, *sourced])
     platform = normal_platform(platform_of(Path("/")))
@@ -377,7 +394,7 @@ class _Owner:
         for build in self._builds:
             for manifest in sorted(build.glob("*/install_manifest.txt")):
                 try:
-                    lines = manifest.read_text(encoding="utf-8", errors="replace").splitlines()
+                    lines = read_text(manifest, limits().listing, "replace").splitlines()
                 except OSError:
                     continue
                 for line in lines:
@@ -396,7 +413,8 @@ def _folders(folder: Path) -> list[Path]:
 def _underlays(folder: Path) -> Iterator[str]:
     """Prefixes that an install space was built on, as its own setup files name them; for the prefix of one package the
     install space around it."""
-    if any((folder / mark / folder.name).exists() for mark in ("share", "share/colcon-core/packages")):
+    marks = ("share", "share/colcon-core/packages")
+    if folder.name and any((folder / mark / folder.name).exists() for mark in marks):
         yield str(folder.parent)
         yield from _underlays(folder.parent)
     for name, pattern, parted in (
@@ -404,7 +422,7 @@ def _underlays(folder: Path) -> Iterator[str]:
         ("_setup_util.py", _PREFIXES_OF_CATKIN, ";"),
     ):
         try:
-            text = (folder / name).read_text(encoding="utf-8", errors="replace")
+            text = read_text(folder / name, limits().settings, "replace")
         except OSError:
             continue
         for match in pattern.finditer(text):

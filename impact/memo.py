@@ -143,7 +143,7 @@ def _recalled(store: Store, key: bytes) -> tuple[list[tuple[str, Hit]], dict[str
     try:
         judgement = msgspec.msgpack.decode(data, type=_Judgement)
         return [(h.rule, _hit(h)) for h in judgement.hits], judgement.unresolved
-    except (msgspec.MsgspecError, KeyError, TypeError):
+    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError, TypeError):
         return None
 
 

@@ -67,7 +67,8 @@ class Workers:
 
     def __init__(self, task: Callable[..., Any], jobs: int, *what: Any):
         self._task, self._what = task, what
-        self._jobs = max(1, jobs)
+        # Whoever asks for 100,000 is not served by as many processes.
+        self._jobs = max(1, min(jobs, max(64, 4 * cores())))
         self._workers: list[_Worker] = []
         self._selector = selectors.DefaultSelector()
 

@@ -5,79 +5,58 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 
 from ..corpus import __version__
 from ..edges.console import (
-    DEBUG,
     UserError,
     counted,
     escape_json,
     is_obeyed,
     json_text,
     rewrite,
+    run_command,
     say,
     steps,
-    unforeseen,
+    visible,
     write,
     write_exactly,
     write_json,
 )
-from .check import Checked, CheckError, Options
+from ..edges.files import check_writable_path, outermost, read_file, write_file
+from ..edges.limits import limits
+from .check import Checked, Options
 from .check import run as run_check
-from .config import ConfigError
 from .findings import SettingsError, fails
-from .installed import InstallError
 from .report.report import Coverage, Report
 from .report.text import PLAIN, Style, style_for
-from .targets.distro import TargetError
-from .targets.snapshot import SnapshotError
-from .tree import TreeError, WorkingTree, shown
+from .tree import WorkingTree, shown
 
 FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
 FAIL_ON = ("error", "warning", "note", "never")
 _TEXT_OR_JSON = ("text", "json")
-_OUR_ERRORS = (UserError, CheckError, ConfigError, SettingsError, TargetError, SnapshotError, TreeError, InstallError)
 
 
-class Failed(Exception):
-    """The command ends here, with status 2; the text says why and what to do."""
+_READ_SO_FAR = "interrupted; what was read is kept, and the next run goes on from there"
+_PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run goes on from there"
 
 
-@contextmanager
-def told(path: object = ""):
-    """Turns every error that can be foreseen, and at last any other, into Failed. path: what an error without a file of
-    its own is about."""
-    try:
-        yield
-    except Failed:
-        raise
-    except _OUR_ERRORS as error:
-        raise Failed(str(error)) from None
-    except OSError as error:
-        where = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else str(path)
-        raise Failed(f"{shown(where)}: {error.strerror or error}; check that it can be read and written") from None
-    except Exception as error:
-        if os.environ.get(DEBUG):
-            raise
-        raise Failed(unforeseen(error)) from None
-
-
-def failed(message: str, format: str = "text", output: Path | None = None) -> int:
-    """Says why the tool failed, in the format asked for too, so that valid JSON is printed all the same. Returns 2."""
+def _fail(message: str, format: str, output: Path | None, path: object) -> int:
+    """Says why a check failed, in the format asked for too, so that valid JSON is printed all the same. Returns 2."""
     say(f"rosimpact: {message}")
     if format in FORMATS and format != "text":
         text = render(Report(__version__, "", (), (), Coverage(), failure=message), format, notes=False)
         with suppress(UserError):
             try:
-                _deliver(text, output, format)
-            except Failed:
-                _print(text, format)
+                _deliver(text, output, format, path)
+            except UserError:
+                if output is not None:
+                    _print(text, format)
     return 2
 
 
-def _answered(
+def _deliver_answer(
     answer: Callable[[], str],
     format: str = "text",
     known: Sequence[str] = ("text",),
@@ -89,22 +68,20 @@ def _answered(
     answer: makes the text. known: the formats that the command has. path: what an error without a file of its own is
     about.
     """
-    try:
-        with told(path):
-            _one_of("--format", format, known)
-            _deliver(answer(), output, format)
-    except Failed as error:
-        return failed(str(error))
-    except KeyboardInterrupt:
-        say("rosimpact: interrupted; what was read is kept, and the next run goes on from there")
-        return 130
-    return 0
+
+    def work() -> int:
+        _one_of("--format", format, known)
+        _check_output(output, path)
+        _deliver(answer(), output, format, path)
+        return 0
+
+    return run_command(work, _READ_SO_FAR, path)
 
 
 def _one_of(option: str, given: str, known: Sequence[str]) -> None:
-    """Raises Failed where an option is given a word that it does not know."""
+    """Raises UserError where an option is given a word that it does not know."""
     if given not in known:
-        raise Failed(f"{option} {given}: unknown; choose one of {', '.join(known)}")
+        raise UserError(f"{option} {given}: unknown; choose one of {', '.join(known)}")
 
 
 def _say_notes(notes: Iterable[str]) -> None:
@@ -115,45 +92,56 @@ def _say_notes(notes: Iterable[str]) -> None:
 def check(
     path: Path, *, targets, format, output, rev, base, select, ignore, fail_on, notes, preview, baseline,
     write_baseline, prune_baseline, fix, diff, config, jobs, quiet, install=None,
+    follow_links=False,
 ) -> int:  # fmt: skip
-    """Runs the check and prints its report. Returns the exit status: 0, 1 (findings) or 2 (failed)."""
-    try:
-        with told(path):
-            _one_of("--format", format, FORMATS)
-            _one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
-            if prune_baseline and baseline is None:
-                raise Failed("--prune-baseline: needs the baseline to prune; give it with --baseline")
-            known = _baseline(baseline)
-            options = Options(targets, rev, base, select, ignore, preview, jobs, config, known, install=install)
-            checked = run_check(path, options, None if quiet else _progress())
-            incomplete = False
-            if fix and not diff:
-                incomplete = not _fixed(path, checked)
-                checked = run_check(path, options, None)
-            report = checked.report
-            if report.failure and (format != "text" or output or diff or write_baseline):
-                say(f"rosimpact: {report.failure}")
-            if prune_baseline and report.packages:
-                _prune(baseline, known, report)
-            if write_baseline:
-                return _new_baseline(write_baseline, report)
-            if diff:
-                patch, incomplete = _patch(checked, output)
-                _deliver(patch, output, "patch")
-            else:
-                _deliver(render(report, format, notes, output, _prefix(path, checked)), output, format)
-            if format == "github" and not diff:
-                from .report.github import write_step_summary
+    """Runs the check and prints its report. Returns the exit status: 0, 1 (findings), 2 (failed) or 130."""
 
-                write_step_summary(report, os.environ)
-    except Failed as error:
-        return failed(str(error), format, output)
-    except KeyboardInterrupt:
-        say("rosimpact: interrupted; what was parsed is kept, and the next run goes on from there")
-        return 130
-    if report.failure or incomplete:
-        return 2
-    return int(fails(report.findings, fail_on or checked.config.fail_on or "error"))
+    def work() -> int:
+        _one_of("--format", format, FORMATS)
+        _one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
+        if prune_baseline and baseline is None:
+            raise UserError("--prune-baseline: needs the baseline to prune; give it with --baseline")
+        known = _baseline(baseline)
+        for file in (output, write_baseline, baseline if prune_baseline else None):
+            _check_output(file, path)
+        options = Options(
+            targets, rev, base, select, ignore, preview, jobs, config, known, install=install,
+            follow_links=follow_links,
+        )  # fmt: skip
+        checked = run_check(path, options, None if quiet else _progress())
+        incomplete = False
+        if fix and not diff:
+            incomplete = not _fixed(path, checked)
+            checked = run_check(path, options, None)
+        report = checked.report
+        if report.failure and (format != "text" or output or diff or write_baseline):
+            say(f"rosimpact: {report.failure}")
+        if baseline is not None and prune_baseline and report.packages:
+            _prune(baseline, known, report, path)
+        if write_baseline:
+            return _new_baseline(write_baseline, report, path)
+        if diff:
+            patch, incomplete = _patch(checked, output)
+            _deliver(patch, output, "patch", path)
+        else:
+            _deliver(render(report, format, notes, output, _prefix(path, checked)), output, format, path)
+        if format == "github" and not diff:
+            _write_step_summary(report)
+        if report.failure or incomplete:
+            return 2
+        return int(fails(report.findings, fail_on or checked.config.fail_on or "error"))
+
+    return run_command(work, _PARSED_SO_FAR, path, lambda message: _fail(message, format, output, path))
+
+
+def _write_step_summary(report: Report) -> None:
+    """Adds to the summary of the step where GitHub runs one. The report is out already, so a failure is but told."""
+    from .report.github import write_step_summary
+
+    try:
+        write_step_summary(report, os.environ)
+    except OSError as error:
+        say(f"rosimpact: the step summary cannot be written: {error.strerror}; check what GITHUB_STEP_SUMMARY names")
 
 
 def _baseline(file: Path | None) -> str:
@@ -163,34 +151,34 @@ def _baseline(file: Path | None) -> str:
     from .findings import known_from
 
     try:
-        text = file.read_bytes()
+        text = read_file(file, limits().baseline)
         known_from(text)
         return text.decode("utf-8-sig")
     except OSError as error:
-        raise Failed(f"{file}: {error.strerror}; write a baseline with --write-baseline {file}") from None
+        raise UserError(f"{file}: {error.strerror}; write a baseline with --write-baseline {file}") from None
     except (SettingsError, UnicodeDecodeError) as error:
-        raise Failed(f"{file}: {error}") from None
+        raise UserError(f"{file}: {error}") from None
 
 
-def _new_baseline(file: Path, report: Report) -> int:
+def _new_baseline(file: Path, report: Report, path: Path) -> int:
     """Writes all of today's findings, those that an older baseline knows included."""
     from .findings import baseline, in_order
 
     if not report.packages:
-        raise Failed(f"{file}: not written, since nothing was analysed")
+        raise UserError(f"{file}: not written, since nothing was analysed")
     found = in_order([*report.findings, *report.known])
-    _save(file, baseline(found))
+    _save(file, baseline(found), path)
     say(f"rosimpact: {file}: {counted(len(found), 'finding')}")
     return 2 if report.failure else 0
 
 
-def _prune(file: Path, known: str, report: Report) -> None:
+def _prune(file: Path, known: str, report: Report, path: Path) -> None:
     """Takes what is cured out of a baseline file."""
     from .findings import known_from, pruned
 
     text, gone = pruned(known_from(known), [*report.findings, *report.known])
     if gone:
-        _save(file, text)
+        _save(file, text, path)
     say(f"rosimpact: {file}: {gone} cured, taken out")
 
 
@@ -199,15 +187,15 @@ def _fixed(path: Path, checked: Checked) -> bool:
     from . import fix
 
     if not isinstance(checked.tree, WorkingTree):
-        raise Failed("--fix: a revision cannot be changed; leave --rev out, or print the changes with --diff")
+        raise UserError("--fix: a revision cannot be changed; leave --rev out, or print the changes with --diff")
     applied = _applied(checked)
     done = 0
     for name, data in applied.files.items():
         try:
-            fix.write(path / name, data)
+            fix.write(path, name, data, checked.originals[name])
             done += 1
         except OSError as error:
-            say(f"rosimpact: {shown(name)}: not fixed, it cannot be written: {error.strerror}")
+            say(f"rosimpact: {shown(name)}: not fixed: {error.strerror}")
     for edit, reason in applied.refused:
         say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
     say(f"{counted(done, 'file')} changed")
@@ -216,25 +204,22 @@ def _fixed(path: Path, checked: Checked) -> bool:
 
 def _applied(checked: Checked):
     from . import fix
-    from .check import reader
 
-    return fix.apply(fix.fixes(finding for finding in checked.report.findings if finding.new), reader(checked.tree))
+    return fix.apply(fix.fixes(finding for finding in checked.report.findings if finding.new), checked.originals.get)
 
 
 def _patch(checked: Checked, output: Path | None) -> tuple[str, bool]:
     """What the fixes would change, as `git apply` reads it, and whether some of it is left out: a patch holds lines of
     the workspace as they are, so that one which a terminal or CI would obey goes to a file alone."""
     from . import fix
-    from .check import reader
 
-    read = reader(checked.tree)
     applied = _applied(checked)
     for edit, reason in applied.refused:
         say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
     parts: list[str] = []
     incomplete = False
     for name, data in applied.files.items():
-        part = fix.unified_diff(name, read(name) or b"", data)
+        part = fix.unified_diff(name, checked.originals[name], data)
         if output is None and is_obeyed(part):
             incomplete = True
             say(
@@ -288,21 +273,60 @@ def schema() -> int:
     return 0
 
 
-def _deliver(text: str, output: Path | None, format: str) -> None:
-    """Writes a text to the file asked for, or to standard output. Raises Failed or UserError when that cannot be
-    written."""
+def _deliver(text: str, output: Path | None, format: str, path: object = "") -> None:
+    """Writes a text to the file asked for, or to standard output. Raises UserError when that cannot be written."""
     if output is None:
         _print(text, format)
     else:
-        _save(output, text)
+        _save(output, text, path)
 
 
-def _save(file: Path, text: str) -> None:
+def _save(file: Path, text: str, path: object) -> None:
+    """Writes a file that the user named. path: the workspace. Raises UserError."""
+    place, beneath = _place_of(file, path)
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_bytes(_bytes(text))
+        write_file(place, _bytes(text), beneath=beneath)
     except OSError as error:
-        raise Failed(f"{file}: cannot be written: {error.strerror}; give another file") from None
+        raise _cannot_write(file, error) from None
+
+
+def _check_output(file: Path | None, path: object) -> None:
+    """Raises UserError where a file that the user named would be refused, before long work is done for nothing."""
+    if file is not None:
+        place, beneath = _place_of(file, path)
+        try:
+            check_writable_path(place, beneath=beneath)
+        except OSError as error:
+            raise _cannot_write(file, error) from None
+
+
+def _cannot_write(file: Path, error: OSError) -> UserError:
+    return UserError(f"{visible(str(file))}: cannot be written: {error.strerror}; give another file")
+
+
+def _place_of(file: Path, path: object) -> tuple[str, str | None]:
+    """(path to write to, folder that must hold it without links in between).
+
+    What lies in the workspace, or in the repository around it or around the current folder, was made by whoever made
+    those: a link in them must not say where a report goes. None elsewhere, where folders are the user's own.
+    """
+    name = os.fspath(file)
+    if not os.path.isabs(name):
+        name = os.path.join(os.getcwd(), name)
+    folders = [os.fspath(path)] if isinstance(path, str | os.PathLike) and path != "" else []
+    folders += [found for folder in (*folders, ".") if (found := _repository_of(folder))]
+    beneath = outermost(name, folders)
+    return (name, None) if beneath is None else (os.path.abspath(name), beneath)
+
+
+def _repository_of(folder: str) -> str:
+    """The nearest folder with a `.git` in it, from a folder upwards; empty when there is none."""
+    place = os.path.realpath(folder)
+    while not os.path.lexists(os.path.join(place, ".git")):
+        place, last = os.path.dirname(place), place
+        if place == last:
+            return ""
+    return place
 
 
 def _bytes(text: str) -> bytes:
@@ -348,34 +372,30 @@ def graph_schema() -> int:
 
 def graph(
     path: Path, *, launch, arguments, nodes, topics, packages, around, hops, rev, base, format, output, everything,
-    jobs, quiet,
+    jobs, quiet, follow_links=False,
 ) -> int:  # fmt: skip
     """Draws the message-flow graph. Returns the exit status: 0, or 2 (failed)."""
 
     def answer() -> str:
         given = dict(argument.partition(":=")[::2] for argument in arguments)
         if any(":=" not in argument for argument in arguments):
-            raise Failed("--set: write NAME:=VALUE")
+            raise UserError("--set: write NAME:=VALUE")
         if given and not launch:
-            raise Failed("--set: arguments belong to a launch file; name it with --launch")
+            raise UserError("--set: arguments belong to a launch file; name it with --launch")
         from .flow.drawing import draw
-        from .flow.select import NothingSelected
         from .graph import graphs
 
         found = graphs(
             path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
-            progress=None if quiet else _progress(),
+            progress=None if quiet else _progress(), follow_links=follow_links,
         )  # fmt: skip
         _say_notes(found.notes)
-        try:
-            return draw(
-                found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
-                hops=hops, everything=everything, style=_style(output),
-            )  # fmt: skip
-        except NothingSelected as error:
-            raise Failed(str(error)) from None
+        return draw(
+            found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
+            hops=hops, everything=everything, style=_style(output),
+        )  # fmt: skip
 
-    return _answered(answer, format, GRAPH_FORMATS, output, path)
+    return _deliver_answer(answer, format, GRAPH_FORMATS, output, path)
 
 
 IMPACT_FORMATS = ("text", "json", "markdown")
@@ -390,18 +410,19 @@ def impact_schema() -> int:
 
 
 def impact(
-    path: Path, *, base, rev, packages, topics, nodes, format, output, everything, jobs, quiet
+    path: Path, *, base, rev, packages, topics, nodes, format, output, everything, jobs, quiet, follow_links=False
 ) -> int:  # fmt: skip
     """Prints what the changes since a base reach. Returns the exit status: 0, or 2 (failed)."""
 
     def answer() -> str:
         if not base:
-            raise Failed("--base: needed, the revision that the change is compared with, such as origin/main")
+            raise UserError("--base: needed, the revision that the change is compared with, such as origin/main")
         from .flow import impact_report
         from .flow.impact import chosen
         from .impact import reached
 
-        found = reached(path, base, rev=rev, jobs=jobs, progress=None if quiet else _progress())
+        progress = None if quiet else _progress()
+        found = reached(path, base, rev=rev, jobs=jobs, progress=progress, follow_links=follow_links)
         _say_notes(found.notes)
         part = chosen(found.impact, packages, topics, nodes)
         if format == "json":
@@ -410,7 +431,7 @@ def impact(
             return impact_report.markdown(part)
         return impact_report.text(part, everything, _style(output))
 
-    return _answered(answer, format, IMPACT_FORMATS, output, path)
+    return _deliver_answer(answer, format, IMPACT_FORMATS, output, path)
 
 
 def upgrade_schema() -> int:
@@ -422,7 +443,7 @@ def upgrade_schema() -> int:
 
 
 def upgrade(
-    path: Path, old: str, new: str, *, packages, rev, config, format, output, fail_on, jobs, quiet
+    path: Path, old: str, new: str, *, packages, rev, config, format, output, fail_on, jobs, quiet, follow_links=False
 ) -> int:  # fmt: skip
     """Prints what an upgrade breaks. Returns the exit status: 0 (safe), 1 (something breaks) or 2 (failed)."""
     from .report import upgrade as report
@@ -434,14 +455,14 @@ def upgrade(
         _one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
         from .upgrade import upgrade as compare
 
-        options = Options(rev=rev, config=config, jobs=jobs)
+        options = Options(rev=rev, config=config, jobs=jobs, follow_links=follow_links)
         found = compare(path, old, new, options, packages, None if quiet else _progress())
         breaks = fails(found.brought, fail_on or found.fail_on or "error")
         if format == "json":
             return report.as_json(found)
         return report.as_html(found) if format == "html" else report.text(found, _style(output))
 
-    return _answered(answer, format, report.FORMATS, output, path) or int(breaks)
+    return _deliver_answer(answer, format, report.FORMATS, output, path) or int(breaks)
 
 
 LOGIC_FORMATS = ("text", "json", "html")
@@ -462,7 +483,7 @@ def logic(
                 asked = history.Range(range, number, since)
                 found = history.read(os.fspath(path), asked, store, jobs, None if quiet else steps())
             except ValueError as error:
-                raise Failed(f"--since: {error}") from None
+                raise UserError(f"--since: {error}") from None
             _say_notes(store.notes)
         all_of_it, found = found, history.chosen(found, packages, topics, everything)
         missed = logic_report.missed(all_of_it, found, packages, topics)
@@ -473,7 +494,7 @@ def logic(
             return logic_report.as_json(found, __version__)
         return logic_report.text(found, _style(output))
 
-    return _answered(answer, format, LOGIC_FORMATS, output, path)
+    return _deliver_answer(answer, format, LOGIC_FORMATS, output, path)
 
 
 def _style(output: Path | None) -> Style:
@@ -518,7 +539,7 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
             changes = compare_states(*states)
             unknown = [name for name in packages if name not in changes]
             if unknown:
-                raise Failed(f"--packages {unknown[0]}: {clone.name} has no such package at {old} or {new}")
+                raise UserError(f"--packages {unknown[0]}: {clone.name} has no such package at {old} or {new}")
             changes = {name: each for name, each in changes.items() if (name in packages if packages else each)}
             sources = [report.Source(revision, "", clone.name, revision) for revision in (old, new)]
         else:
@@ -545,23 +566,18 @@ def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask,
 
     def answer() -> str:
         from .targets.build_surfaces import all_distros, build
-        from .targets.clones import Clones, VersionError
-        from .targets.cluster import ClusterError
+        from .targets.clones import Clones
 
         if not distros:
-            raise Failed("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
+            raise UserError("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
         if dask is not None and jobs is not None:
-            raise Failed("--jobs: is for this machine, and with --dask the cluster works; give one of the two")
+            raise UserError("--jobs: is for this machine, and with --dask the cluster works; give one of the two")
+        _check_output(output, "")
         report = None if quiet else steps()
-        try:
-            versions = "all" if all_versions else "newest"
-            built = build(
-                Clones(repos), all_distros(distros), output, packages, jobs, report, versions=versions, dask=dask
-            )
-        except (VersionError, ClusterError) as error:
-            raise Failed(str(error)) from None
+        versions = "all" if all_versions else "newest"
+        built = build(Clones(repos), all_distros(distros), output, packages, jobs, report, versions=versions, dask=dask)
         if not built.packages:
-            raise Failed(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")
+            raise UserError(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")
         _say_notes(built.failed)
         told_of = f"{counted(built.packages, 'package')}, {counted(built.versions, 'version')}"
         return (
@@ -569,7 +585,7 @@ def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask,
             f"{built.approximate} with a branch for a missing tag, {len(built.missing)} without a clone"
         )
 
-    return _answered(answer, path=output)
+    return _deliver_answer(answer, path=output)
 
 
 def _surface(package: str, asked: str, repos: Path | None, store, jobs):
@@ -623,17 +639,13 @@ def _of_surfaces(answer: Callable, format: str, output: Path | None) -> int:
 
     def with_store() -> str:
         from .facts.store import Store
-        from .targets.clones import VersionError
 
         with Store() as store:
-            try:
-                text = answer(store)
-            except VersionError as error:
-                raise Failed(str(error)) from None
+            text = answer(store)
             _say_notes(store.notes)
         return text
 
-    return _answered(with_store, format, known, output)
+    return _deliver_answer(with_store, format, known, output)
 
 
 def explain(name: str | None) -> int:
@@ -649,33 +661,35 @@ def explain(name: str | None) -> int:
                 lines.append(f"{family}:")
             first = rule.documentation.splitlines()[0].split(": ", 1)[-1]
             lines.append(f"  {rule.name:26s} {rule.severity:8s} {first}")
-        return _answered(lambda: "\n".join(lines))
+        return _deliver_answer(lambda: "\n".join(lines))
     if name not in rules:
         from difflib import get_close_matches
 
         close = get_close_matches(name, rules, 1)
-        return failed(
-            f"no rule is called `{name}`; "
+        say(
+            f"rosimpact: no rule is called `{name}`; "
             + (f"did you mean `{close[0]}`?" if close else "`rosimpact explain` lists them")
         )
-    return _answered(rules[name].documentation.rstrip)
+        return 2
+    return _deliver_answer(rules[name].documentation.rstrip)
 
 
 def env_capture(output: Path | None) -> int:
     """Writes this machine as a target."""
-    from .targets.capture import capture, to_json
 
-    try:
-        with told():
-            machine = capture()
-            _deliver(to_json(machine), output, "json")
-    except Failed as error:
-        return failed(str(error))
-    if not machine.distro:
-        say("no ROS distro was found on this machine: set `distro` in the file before it is used as a target")
-    if output is not None:
-        say(f"rosimpact: {output}: written; use it with --target {output}")
-    return 0
+    def work() -> int:
+        from .targets.capture import capture, to_json
+
+        _check_output(output, "")
+        machine = capture()
+        _deliver(to_json(machine), output, "json")
+        if not machine.distro:
+            say("rosimpact: no ROS distro was found here: set `distro` in the file before it is used as a target")
+        if output is not None:
+            say(f"rosimpact: {output}: written; use it with --target {output}")
+        return 0
+
+    return run_command(work, "interrupted; nothing was written", "this machine")
 
 
 def env_diff_schema() -> int:
@@ -697,29 +711,32 @@ def env_diff(first: str, second: str, path: Path | None, format: str, output: Pa
         found = machines(first, second, path)
         return report.as_json(found, __version__) if format == "json" else report.text(found, _style(output))
 
-    return _answered(answer, format, report.FORMATS, output, path or "")
+    return _deliver_answer(answer, format, report.FORMATS, output, path or "")
 
 
-def why(name: str, path: Path, targets: tuple[str, ...], format: str) -> int:
-    """Prints who provides a name on each target, in which version, since when, and who in the workspace uses it.
-
-    Returns 1 when nobody provides it on some target."""
+def why(
+    name: str, path: Path | None, targets: tuple[str, ...], format: str, *, follow_links: bool = False
+) -> int:  # fmt: skip
+    """Prints who provides a name on each target, in which version, since when, and who in the workspace uses it; that
+    of the current folder when no path is given, if it is one. Returns 1 when nobody provides it on some target."""
     unanswered = False
 
     def answer() -> str:
         nonlocal unanswered
-        from .why import answers, as_text
+        from .why import answers, as_text, is_workspace
 
-        found = answers(name, path, targets)
+        here = path or Path()
+        looked = path is not None or is_workspace(here)
+        found = answers(name, here if looked else None, targets, follow_links=follow_links)
         answered = {a.target for a in found if any(offer.kind != "absent" for offer in a.offers)}
         unanswered = answered != {a.target for a in found}
         if format == "text":
-            return as_text(name, found)
+            return as_text(name, found, looked=looked)
         return json_text(
             [answer._asdict() | {"offers": [offer._asdict() for offer in answer.offers]} for answer in found]
         )
 
-    return _answered(answer, format, _TEXT_OR_JSON, path=path) or int(unanswered)
+    return _deliver_answer(answer, format, _TEXT_OR_JSON, path=path or Path()) or int(unanswered)
 
 
 def data_status(format: str = "text") -> int:
@@ -744,51 +761,45 @@ def data_status(format: str = "text") -> int:
         lines.append(f"surfaces of {told_of}, as of {kept['date']}, of {kept['distros']}")
         return "\n".join(lines)
 
-    return _answered(answer, format, _TEXT_OR_JSON)
+    return _deliver_answer(answer, format, _TEXT_OR_JSON)
 
 
 def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path | None) -> int:
     """Builds the snapshot from git repositories."""
-    from .cache import cache_folder
-    from .targets.build_data import BuildError, build
 
-    try:
-        with told(rosdistro):
-            try:
-                built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, steps())
-            except BuildError as error:
-                raise Failed(str(error)) from None
-    except Failed as error:
-        return failed(str(error))
-    _print(
-        f"data of {built.date} in {output}: {counted(built.releases, 'release')}, "
-        f"{counted(built.manifests, 'manifest')}, {counted(built.rules, 'rosdep rule')}, "
-        f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)",
-        "text",
-    )
-    for name, count in built.unreadable.items():
-        say(f"rosimpact: {name}: {counted(count, 'version')} of its distribution file could not be read")
-    return 0
+    def build_it() -> int:
+        from .cache import cache_folder
+        from .targets.build_data import build
+
+        built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, steps())
+        _print(
+            f"data of {built.date} in {output}: {counted(built.releases, 'release')}, "
+            f"{counted(built.manifests, 'manifest')}, {counted(built.rules, 'rosdep rule')}, "
+            f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)",
+            "text",
+        )
+        for name, count in built.unreadable.items():
+            say(f"rosimpact: {name}: {counted(count, 'version')} of its distribution file could not be read")
+        return 0
+
+    return run_command(build_it, _READ_SO_FAR, rosdistro)
 
 
 def data_update() -> int:
     """Refreshes the snapshot over the network."""
-    from .targets.build_data import BuildError, update
 
-    try:
-        with told():
-            try:
-                found = update(report=steps())
-            except BuildError as error:
-                raise Failed(str(error)) from None
-    except Failed as error:
-        return failed(str(error))
-    for failure in found.failures:
-        say(f"rosimpact: not updated: {failure}")
-    _print(
-        f"data of {found.date} in {found.folder}: {counted(len(found.syncs), 'new sync')}, "
-        f"{counted(found.releases, 'release')}, {counted(found.manifests, 'manifest')}, "
-        f"{counted(found.rules, 'rosdep rule')}",
-        "text",
-    )
-    return 0
+    def work() -> int:
+        from .targets.build_data import update
+
+        found = update(report=steps())
+        for failure in found.failures:
+            say(f"rosimpact: not updated: {failure}")
+        _print(
+            f"data of {found.date} in {found.folder}: {counted(len(found.syncs), 'new sync')}, "
+            f"{counted(found.releases, 'release')}, {counted(found.manifests, 'manifest')}, "
+            f"{counted(found.rules, 'rosdep rule')}",
+            "text",
+        )
+        return 0
+
+    return run_command(work, "interrupted; the data in use stays", "the distro data")

@@ -111,4 +111,5 @@ def _command(path: Path, target: str, options: Options, *ends: str) -> str:
     words = ["rosimpact", "check", str(path), "--target", target]
     words += ["--config", str(options.config)] if options.config else []
     words += ["--rev", options.rev] if options.rev else []
+    words += ["--follow-links"] if options.follow_links else []
     return shlex.join([*words, *ends])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,6 +12,13 @@ from ..edges.console import counted, visible
 from .check import Options, open_workspace
 from .model.view import View
 from .targets.distro import DistroTarget
+from .tree import JoinedTree
+
+# Files that make a folder a workspace or a package.
+_MARKS = ("package.xml", "rosimpact.toml", "colcon.meta")
+# How many levels of folders are looked through for a manifest (src/repository/package), and how many names.
+_LEVELS, _LOOKS_AT_MOST = 4, 5_000
+_PRODUCTS = frozenset(("build", "install", "devel", "log"))
 
 
 class Offer(NamedTuple):
@@ -33,9 +43,41 @@ class Answer(NamedTuple):
     changes: tuple[str, ...]
 
 
-def answers(name: str, path: Path, targets: tuple[str, ...]) -> list[Answer]:
-    """One answer a target and a meaning of the name. Raises as check() does."""
-    with open_workspace(path, Options(targets=targets)) as opened:
+def is_workspace(folder: Path) -> bool:
+    """Whether a folder that nobody named looks like a workspace or a package, told by a few folders of it alone.
+
+    The root of the file system and a home folder are none, whatever they hold, but for their own package.xml or
+    rosimpact.toml: all of it would be read.
+    """
+    if any((folder / name).is_file() for name in _MARKS):
+        return True
+    if os.path.realpath(folder) in ("/", os.path.realpath(os.path.expanduser("~"))):
+        return False
+    level = [str(folder)]
+    seen = 0
+    for _ in range(_LEVELS):
+        below: list[str] = []
+        for place in level:
+            with suppress(OSError), os.scandir(place) as scan:
+                for item in islice(scan, _LOOKS_AT_MOST):
+                    seen += 1
+                    if item.name == "package.xml":
+                        return True
+                    if item.name[0] != "." and item.name not in _PRODUCTS and item.is_dir(follow_symlinks=False):
+                        below.append(item.path)
+            if seen > _LOOKS_AT_MOST:
+                return False
+        level = below
+    return False
+
+
+def answers(
+    name: str, path: Path | None, targets: tuple[str, ...], *, follow_links: bool = False
+) -> list[Answer]:  # fmt: skip
+    """One answer a target and a meaning of the name. path: the workspace; None for answers without uses. Raises as
+    check() does."""
+    options = Options(targets=targets, follow_links=follow_links)
+    with open_workspace(path or Path(), options, tree=None if path is not None else JoinedTree({})) as opened:
         return [answer for view in opened.views for answer in _answers(view, name)]
 
 
@@ -122,8 +164,9 @@ def _uses(view: View, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(used), tuple(undeclared)
 
 
-def as_text(name: str, found: list[Answer]) -> str:
-    """The answers for people. Meanings of a name that lead to the same offers are told together."""
+def as_text(name: str, found: list[Answer], *, looked: bool = True) -> str:
+    """The answers for people. Meanings of a name that lead to the same offers are told together. looked: whether uses
+    were looked for."""
     lines: list[str] = []
     for target in dict.fromkeys(answer.target for answer in found):
         here = [answer for answer in found if answer.target == target]
@@ -136,6 +179,9 @@ def as_text(name: str, found: list[Answer]) -> str:
         lines += [f"  {change}" for change in here[0].changes]
     if not found:
         return ""
+    if not looked:
+        lines.append(f"uses were not looked for, since this folder is no workspace: rosimpact why {visible(name)} PATH")
+        return "\n".join(lines)
     used = found[0].used
     lines.append(f"used at {counted(len(used), 'place')}" + (":" if used else ""))
     lines += [f"  {place}" for place in used[:12]]

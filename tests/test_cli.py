@@ -227,14 +227,125 @@ def test_fixes_are_written_and_what_remains_is_reported(say, curable):
 def test_a_fix_that_cannot_be_written_is_named(say, curable, monkeypatch):
     from rosimpact.impact import fix
 
-    def denied(path, data):
-        raise PermissionError(13, "Permission denied", str(path))
+    def denied(root, path, data, original):
+        raise PermissionError(13, "Permission denied", path)
 
     monkeypatch.setattr(fix, "write", denied)
     said = say("check", curable, "-t", "jazzy", "--fix")
     assert said.status == 2
     assert "a/package.xml" in said.err and "Permission denied" in said.err
     assert "undeclared-package" in said.out
+
+
+def test_a_file_that_changed_since_it_was_read_is_not_fixed(say, curable, monkeypatch):
+    from rosimpact.impact import fix
+
+    write, manifest = fix.write, curable / "a/package.xml"
+    edited = MANIFEST.replace("</package>", "  <!-- edited -->\n</package>")
+
+    def late(*arguments):
+        manifest.write_text(edited)
+        write(*arguments)
+
+    monkeypatch.setattr(fix, "write", late)
+    said = say("check", curable, "-t", "jazzy", "--fix")
+    assert said.status == 2 and "a/package.xml: not fixed: changed since it was read" in said.err
+    assert manifest.read_text() == edited
+
+
+def test_a_package_that_is_a_link_is_not_fixed(say, curable, tmp_path):
+    """Whether a link is followed or not: what it leads to stays as it is."""
+    outside = tmp_path / "elsewhere"
+    (curable / "a").rename(outside)
+    (curable / "a").symlink_to(outside)
+    say("check", curable, "-t", "jazzy", "--fix")
+    assert (outside / "package.xml").read_text() == MANIFEST
+    (curable / "a").unlink()
+    outside.rename(curable / "a")
+    (curable / "b").symlink_to("a")
+    said = say("check", curable, "-t", "jazzy", "--fix")
+    assert "1 file changed" in said.err and (curable / "b").is_symlink()
+    assert (curable / "a/package.xml").read_text().count("rclcpp") == 1
+
+
+def test_a_manifest_that_is_a_link_is_not_fixed(say, curable, tmp_path):
+    outside = tmp_path / "elsewhere.xml"
+    (curable / "a/package.xml").rename(outside)
+    (curable / "a/package.xml").symlink_to(outside)
+    say("check", curable, "-t", "jazzy", "--fix")
+    assert outside.read_text() == MANIFEST and (curable / "a/package.xml").is_symlink()
+
+
+def test_a_manifest_of_two_names_is_fixed_under_one(say, curable, tmp_path):
+    os.link(curable / "a/package.xml", tmp_path / "other name")
+    assert "1 file changed" in say("check", curable, "-t", "jazzy", "--fix").err
+    assert (tmp_path / "other name").read_text() == MANIFEST
+    assert "rclcpp" in (curable / "a/package.xml").read_text()
+
+
+@pytest.fixture
+def refusing(ws, tmp_path):
+    """What a hostile repository puts in the way of reports."""
+    (tmp_path / "outside").mkdir()
+    (tmp_path / "outside/secret").write_text("keep")
+    (ws / ".git").mkdir()
+    (ws / ".git/config").write_text("keep")
+    (ws / "reports").symlink_to(tmp_path / "outside")
+    (ws / "report.json").symlink_to(tmp_path / "outside/secret")
+    (ws / "history").symlink_to(".git")
+    os.mkfifo(ws / "pipe")
+    return ws
+
+
+@pytest.mark.parametrize("option", ["--output", "--write-baseline"])
+@pytest.mark.parametrize("name", [".git/config", "report.json", "reports/secret", "reports/new", "history/config",
+                                  "pipe", "a", "a/", "/proc/version", "a/package.xml/x", "x" * 5000, ""])  # fmt: skip
+def test_outputs_are_refused_before_the_work(say, refusing, tmp_path, monkeypatch, option, name):
+    from rosimpact.impact import run
+
+    monkeypatch.setattr(run, "run_check", lambda *_: pytest.fail("the work was begun"))
+    monkeypatch.chdir(refusing)
+    for place in (name, refusing / name) if name and len(name) < 200 else (name,):
+        said = say("check", ".", "-t", "jazzy", option, place)
+        assert said.status == 2 and "cannot be written" in said.err and len(said.err.splitlines()) == 1
+    assert os.listdir(tmp_path / "outside") == ["secret"]
+    assert (tmp_path / "outside/secret").read_text() == (refusing / ".git/config").read_text() == "keep"
+
+
+@pytest.mark.parametrize("command", [["check", "-t", "jazzy"], ["graph"], ["logic"], ["impact", "--base", "HEAD"],
+                                     ["upgrade", "--from", "humble", "--to", "jazzy"]])  # fmt: skip
+def test_no_command_writes_through_a_link(say, refusing, tmp_path, command):
+    name, *options = command
+    for place in ("report.json", "reports/new"):
+        said = say(name, refusing, *options, "-o", refusing / place)
+        assert said.status == 2 and "cannot be written" in said.err
+    assert os.listdir(tmp_path / "outside") == ["secret"]
+    assert (tmp_path / "outside/secret").read_text() == "keep"
+
+
+def test_links_of_the_user_lead_to_reports(say, ws, tmp_path):
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "mine").symlink_to("disk")
+    assert say("check", ws, "-t", "jazzy", "-o", tmp_path / "mine/new/report.txt").status == 1
+    assert "library-version" in (tmp_path / "disk/new/report.txt").read_text()
+
+
+def test_a_report_may_go_to_a_descriptor(say, ws):
+    for place in ("/dev/stdout", "/dev/fd/1"):
+        assert json.loads(say("check", ws, "-t", "jazzy", "-f", "json", "-o", place).out)["findings"]
+    assert say("check", ws, "-t", "jazzy", "-f", "json", "-o", "/dev/null").out == ""
+
+
+@pytest.mark.parametrize("name", ["link", "pipe", "folder", "no/folder"])
+def test_a_summary_that_cannot_be_written_hides_no_report(say, ws, tmp_path, monkeypatch, name):
+    (tmp_path / "victim").write_text("keep")
+    (tmp_path / "link").symlink_to("victim")
+    (tmp_path / "folder").mkdir()
+    os.mkfifo(tmp_path / "pipe")
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(tmp_path / name))
+    said = say("check", ws, "-t", "jazzy", "-f", "github")
+    assert said.status == 1 and "::error" in said.out and "the step summary cannot be written" in said.err
+    assert (tmp_path / "victim").read_text() == "keep"
 
 
 def test_findings_known_to_the_baseline_are_not_fixed(say, curable, tmp_path):

@@ -48,7 +48,7 @@ def test_two_machines_alone(say):
     said = say("env", "diff", "humble", "jazzy")
     assert said.status == 0 and said.err == ""
     lines = said.out.splitlines()
-    assert lines[0].startswith("humble (") and " and jazzy (" in lines[0]
+    assert lines[0].startswith("compared: humble (") and " and jazzy (" in lines[0]
     rows = {line.split()[0]: line.split()[1:] for line in lines[3:-2]}
     assert rows["opencv"] == ["4.5.4", "4.6.0"]
     assert rows["nav2_map_server"][0].startswith("1.1.")

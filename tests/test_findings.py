@@ -375,7 +375,18 @@ def test_baseline_is_the_same_for_the_same_findings_in_any_order():
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[]", "{}", "null", '{"schema": 2, "findings": []}', '{"schema": 1, "findings": [1]}', "[" * 9999]
+    "text",
+    [
+        "",
+        "[]",
+        "{}",
+        "null",
+        '{"schema": 2, "findings": []}',
+        '{"schema": 1, "findings": [1]}',
+        "[" * 9999,
+        '{"schema": 1, "findings": [{"fingerprint": "a", "count": 1e999}]}',
+        '{"schema": 1, "findings": [{"fingerprint": "a", "count": ' + "9" * 5000 + "}]}",
+    ],
 )
 def test_what_is_no_baseline_is_refused_with_advice(text):
     with pytest.raises(SettingsError, match="baseline"):
@@ -395,3 +406,10 @@ def test_what_is_no_baseline_is_refused_with_advice(text):
 )
 def test_fail_on(severity, new, fail_on, expected):
     assert fails([finding(severity=severity)._replace(new=new)], fail_on) is expected
+
+
+def test_counts_of_a_baseline_have_a_limit():
+    entries = ({"fingerprint": name, "count": count} for name, count in (("a", 10**4000), ("b", -3), ("c", 2)))
+    known = known_from(json.dumps({"schema": 1, "findings": list(entries)}))
+    assert known["a"] == 1_000_000 and known["b"] == 0 and known["c"] == 2
+    assert pruned(known, [])[1] == 1_000_002

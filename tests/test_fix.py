@@ -253,6 +253,8 @@ def test_replace_text_only_where_it_stands():
         ("a.txt", b"\xef\xbb\xbf1\n", b"\xef\xbb\xbf2\n"),
         ("a.txt", b"\xff 1\n\x0c x\n", b"\xff 2\n\x0c x\n"),
         ("with space.txt", b"1\n", b"2\n"),
+        ('a\n+++ b"c\\d\x1b.txt', b"1\n", b"2\n"),
+        ('q"u.txt', b"1\n", b"2\n"),
     ],
 )
 def test_git_applies_the_diff(tmp_path, path, old, new):
@@ -266,26 +268,44 @@ def test_no_change_no_diff():
     assert unified_diff("a", b"x", b"x") == ""
 
 
-def test_write_keeps_mode_and_link(tmp_path):
+def test_write_keeps_the_mode(tmp_path):
     (tmp_path / "real").mkdir()
     script = tmp_path / "real" / "script.py"
     script.write_bytes(b"old")
     script.chmod(0o751)
-    link = tmp_path / "link.py"
-    link.symlink_to("real/script.py")
-    write(link, b"new")
-    assert link.is_symlink()
+    write(tmp_path, "real/script.py", b"new", b"old")
     assert script.read_bytes() == b"new"
     assert stat.S_IMODE(script.stat().st_mode) == 0o751
     assert os.listdir(tmp_path / "real") == ["script.py"]
 
 
+def test_a_fix_never_leaves_the_workspace(tmp_path):
+    ws, outside = tmp_path / "ws", tmp_path / "outside"
+    for place in (ws / "real/.git", outside):
+        place.mkdir(parents=True)
+    for file in (ws / "real/f", ws / "real/.git/config", outside / "f"):
+        file.write_bytes(b"old")
+    (ws / "link").symlink_to("real/f")
+    (ws / "away").symlink_to(outside)
+    (ws / "package").symlink_to("real")
+    (tmp_path / "to ws").symlink_to(ws)
+    for path in ("link", "away/f", "package/f", "real/.git/config", "../outside/f", str(outside / "f"), "gone", "no/f"):
+        with pytest.raises(OSError):
+            write(ws, path, b"new", b"old")
+    with pytest.raises(OSError, match="changed since it was read"):
+        write(ws, "real/f", b"new", b"older")
+    assert (ws / "real/f").read_bytes() == (outside / "f").read_bytes() == b"old"
+    assert sorted(os.listdir(ws)) == ["away", "link", "package", "real"]
+    write(tmp_path / "to ws", "real/f", b"new", b"old")  # the workspace itself may be given by a link
+    assert (ws / "real/f").read_bytes() == b"new"
+
+
 def test_a_failed_write_leaves_the_file(tmp_path, monkeypatch):
     file = tmp_path / "f"
     file.write_bytes(b"old")
-    monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError("no space")))
+    monkeypatch.setattr(os, "rename", lambda *_, **__: (_ for _ in ()).throw(OSError("no space")))
     with pytest.raises(OSError, match="no space"):
-        write(file, b"new")
+        write(tmp_path, "f", b"new", b"old")
     assert file.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["f"]
 

@@ -41,7 +41,7 @@ def sources(count):
 @pytest.fixture(autouse=True)
 def later(monkeypatch):
     """Lets the tree believe that time has passed since the files were written, so that it remembers their ids."""
-    monkeypatch.setattr(tree_module.time, "time_ns", lambda: int((time.time() + 100) * 1e9))
+    monkeypatch.setattr(time, "time_ns", lambda: int((time.time() + 100) * 1e9))
 
 
 @pytest.fixture

@@ -7,9 +7,11 @@ import os
 import re
 import shutil
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
+from rosimpact.edges.limits import Limits
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.installed import read_installed
 from rosimpact.impact.targets.loader import own_machine
@@ -365,3 +367,68 @@ def test_what_runs_on_this_machine_gives_no_finding(tmp_path, check):
         pytest.skip("no built programs in /usr/bin")
     _, findings, _ = check(ws, "--install", ws / "install")
     assert [finding["message"] for finding in findings if "this machine" in finding["targets"]] == []
+
+
+# What lies in an install space that nobody built
+
+
+def strange(folder: Path, made_elf) -> None:
+    """Files of every kind beside two good libraries, one with a name that is no UTF-8."""
+    put(folder, "lib/libgood.so", made_elf("EM_X86_64", ["libc.so.6"], "libgood.so"))
+    with open(os.fsencode(folder) + b"/lib/lib\xff\n::error::x.so", "wb") as file:
+        file.write(made_elf("EM_X86_64", ["libm.so.6"]))
+    with open(folder / "lib/libsparse.so", "wb") as file:
+        file.write(made_elf("EM_X86_64", []))
+        file.truncate(3 << 30)
+    os.mkfifo(folder / "lib/libpipe.so")
+    os.symlink("/dev/zero", folder / "lib/libzero.so")
+    os.symlink("libloop.so", folder / "lib/libloop.so")
+    os.symlink("..", folder / "lib/up")
+    put(folder, "lib/libtext.so", b"INPUT(libreal.so)")
+    put(folder, "lib/libcut.so", made_elf("EM_X86_64", ["liba.so.1"])[:80])
+    os.mkfifo(folder / "setup.sh")
+    os.symlink("/dev/zero", folder / "_setup_util.py")
+
+
+def test_what_is_no_built_file_costs_itself_only(tmp_path, made_elf):
+    strange(tmp_path / "install", made_elf)
+    began = time.monotonic()
+    with Store(tmp_path / "cache") as store:
+        found = read_installed(tmp_path / "install", store, jobs=1)
+    assert time.monotonic() - began < 10
+    assert [binary.elf.needed for binary in found.binaries] == [("libc.so.6",), ("libm.so.6",)]
+    problems = {problem.path.rpartition("/")[2]: problem.message for problem in found.problems}
+    assert problems.keys() == {"libcut.so", "libsparse.so"}
+    assert problems["libsparse.so"] == "cannot be read: larger than 512 mb"
+
+
+def test_what_is_no_built_file_is_checked_around(tmp_path, made_elf, say):
+    workspace(tmp_path, "winch")
+    strange(tmp_path / "install", made_elf)
+    for format in ("text", "json", "github", "html"):
+        said = say("check", tmp_path, "--install", tmp_path / "install", "--format", format, "--target", "jazzy")
+        assert said.status in (0, 1), said.err
+        assert not re.search(r"(?m)^::error::x", said.out + said.err)
+
+
+def test_a_tree_of_more_files_or_folders_than_its_limits(tmp_path, made_elf, monkeypatch):
+    monkeypatch.setattr("rosimpact.impact.installed.limits", lambda: Limits(entries=20, depth=5))
+    put(tmp_path, "a/liba.so", made_elf("EM_X86_64", []))
+    put(tmp_path, "b/" + "deep/" * 9 + "libb.so", made_elf("EM_X86_64", []))
+    for n in range(30):
+        put(tmp_path, f"c/{n}")
+    put(tmp_path, "d/libd.so", made_elf("EM_X86_64", []))
+    with Store(tmp_path / "cache") as store:
+        found = read_installed(tmp_path, store, jobs=1)
+    assert [binary.path for binary in found.binaries] == ["a/liba.so"]
+    assert [problem.message for problem in found.problems] == [
+        "cannot be read: folders nested deeper than 5",
+        "cannot be read: more than 20 files, the others are left out",
+    ]
+
+
+def test_prefixes_that_setup_files_name_have_a_limit(tmp_path, made_elf):
+    put(tmp_path, "lib/liba.so", made_elf("EM_X86_64", []))
+    put(tmp_path, "_setup_util.py", b"CMAKE_PREFIX_PATH = '" + b";".join(b"/%d" % n for n in range(9999)) + b"'")
+    with Store(tmp_path / "cache") as store:
+        assert len(read_installed(tmp_path, store, jobs=1).underlays) == 100

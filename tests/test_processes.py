@@ -258,3 +258,13 @@ def test_the_shipped_data_is_read_by_many_processes_at_once():
     fresh.header("ros/ros.h")  # opened here before the others are forked
     for header, answer in processes.forked(_answers, headers, 4, DistroTarget("jazzy"), fresh):
         assert answer == expected[header]
+
+
+@needs_fork
+def test_no_number_of_jobs_brings_the_machine_down():
+    with processes.Workers(_doubled, 100_000, 2) as workers:
+        given = 0
+        while workers.free and given < 1000:
+            workers.give(given)
+            given += 1
+    assert given == max(64, 4 * processes.cores())

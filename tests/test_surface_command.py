@@ -60,7 +60,7 @@ def test_diff_as_text(repos):
     result = run("diff", "rclcpp", "16.0.0", "28.1.0", "--repos", repos)
     assert (result.exit_code, result.stdout) == (
         0,
-        """rclcpp 16.0.0 → 28.1.0
+        """package rclcpp 16.0.0 → 28.1.0
   16.0.0: 16.0.0 of ros2/rclcpp
   28.1.0: 28.1.0 of ros2/rclcpp
 
@@ -136,7 +136,7 @@ def test_without_clones_what_is_shipped_answers():
     result = run("diff", "rclcpp", "humble", "jazzy", "--all")
     assert result.exit_code == 0, result.stderr
     old, new = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
-    assert result.stdout.startswith(f"rclcpp {old} (humble) → {new} (jazzy)\n  humble: ")
+    assert result.stdout.startswith(f"package rclcpp {old} (humble) → {new} (jazzy)\n  humble: ")
     assert " of the shipped surfaces" in result.stdout.splitlines()[1]
     # Deprecated in Galactic for the one of rcpputils, and gone after Humble.
     assert "  removed header  rclcpp/scope_exit.hpp\n" in result.stdout

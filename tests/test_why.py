@@ -73,19 +73,19 @@ PACKAGE = Offer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
     ("found", "expected"),
     [
         ([], ""),
-        ([answer("name")], "jazzy: `x` as name\n  nobody is known to provide it there\nused at 0 places"),
+        ([answer("name")], "on jazzy: `x` as name\n  nobody is known to provide it there\nused at 0 places"),
         (
             [answer("package", PACKAGE), answer("header", PACKAGE)],
-            "jazzy: `x` as package, header\n  package cv_bridge  4.1.0  since 2024-04-19\nused at 0 places",
+            "on jazzy: `x` as package, header\n  package cv_bridge  4.1.0  since 2024-04-19\nused at 0 places",
         ),
         (
             [answer("package", PACKAGE, used=("a/b.cpp:1",), undeclared=("a",), changes=("c",))],
-            "jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\n  c\nused at 1 place:\n  a/b.cpp:1\n"
+            "on jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\n  c\nused at 1 place:\n  a/b.cpp:1\n"
             "not safe: used and not declared in a",
         ),
         (
             [answer("package", PACKAGE, used=tuple(f"a.cpp:{n}" for n in range(1, 15)))],
-            "jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\nused at 14 places:\n"
+            "on jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\nused at 14 places:\n"
             + "".join(f"  a.cpp:{n}\n" for n in range(1, 13))
             + "  and 2 more\nsafe: every package that uses it declares it, or something that brings it",
         ),

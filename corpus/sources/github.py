@@ -12,12 +12,15 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator
+from datetime import datetime, timedelta
+from email.utils import parsedate_to_datetime
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlencode, urlsplit
 
-from ..polite import Client, Refused, service_address
+from ..polite import Answer, Client, Refused, service_address
 from ..report import CorpusError, Report
 from ..store import Asked, Gathered, Page, digest_of
+from .in_order import Part, read_in_order
 
 if TYPE_CHECKING:
     from github import Github
@@ -28,8 +31,12 @@ API = "https://api.github.com"
 PER_PAGE = 100
 SEARCH_LIMIT = 1_000
 """Results that a search gives at most."""
-_NAME = re.compile(r"[\w-][\w.-]*/(?!\.{1,2}\Z)[\w.-]+\Z")
-_ID = re.compile(r"(?:https://api\.github\.com/repos/)?([\w.-]+/[\w.-]+)(?:#|/(?:issues|pulls?)/)(\d+)\Z")
+_OVER = 2  # seconds after which nothing more is updated at a time, by the server's clock
+_NAME = re.compile(r"[\w-][\w.-]*/(?!\.{1,2}\Z)[\w.-]+\Z", re.ASCII)
+_ID = re.compile(
+    r"(?:https://api\.github\.com/repos/)?([\w-][\w.-]*/(?!\.{1,2}[#/])[\w.-]+)(?:#|/(?:issues|pulls?)/)(\d{1,12})\Z",
+    re.ASCII,
+)
 _PAGE = re.compile(r"https?://[^/]+/(?:repos/)?([\w.-]+/[\w.-]+)/(?:issues|pulls?)/(\d+)")
 _KEPT = (
     "number", "title", "body", "state", "state_reason", "created_at", "updated_at", "closed_at", "html_url", "url",
@@ -139,39 +146,46 @@ class Listed:
         """From a state (None: from the start) to the end of the list. State: the time from which to ask, and the ETag
         of the last answer, so that asking when nothing is new costs nothing."""
         state = state or {}
-        since = state.get("since") or (f"{self._since}T00:00:00Z" if self._since else "")
-        etag = state.get("etag", "")
+        start = str(state.get("since") or (f"{self._since}T00:00:00Z" if self._since else ""))
+        etag = str(state.get("etag") or "")
+        etags = [etag]  # for the first request alone
         done, total = 0, None
-        url = ""
-        last: dict[Any, dict[str, Any]] = {}
-        while True:
-            url = url or self._address(since)
-            answer, rows = self._server.client.get_json(
-                url, headers=self._server.headers(etag), lane="core", accept=(304,)
-            )
+        steps = read_in_order(
+            lambda since, place: self._part(since, place, etags.pop() if etags else ""),
+            start,
+            lambda row: str(row.get("updated_at") or ""),
+            lambda row: str(row.get("number")),
+            lambda: self._server.client.wait(_OVER, "issues are being changed there this very second"),
+            self._server.client.service,
+        )
+        for step in steps:
+            answer: Answer = step.part.about
             if answer.status == 304:
-                yield Page([], {"since": since, "etag": etag}, finished=True, done=done, of=total)
+                yield Page([], {"since": start, "etag": etag}, finished=True, done=done, of=total)
                 return
-            if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-                raise CorpusError(f"{self._server.client.service}: answered with no list; check --api")
-            etag = ""
-            # each request starts with the last moment of the one before
-            again, last = last, {row.get("number"): row for row in rows}
-            fresh = [row for row in rows if again.get(row.get("number")) != row]
-            done += len(fresh)
-            links = answer.links
-            total = done + _left(links, len(rows))
-            newest = max((str(row.get("updated_at") or "") for row in rows), default=since)
-            reports = list(self._reports(fresh))
-            moved = self._moved(rows)
-            if "next" not in links:
-                state = {"since": since, "etag": answer.headers.get("etag", "")}
-                yield Page(reports, state, finished=True, done=done, of=done, moved=moved)
-                return
-            # A whole page of one and the same time: the next page of this very list is the only way on.
-            url = self._server_own(links["next"]) if newest <= since else ""
-            since = max(since, newest)
-            yield Page(reports, {"since": since}, done=done, of=total, moved=moved)
+            done += len(step.fresh)
+            total = done if step.finished else done + _left(answer.links, len(step.part.rows))
+            # An ETag is of one page: that it is the same says that nothing is new only where that page has room.
+            kept = answer.headers.get("etag", "") if step.whole and len(step.part.rows) < PER_PAGE else ""
+            state = {"since": step.since, "etag": kept} if kept else {"since": step.since}
+            reports = list(self._reports(step.fresh))
+            yield Page(
+                reports, state, finished=step.finished, done=done, of=total, moved=self._moved(step.part.rows)
+            )
+
+    def _part(self, since: str, place: str | None, etag: str) -> Part:
+        """A page of what was updated since a time; place: the address of a further one. Raises CorpusError."""
+        client = self._server.client
+        answer, rows = client.get_json(
+            place or self._address(since), headers=self._server.headers(etag), lane="core",
+            accept=(304,) if etag else (),
+        )  # fmt: skip
+        if answer.status == 304:
+            return Part([], about=answer)
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+            raise CorpusError(f"{client.service}: answered with no list; check --api")
+        onward = answer.links.get("next")
+        return Part(rows, self._server_own(onward) if onward else None, _is_over(since, answer), answer)
 
     def _moved(self, rows: list[dict[str, Any]]) -> tuple[str, str] | None:
         """(old, new) name of the repository, where it is no longer the one that was asked for."""
@@ -216,32 +230,30 @@ class Searched:
 
     def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
         """From a state (None: from the start) to the end. State: the moment of creation from which to search."""
-        since = (state or {}).get("created") or self._since
-        done, total = 0, None
-        last: dict[Any, dict[str, Any]] = {}
-        while True:
-            query = f"{self._query} created:>={since}" if since else self._query
-            newest, read = since, 0
-            for number in range(1, SEARCH_LIMIT // PER_PAGE + 1):
-                count, rows = self._page(query, number)
-                total = count if total is None else total
-                read += len(rows)
-                again, last = last, {row.get("url"): row for row in rows}
-                fresh = [row for row in rows if again.get(row.get("url")) != row]
-                done += len(fresh)
-                newest = max([newest, *(str(row.get("created_at") or "") for row in rows)])
-                finished = not rows or read >= count
-                reports = [self._server.gathered(row) for row in fresh]
-                yield Page(reports, {"created": newest}, finished=finished, done=done, of=max(total, done))
-                if finished:
-                    return
-            if newest <= since:
-                raise CorpusError(
-                    f"{self._server.client.service}: more than {SEARCH_LIMIT} results of one second, {since}; "
-                    "narrow the search"
-                )
-            # the reports of that very second come again, and are the same
-            since = newest
+        since = str((state or {}).get("created") or self._since)
+        total, done = None, 0
+        for step in read_in_order(
+            self._part, since, lambda row: str(row.get("created_at") or ""), lambda row: str(row.get("url")),
+            lambda: None, self._server.client.service,
+        ):  # fmt: skip
+            count: int = step.part.about
+            total = count if total is None else total
+            done += len(step.fresh)
+            newest = max([step.since, *(str(row.get("created_at") or "") for row in step.part.rows)])
+            state = {"created": newest if step.finished else step.since}
+            reports = [self._server.gathered(row) for row in step.fresh]
+            yield Page(reports, state, finished=step.finished, done=done, of=max(total, done))
+
+    def _part(self, since: str, place: int | None) -> Part:
+        """A page of what was posted since a moment; place: the number of a further one. Raises CorpusError."""
+        number = place or 1
+        if number > SEARCH_LIMIT // PER_PAGE:
+            raise CorpusError(
+                f"{self._server.client.service}: more than {SEARCH_LIMIT} results of one second, {since}; "
+                "narrow the search"
+            )
+        count, rows = self._page(f"{self._query} created:>={since}" if since else self._query, number)
+        return Part(rows, number + 1 if rows and number * PER_PAGE < count else None, about=count)
 
     def _page(self, query: str, number: int) -> tuple[int, list[dict[str, Any]]]:
         """(how many there are in all, those of one page). Asks again while the server says that it ran out of time."""
@@ -260,7 +272,10 @@ class Searched:
                     error.status,
                 ) from None
             if not found.get("incomplete_results"):
-                return int(found.get("total_count", 0)), found.get("items") or []
+                count, rows = found.get("total_count"), found.get("items")
+                if isinstance(count, int) and isinstance(rows, list) and all(isinstance(row, dict) for row in rows):
+                    return count, rows
+                raise CorpusError(f"{client.service}: the search answered with no list; check --api")
             client.wait(5.0 * 2**attempt, "the search ran out of time")
         raise CorpusError(f"{client.service}: the search runs out of time again and again; narrow it")
 
@@ -283,6 +298,15 @@ def _gathered(issue: Issue, raw: dict[str, Any], etag: str, asked: str) -> Gathe
         author=(raw.get("user") or {}).get("login") or "",
     )
     return Gathered(report, kept, digest_of(kept), etag, asked, "github")
+
+
+def _is_over(moment: str, answer: Answer) -> bool:
+    """Whether a second (`2024-01-31T10:00:00Z`) has passed by the clock of who answered; so where there is no clock."""
+    try:
+        now = parsedate_to_datetime(answer.headers.get("date", ""))
+        return now - datetime.fromisoformat(moment.replace("Z", "+00:00")) >= timedelta(seconds=_OVER)
+    except (TypeError, ValueError, OverflowError):
+        return True
 
 
 def _reduced(raw: dict[str, Any]) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -11,19 +12,47 @@ if TYPE_CHECKING:
 _BLOCKS = ("p", "div", "section", "article", "table", "tr", "dl", "dt", "dd", "figure")
 _HEADINGS = ("h1", "h2", "h3", "h4", "h5", "h6")
 _SILENT = ("script", "style", "template", "noscript", "button", "form")
+_VOID = (
+    "area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "param", "source", "track", "wbr",
+)  # fmt: skip
+_TAG = re.compile(r"<(/?)([A-Za-z][A-Za-z0-9:-]{0,40})")
+_DEEPEST = 600
+_LONGEST = 1_000_000
 _TIGHT = re.compile(r"[ \t]*\n(?:[ \t]*\n)+")
 
 
 def soup(html: str):
-    """A parsed page or piece of one."""
+    """A parsed page or piece of one; the bare text of one that nests deeper than any post, which would be parsed for
+    minutes. What stands beyond a limit of characters is left out."""
     from bs4 import BeautifulSoup
 
-    return BeautifulSoup(html, "html.parser")
+    html = html[:_LONGEST]
+    return BeautifulSoup(re.sub(r"<[^<>]*>", " ", html) if _depth(html) > _DEEPEST else html, "html.parser")
+
+
+def _depth(html: str) -> int:
+    """How deep tags nest at most, or more where they overlap."""
+    counts: Counter[str] = Counter()
+    deepest = depth = 0
+    for match in _TAG.finditer(html):
+        name = match[2].lower()
+        if not match[1]:
+            counts[name] += 1
+            depth += name not in _VOID
+            deepest = max(deepest, depth)
+        elif counts[name] > 0:
+            counts[name] -= 1
+            depth -= name not in _VOID
+    return deepest
 
 
 def markdown(html: str | Tag) -> str:
-    """The Markdown of a post's HTML, without blank lines at its ends."""
-    return _tidy(_blocks(soup(html) if isinstance(html, str) else html))
+    """The Markdown of a post's HTML, without blank lines at its ends; its bare text where it nests too deeply."""
+    page = soup(html) if isinstance(html, str) else html
+    try:
+        return _tidy(_blocks(page))
+    except RecursionError:
+        return _tidy("".join(page.strings))
 
 
 def _tidy(text: str) -> str:

@@ -8,9 +8,13 @@ numbers of the same range: only `original_post_url` tells them apart.
 
 from __future__ import annotations
 
+import errno
 import json
+import lzma
+import os
 import re
 import tarfile
+import zlib
 from collections.abc import Callable, Iterable, Iterator
 from datetime import datetime, timezone
 from pathlib import Path
@@ -19,6 +23,9 @@ from urllib.parse import urlsplit
 
 import msgspec
 
+from ...edges.documents import DocumentError, load_json, load_yaml_as_text
+from ...edges.files import open_regular, read_file
+from ...edges.limits import limits
 from ..polite import Client, Refused, service_address
 from ..report import CorpusError, Report
 from ..store import Asked, Gathered, Page, digest_of
@@ -37,10 +44,12 @@ _MAP = "answers/ros-to-robotics.json"
 # A question of the archive that was migrated and will not go away
 _SURELY_THERE = "10010"
 _AT_ONCE = 200
+_UNPACKED = 4 << 30
+"""Bytes that an archive may unpack to."""
 _ROS = re.compile(r"https?://answers\.ros\.org\.?/")
 _QUESTION = re.compile(r"/questions?/(\d+)")
 _MIGRATED = re.compile(r"https?://robotics\.stackexchange\.com/(?:questions|q)/(\d+)")
-_NAME = re.compile(r"(\d+)\.md\Z")
+_NAME = re.compile(r"([0-9]{1,12})\.md\Z")
 _HEAD = re.compile(r"\A---[ \t]*\r?\n(.*?)^---[ \t]*\r?$\n?(.*)\Z", re.DOTALL | re.MULTILINE)
 _POST = ("original_post_id", "body_markdown", "creation_date", "owner_display_name", "owner_profile_url",
          "upvote_count", "accepted")  # fmt: skip
@@ -91,8 +100,11 @@ class Archive:
         part: list[tuple[int, bytes]] = []
         count = 0
         for number, read in entries:
-            part.append((number, read()))
             count += 1
+            try:
+                part.append((number, read()))
+            except CorpusError as error:
+                self.unread.append(str(error))
             if len(part) == _AT_ONCE:
                 yield self._page(part, copies, count, total)
                 part, copies = [], ()
@@ -105,10 +117,10 @@ class Archive:
 
     def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
         """Asks for `ros-answers:10010` and the like. known: (id, anything)."""
-        wanted = {int(id.rpartition(":")[2]): id for id, _ in known}
+        wanted = {_number_of(id): id for id, _ in known}
         if self._place.is_dir():
             files = ((number, self._place / _FOLDER / f"{number}.md") for number in list(wanted))
-            found = ((number, lambda file=file: _read(file)) for number, file in files if file.is_file())
+            found = ((number, lambda file=file: _read(file)) for number, file in files if os.path.lexists(file))
         else:
             found = self._entries(0)
         for number, read in found:
@@ -146,13 +158,19 @@ class Archive:
                     yield number, lambda file=file: _read(file)
             return
         try:
-            with tarfile.open(self._place, "r|*") as tar:
-                for member in tar:
+            with open(open_regular(self._place), "rb") as file, tarfile.open(
+                fileobj=file, mode="r|*", tarinfo=_Member
+            ) as tar:  # fmt: skip
+                for count, member in enumerate(tar):
+                    if count > limits().entries or tar.offset > _UNPACKED:
+                        raise tarfile.ReadError("unpacks to too much")
+                    tar.members = []  # type: ignore[attr-defined]  # which are kept for whoever looks names up
                     folder, _, name = member.name.rpartition("/")
                     number = _NAME.match(name)
-                    if number and folder.endswith(_FOLDER) and (content := tar.extractfile(member)):
-                        yield int(number[1]), content.read
-        except (OSError, EOFError, tarfile.TarError):
+                    if number and folder.endswith(_FOLDER) and member.isreg() and (content := tar.extractfile(member)):
+                        data = content.read(limits().text)
+                        yield int(number[1]), lambda data=data: data
+        except (OSError, EOFError, ValueError, zlib.error, lzma.LZMAError, tarfile.TarError):
             raise CorpusError(f"{self._place}: is damaged; delete it, and it is fetched again") from None
 
     def _mapped(self) -> tuple[tuple[str, str], ...]:
@@ -161,9 +179,9 @@ class Archive:
         if not file.is_file():
             return ()
         try:
-            posts = json.loads(file.read_bytes())["Posts"]
+            posts = load_json(read_file(file, limits().capture, follow=False))["Posts"]
             found = [(_MIGRATED.match(str(post["NewUrl"])), int(post["OriginalPostID"])) for post in posts]
-        except (OSError, ValueError, TypeError, KeyError):
+        except (OSError, ValueError, TypeError, KeyError, OverflowError):
             return ()  # the questions name their copies themselves; the list only adds to them
         return tuple((f"robotics-se:{new[1]}", f"ros-answers:{old}") for new, old in found if new)
 
@@ -179,7 +197,7 @@ class ArchivedFiles:
     def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[Asked]:
         """As Archive.ask()."""
         for id, _ in known:
-            number = id.rpartition(":")[2]
+            number = str(_number_of(id))
             data = self._file(number)
             if data is None and not self._there:
                 # that one question is missing means something only where others are there
@@ -195,6 +213,26 @@ class ArchivedFiles:
         answer = self._client.get(f"{self._address}/{_FOLDER}/{number}.md", accept=(404, 410))
         self._there = self._there or answer.status == 200
         return answer.body if answer.status == 200 else None
+
+
+def _number_of(id: str) -> int:
+    """The number in `ros-answers:10010`. Raises CorpusError."""
+    number = re.fullmatch(r"ros-answers:([0-9]{1,12})", id)
+    if number is None:
+        raise CorpusError(f"{id[:80]}: is no id of ROS Answers; write ros-answers:10010")
+    return int(number[1])
+
+
+class _Member(tarfile.TarInfo):
+    """A file of a tarball. Raises ReadError for one that is too large for a question, or for its own name."""
+
+    @classmethod
+    def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str):
+        member = super().frombuf(buf, encoding, errors)
+        largest = _UNPACKED // 4 if member.type in (*tarfile.REGULAR_TYPES, tarfile.DIRTYPE) else 1 << 20
+        if not 0 <= member.size <= largest:
+            raise tarfile.ReadError("holds a file that is too large")
+        return member
 
 
 class SavedPages:
@@ -216,12 +254,21 @@ class SavedPages:
             for file in self._folder.rglob("*")
             if file.suffix.lower() in (".html", ".htm") and file.is_file()
         )
+        if not named:
+            raise CorpusError(f"{self._folder}: holds no *.html; give a folder with saved question pages")
         rest = [pair for pair in named if pair[0] > after]
         for start in range(0, len(rest), _AT_ONCE):
             part = rest[start : start + _AT_ONCE]
             reports = []
             for name, file in part:
-                found = parse_page(_read(file).decode("utf-8", "replace"))
+                try:
+                    found = parse_page(_read(file).decode("utf-8", "replace"))
+                except CorpusError as error:
+                    self.unread.append(str(error))
+                    continue
+                except RecursionError:
+                    self.unread.append(f"{name}: is nested too deeply")
+                    continue
                 if found is None:
                     self.unread.append(f"{name}: holds no question")
                 elif not self._since or (found.report.date or "9999") >= self._since:
@@ -280,22 +327,19 @@ def _asked_for(id: str, data: bytes, name: str) -> Asked:
 def parse_archived(data: bytes, name: str) -> tuple[Gathered, str] | None:
     """(the question, the id of its migrated copy or nothing) of a file of the archive; None for one of Gazebo Answers.
     Raises CorpusError, naming the file, when it is no question."""
-    import yaml
-
-    loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)  # everything is text: titles like `2013` or `no` stay so
     found = _HEAD.match(data.decode("utf-8-sig", "replace"))
     try:
-        head = yaml.load(found[1], Loader=loader) if found else None
-    except yaml.YAMLError as error:
-        place = getattr(error, "problem_mark", None)
-        at = f", line {place.line + 2}" if place else ""
+        # everything is text: titles like `2013` or `no` stay so
+        head = load_yaml_as_text(found[1]) if found else None
+    except DocumentError as error:
+        at = f", line {error.line + 1}" if error.line else ""
         raise CorpusError(f"{name}{at}: is no YAML; mend it, or take the file out") from None
     if not found or not isinstance(head, dict):
         raise CorpusError(f"{name}: has no YAML between lines of `---` at its top; take the file out")
     head = _snake(head)
     url = str(head.get("original_post_url") or "")
     number = str(head.get("original_post_id") or "")
-    if not number.isdigit():
+    if not re.fullmatch("[0-9]{1,12}", number):
         raise CorpusError(f"{name}: has no `original_post_id`; take the file out")
     if url and not _ROS.match(url):
         return None
@@ -326,9 +370,11 @@ def parse_item(item: dict[str, Any]) -> Gathered:
     try:
         number = int(item["id"])
         posted = datetime.fromtimestamp(int(item["added_at"]), timezone.utc).date().isoformat()
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, TypeError, ValueError, OverflowError, OSError):
         raise CorpusError("Askbot: an answer holds something that is no question; check --api") from None
-    author = item.get("author") or {}
+    given, listed = item.get("author"), item.get("tags")
+    author = given if isinstance(given, dict) else {}
+    tags = listed if isinstance(listed, list) else []
     title, _ = _title(str(item.get("title") or ""))
     kept = {
         name: item[name]
@@ -345,7 +391,7 @@ def parse_item(item: dict[str, Any]) -> Gathered:
         title=title,
         body=markdown(str(item.get("text") or item.get("summary") or "")),
         kind="question",
-        tags=tuple(str(tag) for tag in item.get("tags") or ()),
+        tags=tuple(str(tag) for tag in tags),
         author=public_name(author.get("username")),
         licence=LICENCE,
     )
@@ -407,9 +453,10 @@ def fetch_archive(client: Client, file: Path, address: str = TARBALL) -> Path:
 
 def _read(file: Path) -> bytes:
     try:
-        return file.read_bytes()
+        return read_file(file, limits().text, follow=False)
     except OSError as error:
-        raise CorpusError(f"{file}: cannot be read: {error.strerror}; check the folder") from None
+        why = "is a link, and links are not followed" if error.errno == errno.ELOOP else error.strerror
+        raise CorpusError(f"{file}: cannot be read: {why}; check the folder") from None
 
 
 def _snake(mapping: dict) -> dict[str, Any]:

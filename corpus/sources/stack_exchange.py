@@ -19,6 +19,7 @@ from urllib.parse import urlsplit
 from ..polite import Client, Refused, service_address
 from ..report import CorpusError, Report
 from ..store import Asked, Gathered, Page, digest_of
+from .in_order import Part, read_in_order
 from .markup import markdown, soup
 from .person import public_name
 
@@ -36,7 +37,7 @@ _FOOTER = re.compile(
     r"(?:\s+with karma:\s*-?\d+)?(?:\s+on\s+(?P<date>\d{4}-\d\d-\d\d))?"
 )
 _PASTED = re.compile(r"(?:Original comments\b|Comment by .* on \d{4}-\d\d-\d\d)")
-_THROTTLED = re.compile(r"(\d+) seconds")
+_THROTTLED = re.compile(r"([0-9]{1,9}) seconds")
 _KEPT = (
     "question_id", "title", "body", "tags", "creation_date", "last_activity_date", "last_edit_date", "closed_date",
     "closed_reason", "score", "view_count", "answer_count", "is_answered", "accepted_answer_id", "link",
@@ -78,10 +79,10 @@ class StackExchange:
                     found = answer.json()
                 except ValueError:
                     found = {}
-            if not isinstance(found, dict) or not ("items" in found or "error_id" in found):
+            if not _is_wrapper(found):
                 raise CorpusError(f"{self.client.service}: answered with something unforeseen; check --api")
-            if "backoff" in found:
-                self.client.hold(lane, float(found["backoff"]), "it asks for a pause")
+            if isinstance(found.get("backoff"), int):
+                self.client.hold(lane, found["backoff"], "it asks for a pause")
             if "error_id" not in found:
                 if found.get("quota_remaining") == 0:
                     self._hold_until_tomorrow()
@@ -90,7 +91,7 @@ class StackExchange:
             if found.get("error_name") != "throttle_violation":
                 raise Refused(
                     f"{self.client.service}: refused ({found.get('error_name')}: {said}); check what is asked for",
-                    int(found["error_id"]),
+                    found["error_id"],
                 )
             seconds = _THROTTLED.search(said)
             self.client.wait(float(seconds[1]) + 1 if seconds else 60.0, "too many requests came from here")
@@ -119,6 +120,15 @@ class StackExchange:
                     yield Asked(ids[number], "gone")
 
 
+def _is_wrapper(found: object) -> bool:
+    """Whether an answer is what the API wraps its answers in."""
+    if not isinstance(found, dict):
+        return False
+    items = found.get("items")
+    listed = isinstance(items, list) and all(isinstance(item, dict) for item in items)
+    return listed or isinstance(found.get("error_id"), int)
+
+
 class Tagged:
     """The questions with a tag, posted since a day (`2024-01-01`) or ever, in the order of their posting."""
 
@@ -132,36 +142,45 @@ class Tagged:
     def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
         """From a state (None: from the start) to the end. State: the second of the last question's posting."""
         since = (state or {}).get("since")
-        if since is None and self._since:
-            since = int(datetime.fromisoformat(self._since).replace(tzinfo=timezone.utc).timestamp())
-        page, done = 1, 0
-        last: dict[int, dict[str, Any]] = {}
-        while True:
-            asked: dict[str, object] = {"tagged": self._tag} if self._tag else {}
-            if since is not None:
-                asked["fromdate"] = since
-            found = self._server.get(
-                "questions", "questions", **asked, sort="creation", order="asc", page=page, pagesize=PAGE_SIZE,
-                filter="withbody",
-            )  # fmt: skip
-            items = found["items"]
-            again, last = last, {item["question_id"]: item for item in items}
-            fresh = [item for item in items if again.get(item["question_id"]) != item]
-            done += len(fresh)
-            newest = max((int(item["creation_date"]) for item in items), default=since)
-            finished = not items or not found.get("has_more")
-            yield Page([gathered(item) for item in fresh], {"since": newest}, finished=finished, done=done)
-            if finished:
+        if since is None:
+            day = datetime.fromisoformat(self._since).replace(tzinfo=timezone.utc) if self._since else None
+            since = int(day.timestamp()) if day else 0
+        client, done = self._server.client, 0
+        for step in read_in_order(
+            self._part, int(since), _posted, lambda item: str(item.get("question_id")), lambda: None, client.service
+        ):
+            done += len(step.fresh)
+            # at the end it goes on with the last question, which tells whether anything is new
+            newest = max((_posted(item) for item in step.part.rows), default=step.since)
+            reports = [gathered(item) for item in step.fresh]
+            state = {"since": max(newest, step.since) if step.finished else step.since}
+            yield Page(reports, state, finished=step.finished, done=done)
+            if step.finished:
                 return
-            # The questions of that very second come again, and are the same. Were they the whole page, the next page
-            # is the only way on.
-            page = page + 1 if newest == since else 1
-            if page > _LAST_PAGE:
-                raise CorpusError(
-                    f"{self._server.client.service}: more than {_LAST_PAGE * PAGE_SIZE} questions of one second; "
-                    "narrow the tag"
-                )
-            since = newest
+
+    def _part(self, since: int, place: int | None) -> Part:
+        """A page of what was posted since a second; place: the number of a further one. Raises CorpusError."""
+        page = place or 1
+        if page > _LAST_PAGE:
+            raise CorpusError(
+                f"{self._server.client.service}: more than {_LAST_PAGE * PAGE_SIZE} questions of one second; "
+                "narrow the tag"
+            )
+        asked: dict[str, object] = {"tagged": self._tag} if self._tag else {}
+        if since:
+            asked["fromdate"] = since
+        found = self._server.get(
+            "questions", "questions", **asked, sort="creation", order="asc", page=page, pagesize=PAGE_SIZE,
+            filter="withbody",
+        )  # fmt: skip
+        return Part(found["items"], page + 1 if found.get("has_more") and found["items"] else None)
+
+
+def _posted(item: dict[str, Any]) -> int:
+    try:
+        return int(item["creation_date"])
+    except (KeyError, TypeError, ValueError):
+        raise CorpusError("Stack Exchange: an answer holds something that is no question; check --api") from None
 
 
 def gathered(item: dict[str, Any]) -> Gathered:
@@ -170,19 +189,21 @@ def gathered(item: dict[str, Any]) -> Gathered:
         number = int(item["question_id"])
         posted = datetime.fromtimestamp(int(item["creation_date"]), timezone.utc).date().isoformat()
         body = str(item["body"])
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, TypeError, ValueError, OverflowError, OSError):
         raise CorpusError("Stack Exchange: an answer holds something that is no question; check --api") from None
     original = original_of(body)
-    owner = item.get("owner") or {}
+    given, listed = item.get("owner"), item.get("tags")
+    owner = given if isinstance(given, dict) else {}
+    tags = listed if isinstance(listed, list) else []
     report = Report(
         id=f"robotics-se:{number}",
-        url=item.get("link") or f"https://robotics.stackexchange.com/questions/{number}",
+        url=str(item.get("link") or "") or f"https://robotics.stackexchange.com/questions/{number}",
         source="robotics-se",
         date=original.date or posted,
         title=html.unescape(str(item.get("title") or "")),
         body=markdown(original.text),
         kind="question",
-        tags=tuple(item.get("tags") or ()),
+        tags=tuple(str(tag) for tag in tags),
         author=public_name(original.name or html.unescape(str(owner.get("display_name") or ""))),
         licence=licence(item.get("content_license")),
         same_as=f"ros-answers:{original.id}" if original.id else "",

@@ -2,20 +2,31 @@
 
 Read with pyelftools, as the System V ABI, gABI chapters 4 and 5, and the LSB's "Symbol Versioning" describe the format.
 Symbols are read in one go with numpy, since a library has thousands of them.
+
+Nothing that a file claims about itself is believed: what is read of it has limits, so that a table that
+leads back to itself, has 2^31 entries or names without an end costs a second and makes a problem.
 """
 
 from __future__ import annotations
 
 import io
 import re
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Iterator
+from typing import IO, Any, NamedTuple
 
 import msgspec
 
 MAGIC = b"\x7fELF"
-EXTRACTOR = "elf 1"
-# Of a damaged file, a table that claims to be longer than this is not read.
-_SYMBOLS_AT_MOST = 5_000_000
+EXTRACTOR = "elf 2"
+# The largest libraries of ROS distros have 100 needed libraries, 20,000 symbols that they lack and 300,000 that they
+# have, and take a few thousand reads.
+_READS = 200_000
+_READ_BYTES = 64 << 20
+_SYMBOLS = 2_000_000
+_UNDEFINED = 500_000
+_NAME_BYTES = 128 << 20
+_NEEDED = 1_000
+_SEARCHED = 100
 _WEAK = 2
 
 
@@ -58,27 +69,66 @@ class Elf(msgspec.Struct, frozen=True, array_like=True, gc=False):
     problem: str = ""
 
 
-def read(data: bytes) -> Elf | None:
-    """What a file asks for, None when it is no ELF file. Never raises: of a damaged file that is told which can be."""
-    if data[:4] != MAGIC:
+def read(data: bytes | IO[bytes]) -> Elf | None:
+    """What a file asks for, None when it is no ELF file. data: its bytes, or the open file. Of a damaged file that is
+    told which can be. Raises OSError, where reading the open file does, and nothing else."""
+    stream = io.BytesIO(data) if isinstance(data, bytes) else data
+    if stream.read(4) != MAGIC:
         return None
     found: dict[str, Any] = {}
     try:
-        _read(data, found)
+        _read(stream, found)
+    except OSError:
+        raise
     except Exception as error:  # pyelftools raises whatever its parsers meet in damaged bytes
         found["problem"] = f"no ELF file that can be read to its end ({_clause(error)})"
     return Elf(**found)
 
 
-def _read(data: bytes, found: dict[str, Any]) -> None:
+class _TooMuch(Exception):
+    """A file claims to have more of something than any file has."""
+
+
+class _Bounded:
+    """An open file for pyelftools, which reads for every entry of a table: reading too often ends in _TooMuch."""
+
+    def __init__(self, stream: IO[bytes]):
+        self._stream, self._reads, self._bytes = stream, 0, 0
+        self.tell = stream.tell
+        self.seek = stream.seek
+
+    def read(self, size: int = -1) -> bytes:
+        self._reads += 1
+        self._bytes += size if size >= 0 else _READ_BYTES
+        if self._reads > _READS or self._bytes > _READ_BYTES:
+            raise _TooMuch("a table that does not end")
+        return self._stream.read(size)
+
+
+def _bounded(stream: IO[bytes]) -> Any:
+    return _Bounded(stream)
+
+
+def _piece(stream: IO[bytes], start: int, size: int) -> bytes:
+    """A part of a file. Raises ValueError where the file ends before it does."""
+    whole = stream.seek(0, io.SEEK_END)
+    if start < 0 or size < 0 or start + size > whole:
+        raise ValueError("a table lies behind the end of the file")
+    stream.seek(start)
+    return stream.read(size)
+
+
+def _read(stream: IO[bytes], found: dict[str, Any]) -> None:
     from elftools.elf.dynamic import DynamicSegment
     from elftools.elf.elffile import ELFFile
     from elftools.elf.gnuversions import GNUVerDefSection, GNUVerNeedSection, GNUVerSymSection
     from elftools.elf.sections import NoteSection, SymbolTableSection
 
-    file = ELFFile(io.BytesIO(data))
+    file = ELFFile(_bounded(stream))
     found["machine"], found["bits"] = str(file["e_machine"]), file.elfclass
     found["program"] = file["e_type"] == "ET_EXEC"
+    if file["e_type"] not in ("ET_EXEC", "ET_DYN"):
+        return
     for segment in file.iter_segments():
         if segment["p_type"] == "PT_INTERP":
             found["program"] = True
@@ -109,7 +159,7 @@ def _read(data: bytes, found: dict[str, Any]) -> None:
         elif isinstance(section, NoteSection) and section.name == ".note.gnu.build-id":
             found["build_id"] = next((str(note["n_desc"]) for note in section.iter_notes()), "")
     if table is not None:
-        _symbols(data, file, table, versions, names, found)
+        _symbols(stream, file, table, versions, names, found)
 
 
 def _dynamic(segment: Any, found: dict[str, Any]) -> None:
@@ -126,27 +176,35 @@ def _dynamic(segment: Any, found: dict[str, Any]) -> None:
             old = tag.rpath.split(":")
     found["needed"] = tuple(dict.fromkeys(needed))
     found["search"] = tuple(folder for folder in run or old if folder)
+    if len(found["needed"]) > _NEEDED or len(found["search"]) > _SEARCHED:
+        found.update(needed=found["needed"][:_NEEDED], search=found["search"][:_SEARCHED])
+        raise _TooMuch("more libraries or folders than any file asks for")
 
 
-def _symbols(data: bytes, file: Any, table: Any, versions: Any, names: dict[int, str], found: dict[str, Any]) -> None:
+def _symbols(
+    stream: IO[bytes], file: Any, table: Any, versions: Any, names: dict[int, str], found: dict[str, Any]
+) -> None:
     import numpy
 
-    symbols, text = _table(data, file, table)
+    symbols, text = _table(stream, file, table)
     count = len(symbols)
     given = numpy.zeros(count, "u2")
     if versions is not None and versions["sh_size"] // 2 >= count:
         order = "<" if file.little_endian else ">"
-        given = numpy.frombuffer(data, order + "u2", count, versions["sh_offset"])
+        given = numpy.frombuffer(_piece(stream, versions["sh_offset"], 2 * count), order + "u2")
     found["defined"] = int(_for_others(symbols).sum())
     undefined = []
-    for index in numpy.flatnonzero((symbols["name"] != 0) & (symbols["section"] == 0)).tolist():
-        name = _name_at(text, int(symbols["name"][index])).decode("utf-8", "replace")
+    places = numpy.flatnonzero((symbols["name"] != 0) & (symbols["section"] == 0))
+    if len(places) > _UNDEFINED:
+        raise _TooMuch("more symbols than any file asks for")
+    for index, raw in zip(places.tolist(), _names(text, symbols["name"][places].tolist()), strict=True):
+        name = raw.decode("utf-8", "replace")
         weak = int(symbols["info"][index]) >> 4 == _WEAK
         undefined.append(Undefined(name, names.get(int(given[index]) & 0x7FFF, ""), weak))
     found["undefined"] = tuple(undefined)
 
 
-def _table(data: bytes, file: Any, table: Any) -> tuple[Any, bytes]:
+def _table(stream: IO[bytes], file: Any, table: Any) -> tuple[Any, bytes]:
     """The symbols of a table as a numpy array, and the text that has their names."""
     import numpy
 
@@ -156,10 +214,12 @@ def _table(data: bytes, file: Any, table: Any) -> tuple[Any, bytes]:
     else:
         fields = [("name", "u4"), ("value", "u4"), ("size", "u4"), ("info", "u1"), ("other", "u1"), ("section", "u2")]
     kind = numpy.dtype([(name, order + size) for name, size in fields])
-    count = min(table["sh_size"] // kind.itemsize, _SYMBOLS_AT_MOST)
+    count = table["sh_size"] // kind.itemsize
     strings = file.get_section(table["sh_link"])
-    text = data[strings["sh_offset"] : strings["sh_offset"] + strings["sh_size"]]
-    return numpy.frombuffer(data, kind, count, table["sh_offset"]), text
+    if count > _SYMBOLS or strings["sh_size"] > _NAME_BYTES:
+        raise _TooMuch("more symbols than any file has")
+    text = _piece(stream, strings["sh_offset"], strings["sh_size"])
+    return numpy.frombuffer(_piece(stream, table["sh_offset"], count * kind.itemsize), kind), text
 
 
 def _for_others(symbols: Any) -> Any:
@@ -167,28 +227,35 @@ def _for_others(symbols: Any) -> Any:
     return (symbols["name"] != 0) & (symbols["section"] != 0) & ((symbols["info"] >> 4) != 0)
 
 
-def _name_at(text: bytes, start: int) -> bytes:
-    return text[start : text.index(b"\0", start)]
+def _names(text: bytes, starts: Iterable[int]) -> Iterator[bytes]:
+    """The names that begin at some places of a text. Raises _TooMuch when they overlap so that they are endless."""
+    left = _NAME_BYTES
+    for start in starts:
+        name = text[start : text.index(b"\0", start)]
+        left -= len(name)
+        if left < 0:
+            raise _TooMuch("names of symbols that do not end")
+        yield name
 
 
-def defined(data: bytes) -> frozenset[str] | None:
+def defined(data: bytes | IO[bytes]) -> frozenset[str] | None:
     """The C++ symbols that a file has for others; None for one that is no ELF file, or cannot be read to its end."""
     from elftools.elf.elffile import ELFFile
 
+    stream = io.BytesIO(data) if isinstance(data, bytes) else data
     try:
-        file = ELFFile(io.BytesIO(data))
-        found: set[str] = set()
-        for section in file.iter_sections("SHT_DYNSYM"):
-            symbols, text = _table(data, file, section)
-            starts = symbols["name"][_for_others(symbols)].tolist()
-            names = (_name_at(text, start) for start in starts)
-            found.update(name.decode("utf-8", "replace") for name in names if name.startswith(b"_Z"))
-        return frozenset(found)
+        file = ELFFile(_bounded(stream))
+        section = next(file.iter_sections("SHT_DYNSYM"), None)  # a file has at most one
+        if section is None:
+            return frozenset()
+        symbols, text = _table(stream, file, section)
+        names = _names(text, symbols["name"][_for_others(symbols)].tolist())
+        return frozenset(name.decode("utf-8", "replace") for name in names if name.startswith(b"_Z"))
     except Exception:  # as in read()
         return None
 
 
-_IDENTIFIER = re.compile(r"\d+")
+_IDENTIFIER = re.compile(r"[0-9]{1,9}")
 
 
 class Member(NamedTuple):

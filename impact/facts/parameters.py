@@ -17,6 +17,7 @@ from typing import Any
 
 import msgspec
 
+from ...edges.documents import load_yaml
 from .cpp import scan
 from .place import Problem
 from .usage import argument_spans
@@ -187,9 +188,7 @@ def _in_cfg(data: bytes) -> Iterator[Declared]:
 
 
 def _in_yaml(data: bytes) -> Iterator[Declared]:
-    import yaml
-
-    whole = yaml.load(data, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    whole = load_yaml(data)
     for each in whole.values() if isinstance(whole, Mapping) else ():
         yield from _of_library(each, "")
 

@@ -90,6 +90,8 @@ class Solver:
         solver.set("rlimit", self.milliseconds * _RESOURCES_PER_MILLISECOND)
         # Should the amount of work be misjudged, it ends all the same.
         solver.set("timeout", self.milliseconds * 20)
+        # Otherwise z3 takes Ctrl-C for itself: nothing is decided, and the run goes on.
+        solver.set("ctrl_c", False)
         try:
             solver.from_string("".join((*self.script, *known, *named)))
         except z3.Z3Exception as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import re
@@ -9,15 +10,20 @@ from collections.abc import Iterator, Mapping
 from datetime import datetime, timezone
 from typing import Any, NamedTuple
 
+from ...edges.limits import limits
 from ..facts import kinds
 from ..model.package import role_of_folder
 from ..tree import IGNORE_MARKERS, GitTree, TreeError, shown
 
 _MODE_FOLDER, _MODE_LINK, _MODE_SUBMODULE = 0o040000, 0o120000, 0o160000
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+_COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
 _NAME = re.compile(rb"<name\b[^>]*>\s*([^<\s]+)\s*</name>")
 _AMENT = re.compile(rb"\bament_(?:cmake|python)|<build_type>\s*ament")
 _WANTED = frozenset(("cpp", "python", "cmake", "setup_py"))
+# What a commit may hold, with folders that stand at many places counted at each.
+_PACKAGES_AT_MOST, _FILES_AT_MOST = 20_000, 200_000
+# Of the years 1 to 9999, which is what dates can be of.
+_FIRST_SECOND, _LAST_SECOND = -62_135_596_800, 253_402_300_799
 
 
 class Commit(NamedTuple):
@@ -98,22 +104,31 @@ class History:
         start, dots, end = range.partition("..")
         if not dots:
             start, end = "", range
-        order = pygit2.enums.SortMode.TOPOLOGICAL | pygit2.enums.SortMode.TIME
-        walker = self.repo.walk(self._commit(end.lstrip(".") or "HEAD"), order)
-        if dots:
-            walker.hide(self._commit(start or "HEAD"))
         oldest = _time(since) if since else None
+        first, hidden = self._commit(end.lstrip(".") or "HEAD"), self._commit(start or "HEAD") if dots else None
         found: list[Commit] = []
-        for commit in walker:
-            if len(commit.parents) > 1 or (oldest is not None and commit.commit_time < oldest):
-                continue
-            if number is not None and len(found) >= number:
-                break
-            parents = commit.parent_ids
-            date = datetime.fromtimestamp(commit.commit_time, timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
-            summary = commit.raw_message.decode("utf-8", "replace").strip().partition("\n")[0]
-            found.append(Commit(str(commit.id), str(parents[0]) if parents else "", date, summary.strip()))
+        try:
+            for commit in self._walker(first, hidden):
+                parents = commit.parent_ids
+                if len(parents) > 1 or (oldest is not None and commit.commit_time < oldest):
+                    continue
+                if number is not None and len(found) >= number:
+                    break
+                summary = commit.raw_message.decode("utf-8", "replace").strip().partition("\n")[0]
+                parent = str(parents[0]) if parents else ""
+                found.append(Commit(str(commit.id), parent, _date(commit.commit_time), summary.strip()))
+        except (KeyError, ValueError, TypeError, pygit2.GitError) as error:
+            reason = shown(" ".join(str(error).split()))
+            raise TreeError(f"the history of {self.name} cannot be read: {reason}; `git fsck` says more") from None
         return found
+
+    def _walker(self, first, hidden):
+        import pygit2
+
+        walker = self.repo.walk(first, pygit2.enums.SortMode.TOPOLOGICAL | pygit2.enums.SortMode.TIME)
+        if hidden is not None:
+            walker.hide(hidden)
+        return walker
 
     def _commit(self, revision: str):
         import pygit2
@@ -126,7 +141,8 @@ class History:
         """The packages of a commit by their names; of several with one name, those after the first by name and path.
 
         Packages are catkin's, ament's and rosbuild's, told by their manifests. None for the parent of a first commit.
-        Raises KeyError when the commit is not in the repository (a history that was cut off).
+        Raises KeyError when the commit is not in the repository (a history that was cut off), is damaged, or holds far
+        too much.
         """
         if not commit:
             return {}
@@ -142,12 +158,26 @@ class History:
         return bool(one and other) and self._root(one) == self._root(other)
 
     def _root(self, commit: str):
-        found = self.repo[commit].tree
+        """The id of the folder that is looked at, None where the commit has none. Raises KeyError."""
+        import pygit2
+
+        try:
+            found = self.repo[commit].peel(pygit2.Tree).id
+        except (ValueError, TypeError, pygit2.GitError) as error:
+            raise KeyError(commit) from error
         for part in self.folder.split("/") if self.folder else ():
-            if part not in found:
+            items = {name: item for name, mode, item in self._list(found) if mode == _MODE_FOLDER}
+            found = items.get(part)
+            if found is None:
                 return None
-            found = found[part]
-        return found.id if found.type_str == "tree" else None
+        return found
+
+    def _list(self, folder) -> tuple[tuple[str, int, Any], ...]:
+        """What a folder holds, nothing where it cannot be read."""
+        try:
+            return self.tree.list(folder)
+        except OSError:
+            return ()
 
     def _states(self, root) -> Iterator[tuple[str, State]]:
         seen: set[str] = set()
@@ -172,12 +202,12 @@ class History:
             known = self._keys[asked] = (files, stamp.digest())
         return known
 
-    def _found(self, folder) -> tuple[_Found, ...]:
-        """The packages at and below a folder, in the order of their paths."""
+    def _found(self, folder, level: int = 0) -> tuple[_Found, ...]:
+        """The packages at and below a folder, in the order of their paths. Raises KeyError where there are too many."""
         known = self._packages.get(folder)
         if known is not None:
             return known
-        items = self.tree._list(folder)
+        items = self._list(folder) if level < limits().depth else ()
         names = {name: item for name, mode, item in items if mode not in (_MODE_FOLDER, _MODE_LINK, _MODE_SUBMODULE)}
         found: list[_Found] = []
         if not any(name in IGNORE_MARKERS for name in names):
@@ -188,7 +218,10 @@ class History:
                     found.append(_Found("", folder, names["manifest.xml"], True))
                 for name, mode, item in items:
                     if mode == _MODE_FOLDER:
-                        found.extend(one._replace(path=_joined(name, one.path)) for one in self._found(item))
+                        inner = self._found(item, level + 1)
+                        found.extend(one._replace(path=_joined(name, one.path)) for one in inner)
+                        if len(found) > _PACKAGES_AT_MOST:
+                            raise KeyError("too many packages")
         known = self._packages[folder] = tuple(found)
         return known
 
@@ -197,7 +230,7 @@ class History:
         known = self._manifests.get(blob)
         if known is None:
             name, ros = "", 1
-            data = b"" if rosbuild else _COMMENT.sub(b"", self.read(str(blob))[:200_000])
+            data = b"" if rosbuild else _COMMENT.sub(b"", self.read(blob)[:200_000])
             match = _NAME.search(data)
             if match:
                 name = match[1].decode("utf-8", "replace")
@@ -206,17 +239,21 @@ class History:
             known = self._manifests[blob] = (name, ros)
         return known
 
-    def _listed(self, folder, rosbuild: bool, top: bool = False) -> tuple[File, ...]:
-        """The files of interest at and below a folder, packages below a rosbuild package left out."""
+    def _listed(self, folder, rosbuild: bool, top: bool = False, level: int = 0) -> tuple[File, ...]:
+        """The files of interest at and below a folder, packages below a rosbuild package left out. Raises KeyError
+        where there are too many."""
         known = self._files.get((folder, rosbuild)) if not top else None
         if known is not None:
             return known
         found: list[File] = []
-        items = self.tree._list(folder)
+        items = self._list(folder) if level < limits().depth else ()
         for name, mode, item in items:
             if mode == _MODE_FOLDER:
-                if not (rosbuild and self._found(item)):
-                    found.extend(file._replace(path=f"{name}/{file.path}") for file in self._listed(item, rosbuild))
+                if not (rosbuild and self._found(item, level + 1)):
+                    inner = self._listed(item, rosbuild, level=level + 1)
+                    found.extend(file._replace(path=f"{name}/{file.path}") for file in inner)
+                    if len(found) > _FILES_AT_MOST:
+                        raise KeyError("too many files")
             elif mode not in (_MODE_LINK, _MODE_SUBMODULE):
                 kind = kinds.kind_of(name)
                 if kind == "script" and not name.endswith(".cfg") and self._is_python(item):
@@ -231,31 +268,45 @@ class History:
     def _is_python(self, blob) -> bool:
         known = self._scripts.get(blob)
         if known is None:
-            known = self._scripts[blob] = kinds.script_kind(self.read(str(blob))[:512]) == "python"
+            known = self._scripts[blob] = kinds.script_kind(self.read(blob)[:512]) == "python"
         return known
 
     # Contents
 
-    def read(self, blob: str) -> bytes:
-        """The bytes of a file; none where the object is missing (a partial clone)."""
-        try:
-            return self.repo[blob].data
-        except (KeyError, ValueError):
-            return b""
+    def content(self, blob) -> bytes:
+        """The bytes of a file. Raises OSError where the object is missing (a partial clone), damaged or too large."""
+        return self.tree.blob(blob)
+
+    def read(self, blob) -> bytes:
+        """The same; none where it cannot be read."""
+        with contextlib.suppress(OSError):
+            return self.content(blob)
+        return b""
 
     def renames(self, parent: str, commit: str) -> dict[str, str]:
-        """Files of the parent to what they are called in the commit, as git's similarity has it."""
+        """Files of the parent to what they are called in the commit, as git's similarity has it; none where it would
+        have to read what is damaged or too large."""
         import pygit2
 
         if not parent:
             return {}
-        diff = self.repo[parent].tree.diff_to_tree(self.repo[commit].tree, context_lines=0)
-        diff.find_similar(pygit2.enums.DiffFind.FIND_RENAMES, 50, 50, 50, 400)
-        return {
-            delta.old_file.path: delta.new_file.path
-            for delta in diff.deltas
-            if delta.status == pygit2.enums.DeltaStatus.RENAMED
-        }
+        try:
+            diff = self.repo[parent].tree.diff_to_tree(self.repo[commit].tree, context_lines=0)
+            for delta in diff.deltas:
+                if delta.status != pygit2.enums.DeltaStatus.MODIFIED and self._is_large(delta):
+                    return {}
+            diff.find_similar(pygit2.enums.DiffFind.FIND_RENAMES, 50, 50, 50, 400)
+            return {
+                delta.old_file.path: delta.new_file.path
+                for delta in diff.deltas
+                if delta.status == pygit2.enums.DeltaStatus.RENAMED
+            }
+        except (OSError, KeyError, ValueError, TypeError, AttributeError, pygit2.GitError):
+            return {}
+
+    def _is_large(self, delta) -> bool:
+        sides = (delta.old_file.id, delta.new_file.id)
+        return any(self.tree.size(oid) > limits().object for oid in sides if any(oid.raw))
 
 
 def _joined(folder: str, path: str) -> str:
@@ -269,6 +320,12 @@ def _below(place: str, repo) -> str:
         return ""
     inner = os.path.relpath(real, os.path.realpath(repo.workdir)).replace(os.sep, "/")
     return "" if inner == "." or inner.startswith("..") else inner
+
+
+def _date(seconds: int) -> str:
+    """A commit's time in ISO 8601; a damaged one is the nearest that can be written."""
+    when = datetime.fromtimestamp(min(max(seconds, _FIRST_SECOND), _LAST_SECOND), timezone.utc)
+    return when.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def _time(text: str) -> int:

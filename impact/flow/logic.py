@@ -189,7 +189,10 @@ class _Run:
             return Coverage()
         compared = sum(result.compared for result in results.values())
         cut_off = sum(result.cut_off for result in results.values())
-        states = self.history.packages(commits[0].id)
+        try:
+            states = self.history.packages(commits[0].id)
+        except KeyError:
+            states = {}
         self._digest(states.values())
         statements = unresolved = 0
         unread: list[str] = []
@@ -373,7 +376,10 @@ def _facts(history: History, store: Store, wanted: Sequence[tuple[str, str]]) ->
         yield rows[row], facts
     fresh: list[tuple[bytes, bytes]] = []
     for row, (content, kind) in missing.items():
-        source = history.read(content)
+        try:
+            source = history.content(content)
+        except OSError:
+            continue  # what is known of a content is of its bytes
         processes.begin_part(0, len(source))
         extracted = kinds.extract(kind, source)
         fresh.append((row, pack(kinds.encode(extracted))))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from msgspec import structs
 
+from ...edges.console import UserError
 from ..model.flow.graph import Endpoint, Graph, Node
 
 HIDDEN = (
@@ -26,7 +27,7 @@ class Selection(NamedTuple):
     asked: bool = False
 
 
-class NothingSelected(ValueError):
+class NothingSelected(UserError, ValueError):
     """No node or name fits; the text says which, and names like it."""
 
 

@@ -19,9 +19,12 @@ from typing import Any
 
 import msgspec
 
+from ...edges.documents import DocumentError, load_yaml
+from ...edges.limits import limits
 from ..facts.manifest import Manifest
 from ..gather import Gathered
 from ..tree import PathProblem, Tree, inside
+from .patterns import PatternError, cost_of, matches
 
 _FILES = frozenset(
     ("package.xml", "CMakeLists.txt", "setup.py", "setup.cfg", "pyproject.toml", "colcon.pkg", "manifest.xml")
@@ -31,11 +34,14 @@ _DEFAULTS = (".colcon/defaults.yaml", "defaults.yaml", "colcon_defaults.yaml")
 _VARIANT = re.compile(
     r"package[._-]?(?:[\w-]*[._-])?(?:ros|v)?[._-]?([12])\.xml$|package\.xml[._-](?:ros|v)?[._-]?([12])$", re.I
 )
-_PROJECT = re.compile(r'project\s*\(\s*("?)([a-zA-Z0-9_-]+)\1(?:\s[^)]*)?\)', re.I)
+_PROJECT = re.compile(r'project\s*\(\s*("?)([a-zA-Z0-9_-]+)\1(?=[\s)])', re.I)
 _SETUP_NAME = re.compile(r"""(?:^|[\s,(])name\s*=\s*(?:["']([\w.-]+)["']|([A-Za-z_]\w*))""")
 _CFG_NAME = re.compile(r"(?ms)^\[metadata\][^\[]*?^name\s*[=:]\s*([\w.-]+)")
 _TOML_NAME = re.compile(r"""(?ms)^\[project\](?:(?!^\[).)*?^name\s*=\s*["']([\w.-]+)["']""")
 _SETUP_CALL = re.compile(r"\bsetup\s*\(")
+# How many globs of base-paths are tried on every folder, and what matching names with regular expressions may cost.
+_GLOBS_AT_MOST = 100
+_MATCHING_AT_MOST = 5_000_000
 _DEPENDENCY_KEYS = ("dependencies", "build-dependencies", "run-dependencies", "test-dependencies")
 
 
@@ -126,6 +132,7 @@ class _Search:
         self.gathered = gathered
         gathered.preload(gathered.paths("manifest", "manifest_variant"))
         self.problems: list[PathProblem] = []
+        self.unmatched: set[PathProblem] = set()
         self.files: dict[str, set[str]] = {}
         for entry in tree.entries():
             folder, _, name = entry.path.rpartition("/")
@@ -134,9 +141,17 @@ class _Search:
         self.repositories = tree.repositories
         self.defaults = self._defaults()
         self.meta = self._meta()
+        self.matching_left = _MATCHING_AT_MOST
+        self.left_out = {
+            key: (frozenset(_strings(names)), tuple(dict.fromkeys(_strings(patterns))), path, regex_path)
+            for key in ("packages-ignore", "packages-skip")
+            for names, path in (self.defaults.get(key, (None, "")),)
+            for patterns, regex_path in (self.defaults.get(key + "-regex", (None, "")),)
+        }
 
     def run(self) -> Discovered:
-        bases, only = self._bases()
+        found_bases, only = self._bases()
+        bases = frozenset(found_bases)
         places: dict[str, PackagePlace] = {}
         foreign: dict[str, PackagePlace] = {}
         nested: dict[str, list[str]] = {}
@@ -193,12 +208,11 @@ class _Search:
 
     def _alias(self, folder: str) -> str | None:
         """The real path of a folder that was reached through a link."""
-        for link, target in self.tree.aliases.items():
-            if folder == link:
-                return target
-            if folder.startswith(link + "/"):
-                return target + folder[len(link) :]
-        return None
+        aliases = self.tree.aliases
+        link = folder if aliases else ""
+        while link and link not in aliases:
+            link = link.rpartition("/")[0]
+        return aliases[link] + folder[len(link) :] if link else None
 
     def _repository(self, folder: str) -> str | None:
         if folder in self.repositories:
@@ -277,23 +291,18 @@ class _Search:
             return match[1]
         return ""
 
-    def _text(self, path: str) -> str:
+    def _text(self, path: str, limit: int = 0) -> str:
         try:
-            return self.tree.read(path).decode("utf-8", "replace")
+            return self.tree.read(path, limit).decode("utf-8", "replace")
         except OSError as error:
             self.problems.append(PathProblem(path, f"cannot be read: {(error.strerror or '').lower()}"))
             return ""
 
     def _yaml(self, path: str) -> dict[str, Any]:
-        import yaml
-
-        text = self._text(path)
         try:
-            # Not the C loader: it has no limit of depth, and takes the whole process with it.
-            data = yaml.load(text, Loader=yaml.SafeLoader)
-        except (yaml.YAMLError, ValueError, RecursionError) as error:
-            reason = " ".join(str(getattr(error, "problem", None) or error).split())
-            self.problems.append(PathProblem(path, f"is no YAML ({reason}), so colcon's settings in it are not known"))
+            data = load_yaml(self._text(path, limits().settings))
+        except DocumentError as error:
+            self.problems.append(PathProblem(path, f"is no YAML ({error}), so colcon's settings in it are not known"))
             return {}
         return data if isinstance(data, dict) else {}
 
@@ -351,11 +360,16 @@ class _Search:
 
     def _folders(self, patterns: Any, path: str) -> list[str]:
         found = []
-        for pattern in _strings(patterns):
+        globs = 0
+        for pattern in dict.fromkeys(_strings(patterns)):
             clean = inside(pattern)
             if clean is None:
                 self.problems.append(PathProblem(path, f"`{pattern}` lies outside of the workspace and is not read"))
             elif re.search(r"[*?\[]", clean):
+                globs += 1
+                if globs > _GLOBS_AT_MOST:
+                    self.problems.append(PathProblem(path, f"more than {_GLOBS_AT_MOST} globs, the rest is left out"))
+                    break
                 levels = clean.count("/")
                 found += sorted({
                     folder
@@ -368,31 +382,39 @@ class _Search:
         return found
 
     def _ignored(self, name: str) -> str:
-        for key in ("packages-ignore", "packages-skip"):
-            names, path = self.defaults.get(key, (None, ""))
-            if name in _strings(names):
+        for key, (names, patterns, path, regex_path) in self.left_out.items():
+            if name in names:
                 return f"{key} in {path}"
-            patterns, path = self.defaults.get(key + "-regex", (None, ""))
-            for pattern in _strings(patterns):
-                try:
-                    matches = re.match(pattern, name)
-                except re.error:
-                    matches = None
-                if matches:
-                    return f"{key}-regex in {path}"
+            if any(self._matches(pattern, name, f"{key}-regex", regex_path) for pattern in patterns):
+                return f"{key}-regex in {regex_path}"
         return ""
 
+    def _matches(self, pattern: str, name: str, key: str, path: str) -> bool:
+        """Whether a regular expression of colcon's settings matches a package's name; what is not matched is named."""
+        if self.matching_left < 0:
+            return False
+        try:
+            self.matching_left -= cost_of(pattern, name)
+            if self.matching_left < 0:
+                self.problems.append(PathProblem(path, f"{key}: takes too long, the rest of it is not matched"))
+                return False
+            return matches(pattern, name)
+        except PatternError as error:
+            problem = PathProblem(path, f"{key}: `{pattern[:80]}` is not matched: {error}")
+            if problem not in self.unmatched:
+                self.unmatched.add(problem)
+                self.problems.append(problem)
+            return False
 
-def _crawled(folder: str, bases: list[str]) -> bool:
+
+def _crawled(folder: str, bases: frozenset[str]) -> bool:
     """True when colcon gets to a folder from one of the base paths: it enters no hidden folder."""
-    for base in bases:
-        if folder == base:
-            return True
-        if not base or folder.startswith(base + "/"):
-            rest = folder[len(base) + 1 :] if base else folder
-            if not any(part.startswith(".") for part in rest.split("/")):
-                return True
-    return False
+    while folder not in bases:
+        above, _, name = folder.rpartition("/")
+        if not folder or name.startswith("."):
+            return False
+        folder = above
+    return True
 
 
 def _join(folder: str, name: str) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ...edges.console import counted, visible, visible_lines
+from ...edges.files import append_file
 from ..rules.rule import Finding
 from . import evidence, markdown
 from .report import Report, count_by_severity, coverage_text, focus, fresh
@@ -66,8 +67,7 @@ def write_step_summary(report: Report, environment: Mapping[str, str]) -> None:
     """Appends the summary to the file GITHUB_STEP_SUMMARY names; nothing without it. Raises OSError."""
     path = environment.get("GITHUB_STEP_SUMMARY")
     if path:
-        with open(path, "a", encoding="utf-8", errors="replace") as file:
-            file.write(step_summary(report))
+        append_file(path, step_summary(report).encode("utf-8", "replace"))
 
 
 def _different_first(findings: list[Finding]) -> list[Finding]:

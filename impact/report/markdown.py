@@ -108,7 +108,8 @@ def escaped(text: str) -> str:
     for index, part in enumerate(_SPAN.split(visible(text))):
         shown = code(part[1:-1]) if index % 2 else _without_links(part)
         # Two spans that touch would be one with other ends.
-        parts.append(f" {shown}" if parts and parts[-1].endswith("`") and shown.startswith("`") else shown)
+        touches = parts and parts[-1].endswith("`") and shown.startswith("`")
+        parts += [f" {shown}" if touches else shown] if shown else []
     return "".join(parts)
 
 

@@ -106,7 +106,7 @@ def _steps(items: Iterable[Item]) -> dict[str, list[Item]]:
 
 def _title(number: str, package: str, found: Upgrade, style: Style) -> str:
     folders = {each.name: each.path for each in found.packages}
-    title = heading(package, style)
+    title = painted(style, "bold", visible(package or "workspace")) if number else heading(package, style)
     if folders.get(package, "") not in ("", ".", package):
         title += painted(style, "dim", f" {style.symbols[4]} {visible(folders[package])}")
     return f"{painted(style, 'dim', f'{number}: ')}{title}" if number else title

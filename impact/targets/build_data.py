@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from ...edges.files import check_writable_path, read_file, write_file
+from ...edges.limits import limits
 from ..cache import cache_folder
 from . import snapshot as snapshots
 from .build.git import BuildError, Report
@@ -134,7 +136,8 @@ def build(
         return repository[oid].data
 
     work = work or cache_folder() / "build"
-    work.mkdir(parents=True, exist_ok=True)
+    for file in (work / "x.history", *(output / name for name in write.FILES)):
+        check_writable_path(file)
     histories = {}
     for row in distros:
         path = work / f"{row.name}.history"
@@ -200,15 +203,13 @@ def _last(versions: list) -> str:
 
 def _load(path: Path, kind: type):
     try:
-        return msgspec.msgpack.decode(path.read_bytes(), type=kind)
+        return msgspec.msgpack.decode(read_file(path, limits().report), type=kind)
     except (OSError, msgspec.MsgspecError):
         return None
 
 
 def _save(path: Path, value: object) -> None:
-    part = path.with_suffix(".part")
-    part.write_bytes(msgspec.msgpack.encode(value))
-    part.replace(path)
+    write_file(path, msgspec.msgpack.encode(value))
 
 
 def _day(ts: int) -> str:

@@ -3,7 +3,7 @@
 Reads git clones at their tags. A package's version is that of its package.xml at the tag; packages that no distro ever
 released are left out. Only names, types of nested interfaces and versions are kept. The format is told in fields.py.
 
-    python -m rosimpact.impact.targets.build_fields REPOSITORIES --output FILE
+    python -P -m rosimpact.impact.targets.build_fields REPOSITORIES --output FILE
 
 REPOSITORIES is a folder of clones called `OWNER+NAME` (or with the git directory below).
 """
@@ -21,6 +21,7 @@ from typing import NamedTuple
 import msgspec
 import zstandard
 
+from ...edges.files import write_file
 from ..facts.interface import PRIMITIVES, Interface, extract
 from .build_history import git_directory
 from .snapshot import default
@@ -263,7 +264,7 @@ def main(arguments: list[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     wanted = frozenset(name for (name,) in default().rows("SELECT name FROM package"))
     found = table(read_folder(given.repositories, wanted))
-    given.output.write_bytes(zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(found)))
+    write_file(given.output, zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(found)))
     print(f"{given.output}: {len(found)} packages", file=sys.stderr)
     return 0
 

@@ -1,6 +1,6 @@
 """Adds the declared dependencies of releases that no rosdistro cache tells of, read from the repositories' tags.
 
-usage: python -m rosimpact.impact.targets.build_manifests CLONES [--data DIR] [--output DIR]
+usage: python -P -m rosimpact.impact.targets.build_manifests CLONES [--data DIR] [--output DIR]
 
 CLONES holds git clones with their tags, bare or not, called `OWNER+NAME` (the git directory may lie below). The caches
 begin with Melodic and with Crystal; what a package of an earlier distro declared stands in the package.xml of its

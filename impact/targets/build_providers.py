@@ -4,7 +4,7 @@ The system part joins the Contents and Packages indices of Debian and Ubuntu sui
 names of rosdep's keys (from the shipped snapshot). The ROS part reads git trees of ROS repositories: which package of
 which release has which header. Only names, versions and their relations are kept.
 
-    python -m rosimpact.impact.targets.build_providers --suite "ubuntu jammy=LISTS" --repositories FOLDER --output DATA
+    python -P -m rosimpact.impact.targets.build_providers --suite "ubuntu jammy=LISTS" --repositories DIR --output DATA
 
 LISTS is a `Dir::State::lists` folder of an apt that was told to fetch Contents indices as well.
 """
@@ -25,6 +25,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from ...edges.files import write_file
 from .build_history import RosFacts, read_repositories
 from .providers import BY_FOLDER, SCHEMA
 from .rosdep import decode_rule
@@ -517,10 +518,10 @@ def write(tables: Tables, platforms: list[str], ros: RosFacts, output: Path) -> 
     connection.execute("VACUUM")
     raw = _bytes_of(connection)
     packed = zstandard.ZstdCompressor(level=22).compress(raw)
-    output.mkdir(parents=True, exist_ok=True)
-    (output / "providers.sqlite.zst").write_bytes(packed)
+    write_file(output / "providers.sqlite.zst", packed)
     sha = hashlib.sha256(raw).hexdigest()
-    (output / "providers.json").write_bytes(msgspec.json.format(msgspec.json.encode({"sha256": sha}), indent=1) + b"\n")
+    about = msgspec.json.format(msgspec.json.encode({"sha256": sha}), indent=1) + b"\n"
+    write_file(output / "providers.json", about)
     return raw
 
 

@@ -4,7 +4,7 @@ Read from the Contents and Packages indices of Debian and Ubuntu suites, as apt 
 that of a versioned library counts, wherever below a lib folder it lies: an index does not say which of them are
 sonames, and one name too many never makes a library count as gone. Only names, versions and their relations are kept.
 
-    python -m rosimpact.impact.targets.build_sonames --suite "debian bookworm=LISTS" --output DATA
+    python -P -m rosimpact.impact.targets.build_sonames --suite "debian bookworm=LISTS" --output DATA
 
 LISTS is a `Dir::State::lists` folder of an apt that was told to fetch Contents indices as well.
 """
@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from ...edges.files import write_file
 from .build_providers import lines_of
 from .snapshot import DATA
 from .sonames import FILE, Table
@@ -112,7 +113,7 @@ def main(arguments: list[str] | None = None) -> None:
         print(platform, len(suites[-1].libraries), "libraries", suites[-1].symbols, flush=True)
     raw = msgspec.json.encode(table_of(suites))
     packed = zstandard.ZstdCompressor(level=22).compress(raw)
-    (given.output / FILE).write_bytes(packed)
+    write_file(given.output / FILE, packed)
     print(len(raw), "bytes,", len(packed), "packed")
 
 

@@ -16,6 +16,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
+from ...edges.files import check_writable_path
 from ..facts.store import Store
 from ..tree import TreeError
 from .build_surface_changes import Lines
@@ -245,8 +246,10 @@ def build(
     `OUTPUT.work` when an error or KeyboardInterrupt passes through; it is removed at the end. Raises TargetError,
     OSError, and ClusterError."""
     todo, missing = plan(clones, distros, packages, versions)
-    output.parent.mkdir(parents=True, exist_ok=True)
     work = output.with_name(f"{output.name}.work")
+    for file in (output, work):
+        check_writable_path(file)
+    output.parent.mkdir(parents=True, exist_ok=True)
     failed: list[str] = []
     with closing(sqlite3.connect(work)) as db:
         db.execute("CREATE TABLE IF NOT EXISTS done(key TEXT PRIMARY KEY, failed TEXT)")

@@ -14,8 +14,11 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from ...edges import files
+from ...edges.documents import DocumentError, load_json
+from ...edges.limits import limits
 from .distro import DistroTarget, TargetError
 from .version import compare
 
@@ -120,10 +123,11 @@ def to_json(captured: Machine) -> str:
 def read(path: Path) -> Machine:
     """Reads a captured file. Raises TargetError with what is wrong and what to do."""
     try:
-        data: Any = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
+        data = load_json(files.read_file(path, limits().capture))
+    except (OSError, DocumentError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
         raise TargetError(
-            f"{path}: cannot be read as a captured machine: {error}; write it anew with `rosimpact env capture`"
+            f"{path}: cannot be read as a captured machine: {reason}; write it anew with `rosimpact env capture`"
         ) from None
     if not isinstance(data, dict) or data.get("rosimpact_target") != SCHEMA:
         raise TargetError(f"{path}: is no captured machine of this version; write it anew with `rosimpact env capture`")
@@ -185,7 +189,11 @@ def differences(first: DistroTarget, second: DistroTarget, names: Iterable[str] 
 
 def output_of(command: list[str]) -> str:
     try:
-        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False).stdout
+        found = subprocess.run(
+            command, stdin=subprocess.DEVNULL, capture_output=True, encoding="utf-8", errors="replace", timeout=60,
+            check=False,
+        )  # fmt: skip
+        return found.stdout
     except (OSError, subprocess.TimeoutExpired):
         return ""
 
@@ -211,19 +219,19 @@ def _only_distro(root: Path) -> str:
 def name_and_version(manifest: Path) -> tuple[str, str]:
     """Name and version that a package.xml gives, two empty texts where it cannot be read."""
     try:
-        text = manifest.read_text(encoding="utf-8", errors="replace")
+        text = files.read_text(manifest, limits().manifest, errors="replace")
     except OSError:
         return "", ""
     name, version = (
         re.search(r"<name>\s*([\w.-]+)\s*</name>", text),
-        re.search(r"<version[^>]*>\s*([\d.]+)\s*</version>", text),
+        re.search(r"<version[^<>]*>\s*([\d.]+)\s*</version>", text),
     )
     return (name[1], version[1]) if name and version else ("", "")
 
 
 def platform_of(root: Path) -> str:
     try:
-        text = (root / "etc" / "os-release").read_text(encoding="utf-8")
+        text = files.read_text(root / "etc" / "os-release", limits().settings, "replace")
     except OSError:
         return ""
     fields = dict(re.findall(r'^(\w+)="?([^"\n]*)"?$', text, re.M))

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ...edges.console import UserError
 from ..tree import GitTree, TreeError
 from .build_history import git_directory, plain_url, releases_of, tag_of
 from .distro import DistroTarget, TargetError, known_distros
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from ..facts.store import Store
 
 
-class VersionError(Exception):
+class VersionError(UserError):
     """A version that cannot be read from the clones; the message says why and what to do."""
 
 

@@ -3,6 +3,9 @@
 Futures of `distributed`, not joblib's dask backend: joblib ends a whole run when one job ends its workers, and cannot
 say which. A job of a worker that died is done again by another (the scheduler's part); each result is fetched as soon
 as it is there, so that a worker takes nothing with it that was given away already.
+
+Jobs and results travel as distributed packs them, pickles among them: only between processes of a cluster whose address
+the user gave, and never by way of a file.
 """
 
 from __future__ import annotations
@@ -13,6 +16,7 @@ from collections.abc import Generator, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ...edges.console import UserError
 from ..cache import code_digest
 from ..tree import TreeError
 from .build_history import git_directory
@@ -26,7 +30,7 @@ _REACH = 5
 _LOST = 30
 
 
-class ClusterError(Exception):
+class ClusterError(UserError):
     """A cluster that cannot do the work; the message says why and what to do."""
 
 

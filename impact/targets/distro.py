@@ -16,14 +16,16 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from ...edges.console import UserError
 from . import snapshot as snapshots
 from .platform import library_name, normal_platform, python_minor
 from .rosdep import decode_rule, resolve_rule, split_platform
 from .snapshot import KINDS, Snapshot
 from .target import Change, ReleasedDependency, Resolution, Target
+from .version import number_of
 
 
-class TargetError(Exception):
+class TargetError(UserError):
     """A target that cannot be made; the message says what is known instead."""
 
 
@@ -66,7 +68,6 @@ class _Released(NamedTuple):
 
 
 _WITH_KINDS = ("build_export", "buildtool_export", "exec")
-_DAY = datetime.timedelta(days=1)
 
 
 def known_distros(data: Snapshot | None = None) -> tuple[Known, ...]:
@@ -118,12 +119,12 @@ def day_of(ts: int) -> str:
 def end_of_day(day: str) -> int:
     """The last second (UTC) of an ISO day, in seconds since 1970."""
     start = datetime.datetime.combine(datetime.date.fromisoformat(day), datetime.time(), datetime.timezone.utc)
-    return int((start + _DAY).timestamp()) - 1
+    return int(start.timestamp()) + 86_399
 
 
 def version_key(version: str) -> list[int]:
     """Numbers of a version, for ordering: `2.10.1-1` → [2, 10, 1, 1]."""
-    return [int(part) for part in re.findall(r"\d+", version)]
+    return [number_of(part) for part in re.findall(r"\d+", version)]
 
 
 # Letters of KINDS for what is installed along with a package.
@@ -229,7 +230,7 @@ class DistroTarget(Target):
         try:
             day = datetime.date.fromisoformat(str(date)).isoformat()
         except ValueError:
-            raise TargetError(f"`{date}` is no date: write it as in `{self.distro}@2024-03-01`") from None
+            raise TargetError(f"`{str(date)[:40]}` is no date: write it as in `{self.distro}@2024-03-01`") from None
         first = self._data.row("SELECT min(ts) FROM release WHERE distro = ?", (self._id,))
         if first and first[0] is not None and day < day_of(first[0]):
             moved = day_of(first[0])

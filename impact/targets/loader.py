@@ -11,7 +11,10 @@ import shutil
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
+from typing import IO
 
+from ...edges.files import open_regular, read_start, too_large
+from ...edges.limits import limits
 from ..facts import elf
 from ..facts.elf import Elf, stem_and_version
 
@@ -99,7 +102,8 @@ class Loader:
     def _elf(self, path: str) -> Elf | None:
         if path not in self._read:
             try:
-                self._read[path] = elf.read(Path(path).read_bytes())
+                with open_library(path) as file:
+                    self._read[path] = elf.read(file)
             except OSError:
                 self._read[path] = None
         return self._read[path]
@@ -126,7 +130,8 @@ class Loader:
         """The C++ symbols that a library has; None for one that cannot be read."""
         if path not in self._defined:
             try:
-                self._defined[path] = elf.defined(Path(path).read_bytes())
+                with open_library(path) as file:
+                    self._defined[path] = elf.defined(file)
             except OSError:
                 self._defined[path] = None
         return self._defined[path]
@@ -148,13 +153,24 @@ class Loader:
         return head is not None and head == (asker.machine, asker.bits)
 
 
+def open_library(path: str) -> IO[bytes]:
+    """Opens a built file for reading. Raises OSError for what is no regular file, or larger than a library may be."""
+    file = open(open_regular(path), "rb")  # noqa: SIM115
+    try:
+        if os.fstat(file.fileno()).st_size > limits().library:
+            raise too_large(path, limits().library)
+    except BaseException:
+        file.close()
+        raise
+    return file
+
+
 def _head(path: str) -> tuple[str, int] | None:
     """(machine, bits) of an ELF file, None when there is none."""
     from elftools.elf.enums import ENUM_E_MACHINE
 
     try:
-        with open(path, "rb") as file:
-            head = file.read(20)
+        head = read_start(path, 20)
     except OSError:
         return None
     if head[:4] != elf.MAGIC or len(head) < 20:

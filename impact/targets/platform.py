@@ -2,6 +2,8 @@
 
 import re
 
+from .version import number_of
+
 CODENAMES: dict[str, str] = {
     "ubuntu 12.04": "ubuntu precise",
     "ubuntu 14.04": "ubuntu trusty",
@@ -42,7 +44,7 @@ def normal_platform(text: str) -> str:
 def python_minor(version: str | None) -> int | None:
     """`3.10.4` → 10, None when it cannot be read."""
     match = re.match(r"\d+\.(\d+)", version or "")
-    return int(match.group(1)) if match else None
+    return number_of(match.group(1)) if match else None
 
 
 LIBRARY_ALIASES: dict[str, str] = {

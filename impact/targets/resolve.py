@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import datetime
 import os
 import posixpath
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ...edges import files
+from ...edges.console import visible
+from ...edges.limits import limits
+from ..config import check_inside, lies_in
+from ..tree.ignore import git_folder
 from . import snapshot as snapshots
 from .distro import DistroTarget, Known, TargetError, known_distros
 from .platform import CODENAMES, normal_platform
@@ -50,10 +56,10 @@ def parse_target(
     text = text.strip()
     if text.startswith(_DOCKER):
         return _docker(text, data)
-    if text.endswith(_DPKG):
-        return _dpkg(folder / text, text, data)
-    if text.endswith(".json"):
-        return _captured(folder / text, text)
+    if text.endswith((_DPKG, ".json")):
+        if "\0" in text:
+            raise TargetError(f"`{visible(text)}` is no path of a file")
+        return _dpkg(folder / text, text, data) if text.endswith(_DPKG) else _captured(folder / text, text)
     named = config.targets if config else {}
     base, at, date = text.partition("@")
     for name, day in ((text, None), (base, date if at else None)):
@@ -74,7 +80,7 @@ def _unknown(text: str, base: str, named: Mapping[str, Any], folder: Path, data:
     close = difflib.get_close_matches(base, [*distros, *named], 1)
     hint = f"; did you mean `{close[0]}`?" if close else "."
     own = f" Targets of rosimpact.toml: {', '.join(sorted(named))}." if named else ""
-    if (folder / text).exists():
+    if (folder / text).exists() and (folder == Path() or lies_in(folder / text, folder)):
         hint = f": a file is read as a target when its name ends in `.json` or `{_DPKG}`."
     return f"unknown target `{text}`{hint} Known distros: {', '.join(distros)}.{own}"
 
@@ -90,11 +96,16 @@ def _configured(
     versions = table.get("versions", {})
     if not isinstance(versions, Mapping):
         raise TargetError(f'{where}: `versions` must be a table, such as {{ opencv = "4.9" }}')
-    versions = {str(key): str(value) for key, value in versions.items()}
+    try:
+        versions = {str(key): str(value) for key, value in versions.items()}
+    except ValueError:  # an integer of thousands of digits
+        raise TargetError(f'{where}: `versions` must be texts, such as {{ opencv = "4.9" }}') from None
     date = day or (str(table["date"]) if "date" in table else None)
     platform = str(table["platform"]) if "platform" in table else None
     if "file" in table:
         folder = config.path.parent if config.path else Path()
+        if config.path:
+            check_inside(folder / str(table["file"]), config, f"{where} `file`")
         base = parse_target(str(table["file"]), None, folder, data)
         return base.changed(date=date, platform=platform, versions=versions, name=asked)
     distro = str(table.get("distro", ""))
@@ -110,14 +121,14 @@ def _configured(
 def _captured(path: Path, text: str) -> DistroTarget:
     from .capture import load_capture
 
-    if not path.is_file():
+    if not os.path.exists(path):
         raise TargetError(f"{text}: there is no such file; write one with `rosimpact env capture -o {text}`")
     return load_capture(path)
 
 
 # dpkg listings
 
-_STAMP = re.compile(r"-\d+([a-z]+)\.(\d{4})(\d\d)(\d\d)(?:\.\d+)?$")
+_STAMP = re.compile(r"-\d+([a-z]+)\.(2\d{3})(\d\d)(\d\d)(?:\.\d+)?$", re.ASCII)
 
 
 class DpkgRow(NamedTuple):
@@ -144,7 +155,7 @@ def _dpkg(path: Path, text: str, data: Snapshot | None) -> DistroTarget:
     from .capture import from_dpkg
 
     try:
-        listing = path.read_text(encoding="utf-8", errors="replace")
+        listing = files.read_text(path, limits().listing, errors="replace")
     except OSError as error:
         raise TargetError(f"{text}: cannot be read ({error.strerror}); write it with `dpkg -l > {text}`") from None
     rows = parse_dpkg(listing)
@@ -154,11 +165,19 @@ def _dpkg(path: Path, text: str, data: Snapshot | None) -> DistroTarget:
     if not distro:
         raise TargetError(f"{text}: lists no package of a ROS distro (ros-<distro>-...)")
     stamps = [match for row in rows if row.name.startswith(f"ros-{distro}-") and (match := _STAMP.search(row.version))]
-    date = max(("-".join(match.groups()[1:]) for match in stamps), default=None)
+    date = max(filter(_is_day, ("-".join(match.groups()[1:]) for match in stamps)), default=None)
     codename = Counter(match[1] for match in stamps).most_common(1)
     platform = normal_platform(codename[0][0]) if codename else None
     name = posixpath.basename(text).removesuffix(_DPKG)
     return DistroTarget(distro, date, platform, {**libraries, **packages}, name, data)
+
+
+def _is_day(text: str) -> bool:
+    try:
+        datetime.date.fromisoformat(text)
+    except ValueError:
+        return False
+    return True
 
 
 # Docker images
@@ -334,6 +353,9 @@ def _chosen(
     if config.default_targets:
         folder = config.path.parent if config.path else Path()
         reason = f"named in {config.path.name if config.path else 'rosimpact.toml'}"
+        for text in config.default_targets:
+            if config.path and text.strip().endswith((_DPKG, ".json")):
+                check_inside(folder / text.strip(), config, f"{config.path}: [check] targets: {text}")
         return tuple(Chosen(parse_target(text, config, folder, data), reason) for text in config.default_targets)
     known = known_distros(data)
     ros = getattr(workspace, "ros", 2) or 2
@@ -349,7 +371,7 @@ def _ci_texts(tree: Tree, repositories: Sequence[str]) -> Iterable[tuple[str, st
     for entry in tree.entries():
         if entry.size <= _LARGEST and _CI_FILE.search(entry.path):
             try:
-                text = tree.read(entry.path).decode("utf-8", "replace")
+                text = tree.read(entry.path, _LARGEST).decode("utf-8", "replace")
             except OSError:
                 continue
             yield _owner(entry.path, repositories), entry.path, text
@@ -359,13 +381,11 @@ def _owner(path: str, repositories: Sequence[str]) -> str:
     return next((folder for folder in repositories if folder in ("", ".") or path.startswith(folder + "/")), "")
 
 
-def branch_of(repository: Path, read: Callable[[Path], str] = Path.read_text) -> str:
+def branch_of(repository: Path) -> str:
     """The branch checked out in a git repository, empty when none is (a detached or bare one without HEAD)."""
-    git = repository / ".git"
     try:
-        if git.is_file():
-            git = (repository / read(git).partition("gitdir:")[2].strip()).resolve()
-        head = read((git if git.is_dir() else repository) / "HEAD")
+        place = git_folder(os.fspath(repository)) if os.path.lexists(repository / ".git") else os.fspath(repository)
+        head = files.read_text(os.path.join(place, "HEAD"), _LARGEST)
     except (OSError, UnicodeDecodeError):
         return ""
-    return head.strip().removeprefix("ref: refs/heads/") if head.startswith("ref: refs/heads/") else ""
+    return head.splitlines()[0].strip().removeprefix("ref: refs/heads/") if head.startswith("ref: refs/heads/") else ""

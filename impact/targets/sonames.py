@@ -15,6 +15,7 @@ import msgspec
 
 from ..facts.elf import stem_and_version
 from .snapshot import DATA, SnapshotError
+from .version import number_of
 
 FILE = "sonames.json.zst"
 
@@ -102,7 +103,7 @@ class Sonames:
         """Whether a soname can be of this version of its family; None when that cannot be told."""
         family = self.reviewed.libraries.get(self.family(soname))
         asked = numbers_of(stem_and_version(soname)[1])
-        there = [int(part) for part in re.findall(r"\d+", version)]
+        there = [number_of(part) for part in re.findall(r"\d+", version)]
         if family is None or len(asked) < family.numbers or len(there) < family.numbers:
             return None
         return asked[: family.numbers] == there[: family.numbers]
@@ -112,7 +113,7 @@ def numbers_of(version: str) -> list[int]:
     """The numbers that a soname's version says: `1.12` → 1, 12; `4.5d` → 4, 5; OpenCV's `406` → 4, 6."""
     if re.fullmatch(r"\d{3}", version):
         return [int(version[0]), int(version[1:])]
-    return [int(part) for part in re.findall(r"\d+", version)]
+    return [number_of(part) for part in re.findall(r"\d+", version)]
 
 
 @cache

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from ...edges.files import read_file, read_start, too_large
+from ...edges.limits import limits
 from ..facts import flow_launch, surface_cpp, surface_python
 from ..facts import interface as interfaces
 from ..facts import manifest as manifests
@@ -32,9 +34,10 @@ from .surface_build import (
 )
 from .surface_includes import compiled
 from .surface_python import Module, PythonSurface
-from .unpacked_deb import DebError, members
+from .unpacked_deb import DebError, Member, members
 
 _DPKG = Path("/var/lib/dpkg/info")
+_START = 4
 _HEADER = re.compile(r"\.(?:h|hpp|hh|hxx|h\+\+|ipp|tpp|tcc|txx|inl|impl|cuh)\Z")
 _PYTHON = re.compile(r"(?:local/)?lib/python3?[\d.]*/(?:dist|site)-packages/(.+)")
 _EXTENSION = re.compile(r"(?:\.cpython-[\w-]+|\.abi3)?\.so\Z")
@@ -55,10 +58,12 @@ _TOLD = (
 
 
 class Part(NamedTuple):
-    """Files that were installed together: by one Debian package, or in a prefix without any. paths: from the prefix."""
+    """Files that were installed together: by one Debian package, or in a prefix without any. paths: from the prefix.
+    read: the content of one; start: its first bytes. Both raise OSError."""
 
     paths: frozenset[str]
     read: Callable[[str], bytes]
+    start: Callable[[str], bytes]
     executable: Callable[[str], bool]
     convention: bool = False
 
@@ -114,7 +119,8 @@ def prefix(folder: Path, package: str) -> list[Part]:
 def _part(folder: Path, paths: Iterable[str], convention: bool = False) -> Part:
     return Part(
         frozenset(paths),
-        lambda path: (folder / path).read_bytes(),
+        lambda path: read_file(folder / path, limits().text),
+        lambda path: read_start(folder / path, _START),
         lambda path: os.access(folder / path, os.X_OK),
         convention,
     )
@@ -127,12 +133,22 @@ def _of_dpkg(folder: Path, package: str) -> list[list[str]]:
     marks += [f"\n{start}lib/{name}/dist-packages/{package}/".encode() for name in ("python3", "python2.7")]
     found = []
     for file in sorted(_DPKG.glob("*.list")):
-        data = file.read_bytes()
+        try:
+            data = read_file(file, limits().listing)
+        except OSError:
+            continue
         if any(mark in data for mark in marks):
             lines = data.decode("utf-8", "replace").splitlines()
             paths = [line.removeprefix(start) for line in lines if line.startswith(start)]
             found.append([path for path in paths if (folder / path).is_file()])
     return found
+
+
+def _content(files: Mapping[str, Member], path: str) -> bytes:
+    data = files[path].data
+    if len(data) > limits().text:
+        raise too_large(path, limits().text)
+    return data
 
 
 def debs(files: Sequence[Path]) -> list[Part]:
@@ -146,7 +162,8 @@ def debs(files: Sequence[Path]) -> list[Part]:
             parts.append(
                 Part(
                     frozenset(inside),
-                    partial(lambda inside, path: inside[path].data, inside),
+                    partial(_content, inside),
+                    partial(lambda inside, path: inside[path].data[:_START], inside),
                     partial(lambda inside, path: inside[path].executable, inside),
                 )
             )
@@ -157,8 +174,14 @@ def debs(files: Sequence[Path]) -> list[Part]:
 
 
 def surface_of(package: str, parts: Sequence[Part]) -> Surface:
-    """The surface of a package by its installed files. One of the parts has its manifest."""
+    """The surface of a package by its installed files. One of the parts has its manifest. What cannot be read is left
+    out, and listed as unknown."""
     share = f"share/{package}/"
+    unread: dict[str, str] = {}
+    parts = [
+        part._replace(read=partial(_contained, part.read, unread), start=partial(_contained, part.start, unread))
+        for part in parts
+    ]
     home = next(part for part in parts if f"{share}package.xml" in part.paths)
     manifest = manifests.extract(home.read(f"{share}package.xml"))
     mine = [part for part in parts if package in part.packages or _touches(part, package)]
@@ -187,7 +210,7 @@ def surface_of(package: str, parts: Sequence[Part]) -> Surface:
         programs=tuple(_programs(package, mine)),
         launches=tuple(_launches(package, mine)),
         headers=tuple(sorted(set(listed), key=lambda header: (header.include, header.installed))),
-        unknown=_TOLD,
+        unknown=(*_TOLD, *_unread(unread)),
     )
     return Surface(
         package,
@@ -199,6 +222,20 @@ def surface_of(package: str, parts: Sequence[Part]) -> Surface:
         any(part.convention for part in mine),
         tuple(sorted(set(declared))),
     )
+
+
+def _contained(read: Callable[[str], bytes], unread: dict[str, str], path: str) -> bytes:
+    """What a file holds, nothing where it cannot be read, which is noted."""
+    try:
+        return read(path)
+    except OSError as error:
+        unread[path] = error.strerror or type(error).__name__
+        return b""
+
+
+def _unread(files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    for path, reason in sorted(files.items()):
+        yield "headers" if _HEADER.search(path) else "files", f"{path} cannot be read: {reason}"
 
 
 def _touches(part: Part, package: str) -> bool:
@@ -309,7 +346,7 @@ def _programs(package: str, parts: Sequence[Part]) -> Iterator[Program]:
         for path in part.paths:
             folder, _, name = path.rpartition("/")
             if folder == f"lib/{package}" and "." not in name.removesuffix(".py") and part.executable(path):
-                how = "binary" if part.read(path).startswith(b"\x7fELF") else "script"
+                how = "binary" if part.start(path).startswith(b"\x7fELF") else "script"
                 found[name] = Program(name, folder, how)
     return iter(sorted(found.values(), key=lambda program: program.name))
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 import sqlite3
+import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from functools import cache, cached_property, lru_cache
@@ -20,6 +21,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import zstandard
 
+from ...edges.console import UserError
+from ...edges.files import read_chunks, writing
 from ..facts.interface import Interface
 from ..facts.parameters import last_part
 from ..facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
@@ -53,7 +56,7 @@ _TYPES = CLASSES | {"enum", "alias"}
 _Row = tuple[str, str, Any]
 
 
-class StoredSurfacesError(Exception):
+class StoredSurfacesError(UserError):
     """The file cannot be read; the message names it and says what to do."""
 
 
@@ -517,10 +520,17 @@ def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (
     """Writes packed packages; a file that is there is replaced as a whole. distros, date: see About."""
     versions = sum(len(History(name, packed.data, packed.includes).versions) for name, packed in packages.items())
     about = About(len(packages), versions, " ".join(distros), date)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    fresh = file.with_name(f"{file.name}.new")
-    fresh.unlink(missing_ok=True)
-    with closing(sqlite3.connect(fresh)) as db:
+    with tempfile.TemporaryDirectory() as folder:
+        fresh = Path(folder, "surfaces.sqlite")
+        _fill(fresh, packages, about)
+        with writing(file) as output:
+            for piece in read_chunks(fresh):
+                output.write(piece)
+    return about
+
+
+def _fill(file: Path, packages: Mapping[str, Packed], about: About) -> None:
+    with closing(sqlite3.connect(file)) as db:
         db.execute("PRAGMA page_size=512")  # each packed value ends in a page that it fills in part
         db.executescript(_SCHEMA)
         db.executemany(
@@ -532,8 +542,6 @@ def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (
         db.execute("INSERT INTO about VALUES(?, ?, ?, ?)", about)
         db.commit()
         db.execute("VACUUM")
-    fresh.replace(file)
-    return about
 
 
 def _elsewhere(packages: Mapping[str, Packed]) -> dict[str, str]:

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from ...edges.console import UserError
 from ...edges.files import read_chunks, read_file, read_with_status, write_file
 from ..cache import CACHE_VARIABLE
 from ..facts.store import FAULTS
@@ -28,7 +29,7 @@ _PACKED_BYTES = 64 << 20
 _UNPACKED_BYTES = 256 << 20
 
 
-class SnapshotError(Exception):
+class SnapshotError(UserError):
     """The shipped snapshot cannot be read; the message says what to do."""
 
 

@@ -14,7 +14,12 @@ def parts(version: str) -> tuple[int, ...]:
     """`4.5.4+dfsg-9ubuntu4` gives (4, 5, 4): epoch, revision and packaging suffixes are left out."""
     text = version.split(":", 1)[-1]
     text = re.split(r"[-+~]", text, maxsplit=1)[0]
-    return tuple(int(n) for n in _NUMBER.findall(text)[:4])
+    return tuple(number_of(n) for n in _NUMBER.findall(text)[:4])
+
+
+def number_of(digits: str) -> int:
+    """A number of a version. Python refuses to read thousands of digits; of more than forty, the first forty count."""
+    return int(digits[:40])
 
 
 def compare(a: str, b: str) -> int:

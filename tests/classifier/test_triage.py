@@ -149,6 +149,27 @@ class TestStream:
         assert [row["label"] for row in found] == ["library-update", "other"]
         assert all(set(row) == {"id", "label", "probabilities", "abstained"} for row in found)
 
+    @pytest.mark.parametrize("content", ["", "\n\n", "\ufeff"])
+    def test_nothing_to_judge_is_an_error(self, content, tmp_path):
+        file = tmp_path / "r.jsonl"
+        file.write_text(content, encoding="utf-8")
+        result = run("--jsonl", str(file))
+        assert (result.exit_code, result.stdout) == (2, "")
+        assert "holds no report" in result.stderr
+
+    def test_a_byte_order_mark_is_no_part_of_the_first_line(self, tmp_path):
+        file = tmp_path / "r.jsonl"
+        file.write_text("\ufeff" + self.ROWS, encoding="utf-8")
+        assert run("--jsonl", str(file)).stdout == run(str(file)).stdout == run("-", input=self.ROWS).stdout
+
+    @pytest.mark.parametrize("arguments", [(), ("--jsonl",)])
+    def test_a_file_without_end_is_refused(self, arguments, tmp_path):
+        with open(tmp_path / "sparse", "wb") as file:
+            file.truncate(3 << 30)
+        result = run(*arguments, str(tmp_path / "sparse"))
+        assert (result.exit_code, result.stdout) == (2, "")
+        assert "sparse: cannot be read: larger than 8 MB" in result.stderr
+
     def test_a_file(self, tmp_path):
         file = tmp_path / "r.jsonl"
         file.write_text(self.ROWS)
@@ -247,14 +268,60 @@ class TestAddresses:
         ("url", "says"),
         [
             ("https://answers.ros.org/question/1/x/", "answers.ros.org is gone"),
-            ("https://example.org/x", "is no issue, pull request or question"),
+            ("https://example.org/x", "known are github.com and stackexchange.com"),
+            ("https://bitbucket.org/o/r/issues/5", "known are github.com and stackexchange.com"),
+            ("https://github.com.evil.example/o/r/issues/5", "known are github.com"),
+            ("https://github.com@evil.example/o/r/issues/5", "without user name and port"),
+            ("https://evil.example\\@github.com/o/r/issues/5", "without user name and port"),
+            ("https://github.com:8443/o/r/issues/5", "without user name and port"),
+            ("https://github.com:99999/o/r/issues/5", "cannot be read"),
+            ("https://g\u0456thub.com/o/r/issues/5", "known are github.com"),
+            ("https://github\uff0fcom/o/r/issues/5", "cannot be read"),
+            ("https://meta.robotics.stackexchange.com/q/5", "known are github.com"),
+            ("https://robotics.stackexchange.com.evil.example/q/5", "known are github.com"),
+            ("https://127.0.0.1/o/r/issues/5", "known are github.com"),
+            ("https://[::1/o/r/issues/5", "cannot be read"),
+            ("ftp://github.com/o/r/issues/5", "is no address of a page"),
+            ("file:///etc/passwd", "is no address of a page"),
+            ("http://", "is no address of a page"),
+            ("//github.com/o/r/issues/5", "there is no such file"),
+            ("https://github.com/o/../issues/5", "is no issue, pull request or question"),
             ("https://github.com/o/r", "is no issue, pull request or question"),
         ],
     )
-    def test_other_addresses(self, url, says):
+    def test_other_addresses(self, url, says, monkeypatch):
+        def ask(self, *unused, **more):
+            raise AssertionError("nobody may be asked")
+
+        monkeypatch.delenv("ROSIMPACT_GITHUB_API", raising=False)
+        monkeypatch.setattr("rosimpact.corpus.polite.Client._once", ask)
         result = run(url)
         assert result.exit_code == 2
         assert says in result.stderr
+        assert len(result.stderr.splitlines()) == 1
+
+    @pytest.mark.parametrize(
+        ("named", "host", "api"),
+        [
+            ("", "github.com", "public"),
+            ("", "ghe.example.org", ""),
+            ("https://ghe.example.org/api/v3", "github.com", "public"),
+            ("https://ghe.example.org/api/v3", "ghe.example.org", "https://ghe.example.org/api/v3"),
+            ("https://api.octo.ghe.com", "octo.ghe.com", "https://api.octo.ghe.com"),
+            ("https://ghe.example.org/api/v3", "other.example.org", ""),
+            ("http://127.0.0.1:9", "github.com", "http://127.0.0.1:9"),
+            ("http://127.0.0.1:9", "example.org", ""),
+        ],
+    )
+    def test_which_server_is_asked(self, named, host, api, monkeypatch):
+        from rosimpact.classifier.triage import _github_api
+
+        monkeypatch.setenv("ROSIMPACT_GITHUB_API", named)
+        assert _github_api(host, "public") == api
+
+    def test_a_password_in_an_address_is_not_shown(self):
+        result = run("https://ghp_s3cret:x@github.com/o/r/issues/5")
+        assert result.exit_code == 2 and "s3cret" not in result.output
 
     def test_an_address_without_its_scheme_is_one_all_the_same(self):
         assert "answers.ros.org is gone" in run("answers.ros.org/question/1/x/").stderr
@@ -269,6 +336,10 @@ class TestAddresses:
             assert f"{name}: is no text" in result.stderr
         assert "is a folder" in run(str(tmp_path)).stderr
 
+    @pytest.mark.parametrize("text", ["rviz crashes", "undefined", "see a/b.cpp", "http:// is refused", "tf2::x"])
+    def test_what_is_a_text(self, text):
+        assert run(text).exit_code == 0
+
     def test_a_text_that_holds_an_address_is_a_text(self):
         assert not is_address("see https://github.com/o/r/issues/1")
 
@@ -279,6 +350,11 @@ class TestErrors:
         [
             (("x", "--format", "xml"), "--format xml: unknown"),
             (("missing.jsonl",), "missing.jsonl: there is no such file"),
+            (("nosuch.log",), "nosuch.log: there is no such file"),
+            (("logs/latest",), "logs/latest: there is no such file"),
+            (("~/report",), "~/report: there is no such file"),
+            (("/dev/zero",), "/dev/zero: is not a regular file"),
+            (("--jsonl", "/dev/null"), "/dev/null: is not a regular file"),
             (("",), "the report is empty"),
             (("x", "--jsonl"), "--jsonl: needs a file"),
             (("x", "--model", "none.npz"), "none.npz: cannot be read"),

@@ -59,6 +59,7 @@ class Services:
         self.incomplete = 0
         self.backoff: int | None = None
         self.after: Callable[[Asked], None] = lambda asked: None
+        self.date: Callable[[], float] = time.time
         self._server = _Server(("127.0.0.1", 0), self._handler())
         self._server.daemon_threads = True
         self._thread = threading.Thread(target=self._server.serve_forever, args=(0.02,), daemon=True)
@@ -233,6 +234,9 @@ class Services:
                         self.close_connection = True
                 except OSError:
                     self.close_connection = True  # who asked has given up, which is what they should do
+
+            def date_time_string(self, timestamp: float | None = None) -> str:
+                return super().date_time_string(services.date() if timestamp is None else timestamp)
 
             def log_message(self, *arguments: object) -> None:
                 pass

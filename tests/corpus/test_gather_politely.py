@@ -178,17 +178,86 @@ def test_redirects_that_lead_nowhere(server, place):
         client(Hours(NOW), tries=2).get(f"{server.url}/circle")
 
 
-def test_credentials_stay_behind_when_a_redirect_leads_elsewhere(server):
+def test_no_redirect_leaves_the_host_that_was_asked(server):
     other = Services()
     try:
-        server.fail(Fault(301, {"Location": f"{other.url}/rate_limit"}), Fault(301, {"Location": "/rate_limit"}))
-        polite = client(Hours(NOW))
-        polite.get(f"{server.url}/x", headers={"Authorization": "Bearer t"})
-        polite.get(f"{server.url}/x", headers={"Authorization": "Bearer t"})
-        assert [asked.headers.get("authorization") for asked in other.asked] == [None]
-        assert [asked.headers.get("authorization") for asked in server.asked] == ["Bearer t"] * 3
+        for place in (f"{other.url}/rate_limit", "http://169.254.169.254/latest/", "//evil.example.org/x",
+                      server.url.replace("http:", "https:"), server.url.replace("//", "//user:word@")):  # fmt: skip
+            server.fail(Fault(301, {"Location": place}))
+            with pytest.raises(CorpusError, match=r"redirects to https?://[^/]+, which is not asked"):
+                client(Hours(NOW)).get(f"{server.url}/x", headers={"Authorization": "Bearer t"})
+        assert other.asked == []
     finally:
         other.close()
+    server.asked.clear()
+    server.fail(Fault(301, {"Location": "/rate_limit"}))
+    client(Hours(NOW)).get(f"{server.url}/x", headers={"Authorization": "Bearer t"})
+    assert [asked.headers.get("authorization") for asked in server.asked] == ["Bearer t"] * 2
+
+
+@pytest.mark.parametrize(
+    ("url", "place", "onward"),
+    [
+        ("http://mirror.example.org/x", "https://mirror.example.org/x", "https://mirror.example.org/x"),
+        ("https://mirror.example.org/x", "http://mirror.example.org/x", None),
+        ("http://mirror.example.org:8080/x", "https://mirror.example.org/x", None),
+        ("https://mirror.example.org/x", "https://mirror.example.org.evil.example/x", None),
+        ("https://mirror.example.org/x", "https://mirror.example.org:99999/x", None),
+        ("https://mirror.example.org/x", "https://[::1/x", None),
+        ("https://mirror.example.org/x", "file:///etc/passwd", None),
+    ],
+)
+def test_where_a_redirect_may_lead(url, place, onward):
+    from rosimpact.corpus.polite import _Fault, _onward
+
+    if onward:
+        assert _onward("Askbot", url, place) == onward
+    else:
+        with pytest.raises((CorpusError, _Fault)):
+            _onward("Askbot", url, place)
+
+
+@pytest.mark.parametrize(
+    ("fault", "message"),
+    [
+        (Fault(body=gzip.compress(bytes(80 << 20)), headers={"Content-Encoding": "gzip"}), "sends more than 64 MB"),
+        (Fault(body=gzip.compress(gzip.compress(bytes(1 << 20))), headers={"Content-Encoding": "gzip, gzip"}),
+         "packed its answer in a way that was not asked for"),
+        (Fault(body=b"x", headers={"Content-Encoding": "br"}), "packed its answer in a way"),
+        (Fault(body=b"[" * 100_000 + b"]" * 100_000), "that is no JSON"),
+        (Fault(body=b"[" + b"9" * 5_000 + b"]"), "that is no JSON"),
+        (Fault(429, {"Retry-After": "9" * 15}), "says to come back at"),
+        (Fault(429, {"Retry-After": "\u00b2"}), "is over its rate limit|come back"),
+        (Fault(403, limits(0, 10**14), PRIMARY), "says to come back at"),
+    ],
+)  # fmt: skip
+def test_a_hostile_answer_is_one_error(server, fault, message):
+    server.fail(fault)
+    with pytest.raises(CorpusError, match=message):
+        client(Hours(NOW), tries=1, patience=1).get_json(f"{server.url}/rate_limit")
+
+
+def test_halves_of_characters_do_not_stop_a_gathering(server, store):
+    server.issues[REPO] = [issue(REPO, 1, title="half \ud83d of one", body="\udcff")]
+    gather(Listed(GitHub(client(Hours(NOW)), server.url), REPO), store)
+    assert [(report.title, report.body) for report in store.reports()] == [("half \ufffd of one", "\ufffd")]
+
+
+def test_a_token_that_a_server_repeats_is_not_shown(server):
+    server.fail(Fault(401, {}, b'{"message": "bad token ghp_repeated"}'))
+    with pytest.raises(Refused) as refused:
+        client(Hours(NOW), secrets=["ghp_repeated"]).get(f"{server.url}/x")
+    assert "ghp_repeated" not in str(refused.value) and "***" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "api", ["https://me:s3cret@ghe.example.org", "https://x:99999", "https://[::1", "file:///x", "https://h/?key=s3cret",
+            "https:///x", "https://a\\@b/"],
+)  # fmt: skip
+def test_an_address_of_a_service_is_plain(api):
+    with pytest.raises(CorpusError, match="--api") as refused:
+        GitHub(client(Hours(NOW)), api)
+    assert "s3cret" not in str(refused.value)
 
 
 def test_a_list_that_leads_to_another_server_is_not_followed(server, store):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
+import os
 import sqlite3
 import threading
+import zlib
 from pathlib import Path
 
 import pytest
@@ -239,3 +242,36 @@ def test_whatever_happens_to_ids_no_report_is_there_twice(tmp_path_factory, step
         ids = [one.id.lower() for one in before]
         assert len(ids) == len(set(ids))
     assert (list(open_reports(path)) if path.exists() else []) == before
+
+
+BLOBS = [None, 7, "text", b"", b"no zlib", zlib.compress(b"no JSON"), zlib.compress(b"[]"), zlib.compress(b'{"id": 3}')]
+
+
+@pytest.mark.parametrize("value", BLOBS)
+@pytest.mark.parametrize("column", ["report.report", "report.raw", "gathering.state", "report.id"])
+def test_a_damaged_row_is_named(path, column, value):
+    with Store(path) as store:
+        store.take("job", Page([Gathered(report("a/b#1"), raw=b"answer")], {"after": 1}))
+    table, _, name = column.partition(".")
+    with contextlib.closing(sqlite3.connect(path)) as db, contextlib.suppress(sqlite3.IntegrityError):
+        db.execute(f"UPDATE {table} SET {name} = ?", [value])
+        db.commit()
+    with Store(path) as store:
+        for read in (
+            lambda: list(store.reports()),
+            lambda: store.report("a/b#1"),
+            lambda: store.raw("a/b#1"),
+            lambda: store.state("job"),
+            lambda: store.take("job", Page([], {"after": 2}, moved=("a/b", "c/d"))),
+        ):
+            try:
+                read()
+            except CorpusError as error:
+                assert "is damaged" in str(error) and "\n" not in str(error)
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, lambda path: path.symlink_to("/dev/zero")])
+def test_what_is_no_file_cannot_be_a_store(tmp_path, make):
+    make(tmp_path / "x")
+    with pytest.raises(CorpusError, match="not a regular file"):
+        Store(tmp_path / "x")

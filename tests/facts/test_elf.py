@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shutil
+import struct
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -146,3 +148,59 @@ def test_what_a_symbol_is_a_member_of(symbol, name, scope):
 @pytest.mark.parametrize("symbol", ["malloc", "_ZNSt6thread4joinEv", "_ZdlPv", "_Z"])
 def test_symbols_that_are_of_no_class_of_ones_own(symbol):
     assert member(symbol) is None
+
+
+# Files that claim what no file has
+
+
+def head(count=0, segments=0, names=0) -> bytes:
+    """The header of a 64-bit library whose segments, or else sections, follow it."""
+    table, other = (64, 0) if segments else (0, 64)
+    sizes = (64, 56, segments, 64, count, names)
+    return b"\x7fELF\2\1\1" + bytes(9) + struct.pack("<HHIQQQI6H", 3, 62, 1, 0, table, other, 0, *sizes)
+
+
+def section(kind=0, offset=256, size=1000, link=2, info=0) -> bytes:
+    return struct.pack("<IIQQQQIIQQ", 0, kind, 0, 0, offset, size, link, info, 0, 24)
+
+
+def symbols(count: int, length: int) -> bytes:
+    names = b"\0" + b"a" * length + b"\0"
+    table = b"".join(struct.pack("<IBBHQQ", 1 + i % 100, 0x10, 0, 0, 0, 0) for i in range(count))
+    first = section() + section(11, 256 + len(names), len(table)) + section(3, 256, len(names))
+    return head(3, names=2) + first + names + table
+
+
+STRINGS = section(3, 256, 100)
+HOSTILE = {
+    "2^31 sections": head() + section(size=2**31, link=0) + section() * 10,
+    "a dynamic section without an end": head(segments=1)
+    + struct.pack("<IIQQQQQQ", 2, 4, 120, 0, 0, 2**40, 2**40, 8)
+    + struct.pack("<QQ", 1, 5) * 400_000,
+    "needed versions that lead back": head(3, names=2) + section(link=0) + section(0x6FFFFFFE, info=2**31) + STRINGS
+    + struct.pack("<HHIII", 1, 65535, 0, 0, 0) + bytes(1000),
+    "defined versions that lead back": head(3, names=2) + section(link=0) + section(0x6FFFFFFD, info=2**31) + STRINGS
+    + struct.pack("<HHHHIII", 1, 0, 1, 65535, 0, 0, 0) + bytes(1000),
+    "names that overlap": symbols(1000, 1_000_000),
+    "2^31 symbols": head(3, names=2) + section() + section(11, size=24 * 2**31) + STRINGS + bytes(1000),
+    "a table behind the end": head(3, names=2) + section() + section(11, 2**62, 24) + STRINGS + bytes(1000),
+    "names without an end": head(3, names=2) + section() + section(7) + section(3, 256, 2**40) + b"x" * 70_000_000,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("data", HOSTILE.values(), ids=HOSTILE)
+def test_what_a_file_claims_costs_a_second_at_most(data):
+    began = time.process_time()
+    found = read(data)
+    elf.defined(data)
+    assert time.process_time() - began < 5
+    assert found is not None and found.machine == "EM_X86_64" and found.problem
+
+
+def test_more_libraries_than_any_file_asks_for(made_elf):
+    found = read(made_elf("EM_X86_64", [f"lib{n}.so.1" for n in range(3000)]))
+    assert found is not None and len(found.needed) == 1000 and "more libraries" in found.problem
+
+
+def test_a_name_that_gives_a_length_of_5000_digits():
+    assert member("_ZN1a" + "9" * 5000 + "bE") is not None

@@ -31,14 +31,14 @@ def test_text():
     text = draw(NOW, "text")
     assert text.startswith("3 nodes, 2 topics, 1 service\n")
     lines = text.splitlines()
-    scan = lines[lines.index("/scan  sensor_msgs/LaserScan") :][:4]
+    scan = lines[lines.index("topic /scan  sensor_msgs/LaserScan") :][:4]
     assert scan == [
-        "/scan  sensor_msgs/LaserScan",
+        "topic /scan  sensor_msgs/LaserScan",
         "  publishes   /driver  driver/driver.cpp:5  [best_effort]",
         "      publish at driver/driver.cpp:6  when ready_; on timer 100ms",
         "  subscribes  /planner  planner/planner.cpp:5  [→ Planner::onScan]",
     ]
-    assert "/calibrate (service)  std_srvs/Trigger" in lines
+    assert "service /calibrate  std_srvs/Trigger" in lines
     assert "8 of 9 API calls resolved; 3 files read" in text
     assert lines[-1].startswith("  planner/planner.cpp:7:  publisher name `unknown()`: ")
 
@@ -173,7 +173,7 @@ def test_dot_and_mermaid_have_every_edge():
 
 
 def test_hostile_names_stay_names():
-    assert quoted('a"b\nc') == '"a\\"b\\nc"'
+    assert quoted('a"b\nc') == '"a\\"b\\\\nc"'
     assert escaped('a"b[c]') == "a#34;b#91;c#93;"
 
 
@@ -199,7 +199,7 @@ def test_who_is_gone_from_a_part_is_said(asked, gone):
     lines = draw(WITHOUT_PLANNER, "text", NOW, **asked).splitlines()
     found, name = set(), ""
     for line in lines:
-        name = line.split(" ")[0] if line.startswith("/") else name
+        name = line.split(" ")[1] if line.startswith(("topic ", "service ")) else name
         if line.startswith("- "):
             found.add((line.split()[2], name))
         assert not line.startswith("+ "), "what the base has too is not new because the question did not find it there"

@@ -328,4 +328,4 @@ def test_data_cannot_leave_its_block():
     assert json.loads(block)["root"].startswith("</script>")
     assert not re.search("[<>&\u2028]", block)
     assert "{{policy}}" not in text
-    assert text.partition("{{data}}")[2].startswith("\ufffd</title>"), "a name that looks like a gap is not filled"
+    assert text.partition("{{data}}")[2].startswith("\\u202e</title>"), "a name that looks like a gap is not filled"

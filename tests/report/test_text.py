@@ -13,7 +13,7 @@ TEAM = """\
 targets humble (2026-08-22, ubuntu jammy), jazzy (2026-08-22, ubuntu noble), rolling (2026-08-22, ubuntu noble), \
 robot (humble, 2026-08-22, ubuntu jammy): rosimpact.toml
 
-localizer · src/localizer
+package localizer · src/localizer
 
 error[removed-header] jazzy, rolling: `tf2_geometry_msgs/tf2_geometry_msgs.h` is gone in tf2_geometry_msgs \
 0.36.2 (jazzy), 0.41.0 (rolling)
@@ -28,7 +28,7 @@ warning[undeclared-package] all targets: `cv_bridge` is included and not declare
     |           ^^^^^^^^^
   help: add `<depend>cv_bridge</depend>` to `src/localizer/package.xml`
 
-planner · src/planner
+package planner · src/planner
 
 error[library-version] robot: `find_package(OpenCV 4.6)` asks for more than opencv 4.5.4
   → src/planner/CMakeLists.txt:2:14
@@ -36,10 +36,10 @@ error[library-version] robot: `find_package(OpenCV 4.6)` asks for more than open
     |              ^^^^^^
   help: ask for `4.5`, which every target asked for has
 
-                  humble  jazzy  rolling  robot
-localizer         ! 1     ✗ 1    ✗ 1      ! 1
-planner           ·       ·      ·        ✗ 1
-3 other packages  ·       ·      ·        ·
+                    humble  jazzy  rolling  robot
+  localizer         ! 1     ✗ 1    ✗ 1      ! 1
+  planner           ·       ·      ·        ✗ 1
+  3 other packages  ·       ·      ·        ·
 
 2 errors, 1 warning, 1 note (shown with --notes) · 5 packages, 40 of 41 files read, unresolved: 3 includes, 1 topic \
 · 0.42 s
@@ -79,7 +79,7 @@ def test_the_last_line_tells_what_is_not_shown(team):
     ("changes", "start"),
     [
         ({"coverage": Coverage()}, "nothing was analysed · 0 packages"),
-        ({"failure": "`x` is no folder\nof yours"}, "failed: `x` is no folder\ufffdof yours · "),
+        ({"failure": "`x` is no folder\nof yours"}, "failed: `x` is no folder\\nof yours · "),
         ({"coverage": Coverage(1, 3, 3)}, "nothing found · 1 package, all of 3 files read · "),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import getpass
 import json
+import os
 import socket
 
 import pytest
@@ -102,12 +103,39 @@ def test_written_and_read_back(tmp_path):
         ('{"rosimpact_target": 1, "packages": 3}', "names no ROS distro"),
         ('{"rosimpact_target": 1, "distro": "gutsy"}', "gutsy"),
         ('{"rosimpact_target": 1, "distro": "humble", "date": "then"}', "then"),
+        ('{"rosimpact_target": 1, "distro": "humble", "date": "99999-01-01"}', "99999-01-01` is no date"),
+        ('{"rosimpact_target": 1, "distro": "humble", "date": "' + "9" * 10**6 + '"}', "9` is no date"),
+        ('{"rosimpact_target": ' + "9" * 5000 + "}", "cannot be read"),
+        ("[" * 100_000, "nested too deeply"),
+        ('{"rosimpact_target": 1e999}', "no captured machine"),
     ],
 )
 def test_what_is_no_captured_machine_is_named(tmp_path, text, words):
     (tmp_path / "x.json").write_text(text)
     with pytest.raises(TargetError, match=rf"x\.json.*{words}"):
         load_capture(tmp_path / "x.json")
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, lambda path: path.symlink_to("/dev/zero")])
+def test_what_is_no_file_is_not_opened(tmp_path, make):
+    make(tmp_path / "x.json")
+    with pytest.raises(TargetError, match=r"not a regular file|is a folder"):
+        load_capture(tmp_path / "x.json")
+
+
+def test_a_file_larger_than_its_limit_is_named(tmp_path):
+    with open(tmp_path / "x.json", "wb") as file:
+        file.truncate(3 << 30)
+    with pytest.raises(TargetError, match=r"x\.json.*larger than 64 MB"):
+        load_capture(tmp_path / "x.json")
+
+
+@pytest.mark.parametrize("date", ["0001-01-01", "9999-12-31"])
+def test_the_first_and_the_last_day_of_all(date):
+    target = DistroTarget("humble", date, versions={"opencv": "9" * 5000, "rclcpp": "9" * 5000 + ".1"})
+    assert target.version("rclcpp")
+    assert target.library("opencv") == "9" * 5000
+    assert differences(DistroTarget("humble"), target)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import io
 import lzma
+import os
 import tarfile
 
 import pytest
@@ -176,3 +177,20 @@ def test_versions_and_distros_are_no_paths(installed, monkeypatch):
     monkeypatch.chdir(installed.parent)
     assert is_installed(str(installed)) and is_installed("./jazzy")
     assert not is_installed("jazzy") and not is_installed("28.1.0") and not is_installed("/no/such/folder")
+
+
+def test_a_file_that_cannot_be_read_costs_itself_only(installed):
+    whole, _ = surface_at("arm", str(installed))
+    include = installed / "include/arm/arm"
+    include.mkdir(parents=True, exist_ok=True)
+    with open(include / "sparse.hpp", "wb") as file:
+        file.truncate(3 << 30)
+    os.mkfifo(include / "pipe.hpp")
+    (include / "zero.hpp").symlink_to("/dev/zero")
+    with open(installed / "share/arm/sparse.cmake", "wb") as file:
+        file.truncate(3 << 30)
+    found, _ = surface_at("arm", str(installed))
+    assert {path for path, header in found.headers if header.entities} == {p for p, h in whole.headers if h.entities}
+    lost = set(found.build.unknown) - set(whole.build.unknown)
+    assert ("headers", "include/arm/arm/sparse.hpp cannot be read: larger than 8 MB") in lost
+    assert {part for part, _ in lost} == {"headers", "files"} and len(lost) == 2

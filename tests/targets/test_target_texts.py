@@ -1,5 +1,6 @@
 """What a person writes after --target, and what stands when nothing is written."""
 
+import os
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -229,7 +230,7 @@ class OneFile:
     def entries(self):
         return [SimpleNamespace(path=self.path, size=len(self.text))]
 
-    def read(self, path):
+    def read(self, path, limit=0):
         return self.text.encode()
 
 
@@ -277,3 +278,20 @@ def test_a_worktree_has_its_own_branch(tmp_path):
     (tmp_path / "w" / ".git").write_text("gitdir: ../main/.git/worktrees/w\n")
     assert branch_of(tmp_path / "w") == "jazzy"
     assert branch_of(tmp_path / "nowhere") == ""
+
+
+def test_build_stamps_of_no_day_do_not_count(tmp_path):
+    rows = "".join(
+        f"ii  ros-humble-{name}  1.2.3-1jammy.{stamp}  amd64  text\n"
+        for name, stamp in (("a", "20240301.101010"), ("b", "29999999.101010"), ("c", "20249999.101010"))
+    )
+    (tmp_path / "robot.dpkg.txt").write_text(rows)
+    assert parse_target("robot.dpkg.txt", folder=tmp_path).date == "2024-03-01"
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, lambda path: path.symlink_to("/dev/zero")])
+@pytest.mark.parametrize("name", ["robot.dpkg.txt", "robot.json"])
+def test_a_file_that_is_none_is_not_opened(tmp_path, make, name):
+    make(tmp_path / name)
+    with pytest.raises(TargetError, match=name):
+        parse_target(name, folder=tmp_path)

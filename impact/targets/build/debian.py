@@ -1,6 +1,6 @@
 """Builds data/changes_debian.json and uses_debian.json: what versions of platform libraries no longer have, or take.
 
-    python -m rosimpact.impact.targets.build.debian FOLDER --clones CLONES --output DATA
+    python -P -m rosimpact.impact.targets.build.debian FOLDER --clones CLONES --output DATA
 
 FOLDER holds a folder for each Debian release, with the development packages of the libraries as `apt-get download
 PACKAGE=VERSION` gives them. Their headers are read as `surface diff` reads those of an installed package, and those of
@@ -26,6 +26,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
+from ....edges.files import write_file
 from ...facts import surface_cpp
 from ...facts.surface import CLASSES, Entity, HeaderSurface, offered
 from ..changes import all_rows
@@ -439,7 +440,7 @@ def write(file: Path, key: str, rows: Iterable[dict]) -> None:
     """Writes a table, a line for each group."""
     text = ",\n".join(json.dumps(row) for row in rows)
     more = ',\n"transitive": []' if key == "changes" else ""
-    file.write_text(f'{{"{key}": [\n{text}\n]{more}}}\n')
+    write_file(file, f'{{"{key}": [\n{text}\n]{more}}}\n'.encode())
 
 
 def main(arguments: list[str] | None = None) -> None:

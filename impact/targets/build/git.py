@@ -4,11 +4,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ....edges.console import UserError
+
 Report = Callable[[str, int, int], None]
 """Told (what, done, total) while something long goes on."""
 
 
-class BuildError(Exception):
+class BuildError(UserError):
     """The data cannot be built from what was given; the message says why."""
 
 

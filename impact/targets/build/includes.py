@@ -1,7 +1,7 @@
 """Builds data/includes.json.zst: which headers each header of a library or ROS package includes, version by version.
 
-    python -m rosimpact.impact.targets.build.includes FOLDER --installed boost=1.74=DIR ... --output DATA
-    python -m rosimpact.impact.targets.build.includes --shipped
+    python -P -m rosimpact.impact.targets.build.includes FOLDER --installed boost=1.74=DIR ... --output DATA
+    python -P -m rosimpact.impact.targets.build.includes --shipped
 
 FOLDER holds git clones (`OWNER+NAME`, or a git directory below it); their release tags are read. Boost is put together
 from all clones of `boostorg` that are named, at the tags of versions that some platform has. DIR is an include folder
@@ -27,6 +27,7 @@ from pathlib import Path
 import msgspec
 import zstandard
 
+from ....edges.files import write_file
 from ...facts.condition import Condition
 from .. import includes
 from ..build_history import _tree, git_directory
@@ -612,7 +613,7 @@ def _stopped(table: includes.Table, ros: int) -> set[str]:
 def _write(table: includes.Table, output: Path) -> None:
     plain = msgspec.to_builtins(table, order="deterministic")
     raw = json.dumps(plain, separators=(",", ":"), sort_keys=True).encode()
-    (output / "includes.json.zst").write_bytes(zstandard.ZstdCompressor(level=19).compress(raw))
+    write_file(output / "includes.json.zst", zstandard.ZstdCompressor(level=19).compress(raw))
 
 
 if __name__ == "__main__":

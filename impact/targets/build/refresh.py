@@ -10,16 +10,18 @@ import datetime
 import sqlite3
 import tempfile
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ....edges.limits import size_text
 from .git import BuildError, Report
 from .keys import FILES, parse_rules
 from .manifests import parse_manifest
 
 INDEX = "https://raw.githubusercontent.com/ros/rosdistro/{ref}/index-v4.yaml"
 """Where rosdistro's index is; `{ref}` is a branch or tag."""
+_LARGEST = 64 << 20
 
 
 class Refreshed(NamedTuple):
@@ -51,6 +53,46 @@ def refreshed(
 
     Raises BuildError when the index cannot be had; what fails later is listed in the result and left as it was.
     """
+    with _known_hosts(index_url):
+        return _refreshed(raw, index_url, sync_days, report)
+
+
+_HOSTS = ("raw.githubusercontent.com", "repo.ros2.org", "repositories.ros.org", "packages.ros.org", "docs.ros.org")
+"""Where ROS keeps its index and caches, besides the host of the index itself."""
+
+
+@contextlib.contextmanager
+def _known_hosts(index_url: str) -> Iterator[None]:
+    """Lets urllib, with which the rosdistro library asks, ask these hosts alone, also when it is redirected: what an
+    index names is not the user's word. Files are read where the index is a file itself."""
+    import urllib.error
+    import urllib.parse
+    import urllib.request
+
+    own = urllib.parse.urlsplit(index_url)
+    hosts = (*_HOSTS, own.hostname)
+
+    class Known(urllib.request.BaseHandler):
+        handler_order = 100  # before those that ask
+
+        def check(self, request: urllib.request.Request) -> None:
+            place = urllib.parse.urlsplit(request.full_url)
+            if place.scheme == "file" == own.scheme or (place.scheme in ("http", "https") and place.hostname in hosts):
+                return
+            raise urllib.error.URLError(f"{place.scheme}://{place.hostname or ''} is no host of ROS, and is not asked")
+
+        http_open = https_open = file_open = ftp_open = data_open = check
+
+    urllib.request.install_opener(urllib.request.build_opener(Known))
+    try:
+        yield
+    finally:
+        urllib.request.install_opener(None)  # type: ignore[arg-type]
+
+
+def _refreshed(
+    raw: bytes, index_url: str, sync_days: Callable[[str], Iterable[str]], report: Report | None
+) -> tuple[bytes, Refreshed]:
     import rosdistro
 
     tell = report or (lambda what, done, total: None)
@@ -119,7 +161,10 @@ def _rosdep_files(index_url: str) -> dict[tuple[str, str], str]:
     rules: dict[tuple[str, str], str] = {}
     for name in FILES:
         with urllib.request.urlopen(f"{base}/{name}", timeout=30) as answer:
-            parsed = parse_rules(answer.read())
+            data = answer.read(_LARGEST + 1)
+            if len(data) > _LARGEST:
+                raise ValueError(f"{name} is larger than {size_text(_LARGEST)}")
+            parsed = parse_rules(data)
         if parsed is None:
             raise ValueError(f"{name} is no YAML mapping")
         rules = {**parsed, **rules}

@@ -1,6 +1,6 @@
 """Builds data/std_names.json.zst: which names of the standard libraries each standard header brings, by GCC.
 
-    python -m rosimpact.impact.targets.build.std_names 13=FOLDER 15=FOLDER ... --output DATA
+    python -P -m rosimpact.impact.targets.build.std_names 13=FOLDER 15=FOLDER ... --output DATA
 
 FOLDER holds the unpacked Debian packages of a release that has this GCC (`dpkg-deb -x`): g++-N, libstdc++-N-dev,
 libgcc-N-dev, libc6-dev, linux-libc-dev, libcrypt-dev, libc6, libgmp10, libmpfr6, libmpc3, libisl23, libzstd1, zlib1g.
@@ -21,6 +21,7 @@ from pathlib import Path
 
 import zstandard
 
+from ....edges.files import write_file
 from ..snapshot import DATA
 from ..standard import HEADER_SINCE
 
@@ -308,7 +309,7 @@ def _main() -> None:
     asked = parser.parse_args()
     folders = {int(major): Path(folder) for major, _, folder in (text.partition("=") for text in asked.folders)}
     raw = json.dumps(table(folders), separators=(",", ":")).encode()
-    (asked.output / "std_names.json.zst").write_bytes(zstandard.ZstdCompressor(level=19).compress(raw))
+    write_file(asked.output / "std_names.json.zst", zstandard.ZstdCompressor(level=19).compress(raw))
 
 
 if __name__ == "__main__":

@@ -10,10 +10,14 @@ from typing import NamedTuple
 
 import msgspec
 
+from ....edges.files import write_file
 from ..snapshot import SCHEMA, SnapshotInfo
 from .keys import RuleEvent
 from .manifests import Declared
 from .releases import History
+
+FILES = ("distros.sqlite.zst", "snapshot.json")
+"""What a data folder gets."""
 
 
 class DistroRow(NamedTuple):
@@ -149,16 +153,13 @@ def _fill_history(
 
 
 def write_snapshot(raw: bytes, date: str, sources: dict[str, str], folder: Path) -> int:
-    """Writes `distros.sqlite.zst` and `snapshot.json` into a data folder; gives the compressed size in bytes."""
+    """Writes FILES into a data folder; gives the compressed size in bytes."""
     import zstandard
 
     # A long window finds the repeats between far-apart tables; decompression then needs 64 MB at most.
     parameters = zstandard.ZstdCompressionParameters.from_level(19, window_log=26, enable_ldm=True)
     packed = zstandard.ZstdCompressor(compression_params=parameters).compress(raw)
     info = SnapshotInfo(date, hashlib.sha256(raw).hexdigest(), dict(sorted(sources.items())))
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, data in (("distros.sqlite.zst", packed), ("snapshot.json", msgspec.json.encode(info) + b"\n")):
-        part = folder / f".{name}.part"
-        part.write_bytes(data)
-        os.replace(part, folder / name)
+    for name, data in zip(FILES, (packed, msgspec.json.encode(info) + b"\n"), strict=True):
+        write_file(folder / name, data)
     return len(packed)

@@ -1,0 +1,150 @@
+"""Several trees under one root, and a workspace at the merge bases of its repositories."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+
+from .git import GitTree
+from .paths import Entry, PathProblem, Tree, TreeError, inside, join, shown, within
+from .working import WorkingTree
+
+
+class JoinedTree:
+    """Several trees under one root, such as a workspace whose repositories stand at different revisions.
+
+    mounts: tree by folder. Where folders contain each other the inner tree hides what the outer one has there.
+    """
+
+    def __init__(self, mounts: Mapping[str, Tree], label: str = ""):
+        self.mounts = dict(sorted(mounts.items(), key=lambda mount: -len(mount[0])))
+        outermost = list(self.mounts.values())[-1] if self.mounts else None
+        self.label = label or ", ".join(f"{folder or '.'} at {tree.label}" for folder, tree in sorted(mounts.items()))
+        self.name = outermost.name if outermost is not None and "" in self.mounts else ""
+        self.problems: list[PathProblem] = []
+        self.skipped: list[PathProblem] = []
+        self.aliases: dict[str, str] = {}
+        self._entries: list[Entry] | None = None
+
+    @property
+    def repositories(self) -> dict[str, str]:
+        found = {}
+        for mount, tree in self.mounts.items():
+            for folder, place in tree.repositories.items():
+                if self._mount(join(mount, folder)) == mount:
+                    found[join(mount, folder) if folder else mount] = place
+        return found
+
+    def _mount(self, path: str) -> str | None:
+        """The innermost folder at or above a path that a tree is mounted at."""
+        while path not in self.mounts:
+            if not path:
+                return None
+            path = path.rpartition("/")[0]
+        return path
+
+    def _inner(self, path: str) -> tuple[Tree, str]:
+        mount = self._mount(path)
+        if mount is None:
+            raise FileNotFoundError(2, "in none of the trees", path)
+        return self.mounts[mount], path[len(mount) + 1 :] if mount else path
+
+    def entries(self) -> list[Entry]:
+        if self._entries is None:
+            found = []
+            for mount, tree in self.mounts.items():
+                prefix = mount + "/" if mount else ""
+                plain = not any(other != mount and within(other, mount) for other in self.mounts)
+
+                def kept(path: str, mount: str = mount, plain: bool = plain) -> bool:
+                    return plain or self._mount(path) == mount
+
+                found += [Entry(prefix + e.path, e.size) for e in tree.entries() if kept(prefix + e.path)]
+                for own, theirs in ((self.problems, tree.problems), (self.skipped, tree.skipped)):
+                    own += [PathProblem(prefix + p.path, p.message) for p in theirs if kept(prefix + p.path)]
+                for link, target in tree.aliases.items():
+                    if kept(prefix + link):
+                        self.aliases[prefix + link] = target if target.startswith("/") else prefix + target
+            found.sort(key=lambda entry: entry.path)
+            self._entries = found
+        return self._entries
+
+    def known_id(self, path: str) -> str | None:
+        tree, inner = self._inner(path)
+        return tree.known_id(inner)
+
+    def content_id(self, path: str) -> str:
+        tree, inner = self._inner(path)
+        return tree.content_id(inner)
+
+    def read(self, path: str, limit: int = 0) -> bytes:
+        tree, inner = self._inner(path)
+        return tree.read(inner, limit)
+
+    def read_with_id(self, path: str, limit: int = 0) -> tuple[bytes, str]:
+        tree, inner = self._inner(path)
+        return tree.read_with_id(inner, limit)
+
+    def exists(self, path: str) -> bool:
+        clean = inside(path)
+        if clean is None:
+            return False
+        if any(within(mount, clean) for mount in self.mounts):
+            return True
+        mount = self._mount(clean)
+        return mount is not None and self._inner(clean)[0].exists(self._inner(clean)[1])
+
+    def is_dir(self, path: str) -> bool:
+        clean = inside(path)
+        if clean is None:
+            return False
+        if any(within(mount, clean) for mount in self.mounts):
+            return True
+        mount = self._mount(clean)
+        return mount is not None and self._inner(clean)[0].is_dir(self._inner(clean)[1])
+
+    def memory_key(self) -> bytes | None:
+        return self.mounts[""].memory_key() if "" in self.mounts else None
+
+    def recall(self, memory: bytes) -> None:
+        if "" in self.mounts:
+            self.mounts[""].recall(memory)
+
+    def memory(self) -> bytes | None:
+        return self.mounts[""].memory() if "" in self.mounts else None
+
+
+def at_merge_bases(tree: Tree, revisions: Mapping[str, str], default: str = "") -> Tree:
+    """The tree as it was at the merge base of each repository's commit and a revision.
+
+    revisions: by the repository's folder relative to the tree. default: of the repositories not named; they are left as
+    they are when it is empty. What lies in no repository is left as it is. Raises TreeError when a named folder is no
+    repository, a revision is not known, or nothing at all is under git.
+    """
+    if isinstance(tree, GitTree):
+        return tree.merge_base(revisions.get("", default))
+    named = {inside(folder): revision for folder, revision in revisions.items()}
+    unknown = sorted(shown(folder or ".") for folder in named if folder is None or folder not in tree.repositories)
+    known = ", ".join(f"`{shown(folder or '.')}`" for folder in sorted(tree.repositories)) or "none"
+    if unknown:
+        raise TreeError(f"`{unknown[0]}` is no git repository of {tree.label}; those it has: {known}")
+    mounts: dict[str, Tree] = {"": tree}
+    failed = []
+    follow = isinstance(tree, WorkingTree) and tree.follow_links
+    for folder, place in tree.repositories.items():
+        revision = named.get(folder, default)
+        if not revision:
+            continue
+        inner = ""
+        if not folder and isinstance(tree, WorkingTree):
+            inner = os.path.relpath(os.path.realpath(tree.root), place)
+        try:
+            mounts[folder] = GitTree(place, "HEAD", inner, follow_links=follow).merge_base(revision)
+        except TreeError as error:
+            failed.append((folder, error))
+    if failed:
+        more = "" if len(tree.repositories) == 1 else "; repositories may differ: --base PATH=REV"
+        raise TreeError(f"{failed[0][1]}{more}")
+    if not tree.repositories:
+        raise TreeError(f"{tree.label} holds no git repository, so there is no base to compare with")
+    return JoinedTree(mounts)

@@ -1,0 +1,185 @@
+"""What every tree answers, and what its answers are made of."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import posixpath
+from collections.abc import Iterable, Iterator
+from functools import cache
+from typing import Protocol
+
+import msgspec
+
+from ...edges.console import UserError
+from ...edges.console import visible as shown
+from ...edges.limits import limits
+
+__all__ = [
+    "IGNORE_MARKERS", "LEAVES", "LONGEST_PATH", "VERSION_CONTROL", "Entry", "PathProblem", "Tree", "TreeError",
+    "Walked", "blob_id", "inside", "join", "largest_file", "outside", "shown", "too_many", "within",
+]  # fmt: skip
+
+IGNORE_MARKERS = frozenset(
+    ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "_setup_util.py", "_order_isolated_packages.py")
+)
+VERSION_CONTROL = frozenset((".git", ".hg", ".svn", ".bzr", ".jj"))
+# What a working copy can hold: Linux opens no longer paths (PATH_MAX).
+LONGEST_PATH = 4096
+LEAVES = "the link leads out of the workspace, not followed; --follow-links follows it"
+
+
+class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A file. path: relative to the tree's root, with slashes, bytes that are no UTF-8 as surrogate escapes. size: in
+    bytes, 0 where a partial clone does not hold the file."""
+
+    path: str
+    size: int
+
+
+class PathProblem(msgspec.Struct, frozen=True, array_like=True, gc=False, order=True):
+    """A path that could not be read, or was left out, and in one clause why."""
+
+    path: str
+    message: str
+
+
+class TreeError(UserError):
+    """There is no tree to read: no such folder, no such repository, no such revision. The text says what to do."""
+
+
+class Tree(Protocol):
+    """What WorkingTree, GitTree and JoinedTree have in common.
+
+    label: what this tree is, for people. name: what its root folder is called. problems: what could not be read.
+    skipped: folders left out on purpose. aliases: folders reached through a link, with the path they lead to.
+    repositories: folders that are the root of a git repository, relative to the tree, with an absolute path for each.
+    """
+
+    label: str
+    name: str
+    problems: list[PathProblem]
+    skipped: list[PathProblem]
+    aliases: dict[str, str]
+
+    @property
+    def repositories(self) -> dict[str, str]: ...
+
+    def entries(self) -> list[Entry]:
+        """Every file, sorted by path."""
+        ...
+
+    def content_id(self, path: str) -> str:
+        """Git's blob id of the file's bytes, 40 hex digits. Raises OSError when it cannot be read."""
+        ...
+
+    def known_id(self, path: str) -> str | None:
+        """The same where it is known without reading the file, else None."""
+        ...
+
+    def read(self, path: str, limit: int = 0) -> bytes:
+        """The file's bytes. limit: how many it may have at most, as many as the largest kind of source may when 0.
+        Raises OSError when it cannot be read, with EFBIG when it is larger."""
+        ...
+
+    def read_with_id(self, path: str, limit: int = 0) -> tuple[bytes, str]:
+        """The file's bytes and their id, which fit together even while somebody edits the file."""
+        ...
+
+    def exists(self, path: str) -> bool:
+        """True for files and folders, skipped ones included; False for what is reached through links that leave the
+        tree."""
+        ...
+
+    def is_dir(self, path: str) -> bool:
+        """True for folders, skipped ones included, as exists()."""
+        ...
+
+    def memory_key(self) -> bytes | None:
+        """A name under which `memory` may be kept until the next run; None when there is nothing to keep."""
+        ...
+
+    def recall(self, memory: bytes) -> None:
+        """Takes over what an earlier run knew; anything that does not fit is dropped."""
+        ...
+
+    def memory(self) -> bytes | None:
+        """What the next run would like to know; None when it would be the same as what was recalled."""
+        ...
+
+
+def blob_id(data: bytes) -> str:
+    """Git's id for these bytes as a blob (SHA-1 object format)."""
+    return hashlib.sha1(b"blob %d\0" % len(data) + data, usedforsecurity=False).hexdigest()
+
+
+def inside(path: str) -> str | None:
+    """The path in its shortest form, `` for the root; None when it leads out of the tree."""
+    if not path or path == ".":
+        return ""
+    if path[0] == "/" or "\0" in path:
+        return None
+    path = posixpath.normpath(path)
+    if path == ".." or path.startswith("../"):
+        return None
+    return "" if path == "." else path
+
+
+def join(folder: str, name: str) -> str:
+    return f"{folder}/{name}" if folder else name
+
+
+def within(path: str, folder: str) -> bool:
+    """True when path is the folder or lies below it (both absolute, or both relative to one root)."""
+    return path == folder or not folder or path.startswith(folder if folder.endswith("/") else folder + "/")
+
+
+def outside(path: str) -> OSError:
+    """The error for a path that leads out of the tree."""
+    return FileNotFoundError(errno.ENOENT, "outside of the tree", path)
+
+
+def too_many(what: str, number: int) -> str:
+    """The problem of a tree that holds too much of something."""
+    return f"more than {number:,} {what}, the rest is left out"
+
+
+@cache
+def largest_file() -> int:
+    """Bytes that a file of a workspace may have at most, whatever kind it is of."""
+    known = limits()
+    return max(
+        known.manifest, known.cmake, known.interface, known.cpp, known.python, known.launch, known.parameters,
+        known.script, known.settings, known.text,
+    )  # fmt: skip
+
+
+def _name_problems(entries: Iterable[Entry]) -> Iterator[PathProblem]:
+    for entry in entries:
+        if not entry.path.isascii():
+            try:
+                entry.path.encode("utf-8")
+            except UnicodeEncodeError:
+                yield PathProblem(entry.path, "the name is not valid UTF-8")
+
+
+class Walked:
+    """A tree that is walked once, when its entries are first asked for."""
+
+    problems: list[PathProblem]
+    skipped: list[PathProblem]
+    _entries: list[Entry] | None
+
+    def _walk(self, found: list[Entry]) -> None:
+        raise NotImplementedError
+
+    def entries(self) -> list[Entry]:
+        if self._entries is None:
+            found: list[Entry] = []
+            self._walk(found)
+            found.sort(key=lambda entry: entry.path)
+            self._entries = found
+            self.problems.extend(_name_problems(found))
+            self.problems.sort()
+            self.skipped.sort()
+        return self._entries

@@ -1,0 +1,370 @@
+"""A directory as it stands."""
+
+from __future__ import annotations
+
+import os
+import stat
+import time
+from array import array
+from itertools import islice
+
+import msgspec
+
+from ...edges import files
+from ...edges.limits import limits
+from .ignore import Index, enclosing_repository
+from .paths import (
+    IGNORE_MARKERS,
+    LEAVES,
+    VERSION_CONTROL,
+    Entry,
+    PathProblem,
+    TreeError,
+    Walked,
+    blob_id,
+    inside,
+    join,
+    largest_file,
+    outside,
+    shown,
+    too_many,
+    within,
+)
+
+PRODUCTS = frozenset(("build", "install", "devel", "log"))
+# A file whose time stamp is this close to the moment it was read may change once more without its time stamp showing
+# it (FAT keeps two seconds), so its id is not remembered. Git calls such entries racy.
+RACY_NS = 2_000_000_000
+LINKED_FILES_AT_MOST = 20_000
+# Characters of all paths together, for each file that a tree may hold: deep folders make long paths.
+_CHARACTERS = 100
+_INDEX_FORMAT = 1
+
+
+class WorkingTree(Walked):
+    """A directory as it stands, uncommitted and untracked files included.
+
+    root: a folder, or a link to one; raises TreeError when it is none. follow_links: also follow links that leave the
+    folder, and read what they lead to. Nothing is read before entries() or another question is asked.
+    """
+
+    def __init__(self, root: str | os.PathLike[str], *, follow_links: bool = False):
+        self.root = os.path.abspath(os.fsdecode(root))
+        if not os.path.isdir(self.root):
+            what = "is a file, not a folder" if os.path.exists(self.root) else "does not exist"
+            raise TreeError(f"`{shown(self.root)}` {what}; give the folder of a workspace or a package")
+        self.name = os.path.basename(self.root)
+        self.label = shown(self.name or self.root)
+        self.follow_links = follow_links
+        self.problems: list[PathProblem] = []
+        self.skipped: list[PathProblem] = []
+        self.aliases: dict[str, str] = {}
+        self._real_root = os.path.realpath(self.root)
+        self._device = os.stat(self.root).st_dev
+        self._entries: list[Entry] | None = None
+        self._repositories: dict[str, str] = {}
+        self._folders: set[str] = set()
+        self._stats: dict[str, tuple[int, int, int, int]] = {}
+        self._devices: dict[str, int] = {}
+        self._left = limits().entries
+        self._characters_left = limits().entries * _CHARACTERS
+        self._ids: dict[str, str] = {}
+        self._remembered: dict[str, tuple[tuple[int, int, int, int], str]] = {}
+        self._fresh = False
+        self._indexes: dict[str, Index | None] = {}
+
+    @property
+    def repositories(self) -> dict[str, str]:
+        self.entries()
+        return self._repositories
+
+    def _walk(self, found: list[Entry]) -> None:
+        real_root = self._real_root
+        enclosing = enclosing_repository(real_root)
+        if enclosing and enclosing != real_root:
+            self._repositories[""] = enclosing
+        links: list[tuple[str, str, tuple[str, ...]]] = []
+        # (folder relative to the root, its real path, the repository that governs it)
+        stack = [("", real_root, enclosing)]
+        while stack and self._left > 0:
+            folder, real, repository = stack.pop()
+            self._folder(folder, real, repository, (), stack, links, found)
+        followed: set[str] = set()
+        visited: set[str] = set()
+        for link, target, parents in links:  # grows while links lead to further links
+            if any(within(parent, target) for parent in parents):
+                self.problems.append(PathProblem(link, "the link leads to one of its own parent folders, not followed"))
+                continue
+            if target in followed:
+                self.skipped.append(PathProblem(link, "another link to the same folder was followed"))
+                continue
+            followed.add(target)
+            in_tree = within(target, real_root)
+            self.aliases[link] = os.path.relpath(target, real_root) if in_tree else target
+            stack = [(link, target, enclosing_repository(target))]
+            limit = len(found) + LINKED_FILES_AT_MOST
+            while stack and self._left > 0:
+                folder, real, repository = stack.pop()
+                if real in visited:
+                    continue
+                visited.add(real)
+                if not in_tree and len(found) > limit:
+                    message = f"the link leads to more than {LINKED_FILES_AT_MOST} files, the rest is left out"
+                    self.problems.append(PathProblem(link, message))
+                    break
+                self._folder(folder, real, repository, parents, stack, links, found)
+
+    def _folder(
+        self,
+        folder: str,
+        real: str,
+        repository: str | None,
+        parents: tuple[str, ...],
+        stack: list[tuple[str, str, str | None]],
+        links: list[tuple[str, str, tuple[str, ...]]],
+        found: list[Entry],
+    ) -> None:
+        """Lists one folder: files go to found, folders onto the stack, links to folders into links."""
+        try:
+            with os.scandir(os.path.join(self.root, folder)) as scan:
+                items = list(islice(scan, self._left + 1))
+        except OSError as error:
+            self.problems.append(PathProblem(folder or ".", f"the folder cannot be listed: {_reason(error)}"))
+            return
+        names = {item.name for item in items}
+        if not IGNORE_MARKERS.isdisjoint(names):
+            marker = min(IGNORE_MARKERS & names)
+            self.skipped.append(PathProblem(folder or ".", f"holds {marker}"))
+            return
+        self._count(folder, len(items))
+        if ".git" in names:
+            repository = real
+            self._repositories[folder] = real
+        self._folders.add(folder)
+        prefix = folder + "/" if folder else ""
+        device = self._device
+        for item in items:
+            name = item.name
+            path = prefix + name
+            try:
+                if item.is_dir(follow_symlinks=False):
+                    why = self._untracked(name, path, os.path.join(real, name), repository)
+                    if why:
+                        self.skipped.append(PathProblem(path, why))
+                    elif name not in VERSION_CONTROL:
+                        stack.append((path, os.path.join(real, name), repository))
+                    continue
+                if name in VERSION_CONTROL:
+                    continue
+                target = ""
+                if item.is_symlink():
+                    target = os.path.realpath(os.path.join(self.root, path))
+                    why = self._refused(target)
+                    if why:
+                        self.problems.append(PathProblem(path, why))
+                        continue
+                    status = os.stat(os.path.join(self.root, path))
+                else:
+                    status = item.stat(follow_symlinks=False)
+            except OSError as error:
+                self.problems.append(PathProblem(path, self._why_unreadable(path, error)))
+                continue
+            if stat.S_ISREG(status.st_mode):
+                found.append(Entry(path, status.st_size))
+                self._stats[path] = _stamp(status)
+                if status.st_dev != device:
+                    self._devices[path] = status.st_dev
+            elif stat.S_ISDIR(status.st_mode):
+                links.append((path, target or os.path.realpath(os.path.join(self.root, path)), (*parents, real)))
+            else:
+                self.problems.append(PathProblem(path, "neither a file nor a folder"))
+        if ".gitmodules" in names:
+            self._submodules(folder)
+
+    def _count(self, folder: str, items: int) -> None:
+        """Takes what a folder holds from what the tree may hold; names the folder where that is used up."""
+        number = limits().entries
+        if items > self._left:
+            self.problems.append(PathProblem(folder or ".", too_many("files and folders", number)))
+        self._left -= items
+        self._characters_left -= items * len(folder)
+        if self._characters_left < 0 < self._left:
+            message = f"the paths have {number * _CHARACTERS:,} characters in all, the rest is left out"
+            self.problems.append(PathProblem(folder or ".", message))
+            self._left = 0
+
+    def _refused(self, real: str) -> str:
+        """Why what has this real path is not read, or an empty string."""
+        if not within(real, self._real_root):
+            return "" if self.follow_links else LEAVES
+        parts = real[len(self._real_root) :].split("/")
+        closed = next((part for part in parts if part in VERSION_CONTROL), "")
+        return f"the link leads into `{closed}`, which is not read" if closed else ""
+
+    def _why_unreadable(self, path: str, error: OSError) -> str:
+        try:
+            target = os.readlink(os.path.join(self.root, path))
+        except OSError:
+            return f"cannot be read: {_reason(error)}"
+        return f"the link to `{shown(target)}` is broken: {_reason(error)}"
+
+    def _untracked(self, name: str, path: str, real: str, repository: str | None) -> str:
+        """Why a folder is left out, or an empty string."""
+        if name in VERSION_CONTROL or repository is None:
+            return ""
+        if path in PRODUCTS:
+            why = "looks like a product of the build, and git tracks nothing in it"
+        elif name[0] == "." and name != ".github":
+            why = "hidden, and git tracks nothing in it"
+        elif name == "node_modules" or (name.endswith(("env", "ENV")) and os.path.lexists(f"{real}/pyvenv.cfg")):
+            why = "holds installed packages, and git tracks nothing in it"
+        else:
+            return ""
+        if os.path.lexists(os.path.join(real, ".git")):
+            return ""
+        if repository not in self._indexes:
+            self._indexes[repository] = Index.of(repository)
+        index = self._indexes[repository]
+        inner = os.path.relpath(real, repository).replace(os.sep, "/")
+        return "" if index is None or index.tracks_below(inner) else why
+
+    def _submodules(self, folder: str) -> None:
+        """Names the submodules of a repository that are not checked out."""
+        try:
+            text = self.read(join(folder, ".gitmodules"), limits().settings)
+        except OSError:
+            return
+        for line in text.splitlines():
+            key, _, value = line.partition(b"=")
+            if key.strip() != b"path":
+                continue
+            path = inside(join(folder, value.strip().strip(b'"').decode("utf-8", "surrogateescape")))
+            if path and not self._holds_something(path):
+                self.problems.append(PathProblem(path, "submodule that is not checked out"))
+
+    def _holds_something(self, path: str) -> bool:
+        try:
+            with os.scandir(self._contained(path)) as scan:
+                return next(scan, None) is not None
+        except OSError:
+            return False
+
+    def known_id(self, path: str) -> str | None:
+        known = self._ids.get(path)
+        if known is None:
+            remembered = self._remembered.get(path)
+            if remembered is not None and remembered[0] == self._stats.get(path):
+                known = self._ids[path] = remembered[1]
+        return known
+
+    def content_id(self, path: str) -> str:
+        return self.known_id(path) or self.read_with_id(path)[1]
+
+    def read(self, path: str, limit: int = 0) -> bytes:
+        return self._read(path, limit)[0]
+
+    def read_with_id(self, path: str, limit: int = 0) -> tuple[bytes, str]:
+        data, status = self._read(path, limit)
+        content = blob_id(data)
+        self._ids[path] = content
+        stamp = _stamp(status)
+        self._stats[path] = stamp
+        if max(status.st_mtime_ns, status.st_ctime_ns) < time.time_ns() - RACY_NS and status.st_size == len(data):
+            self._remembered[path] = (stamp, content)
+            self._fresh = True
+        elif self._remembered.pop(path, None):
+            self._fresh = True
+        return data, content
+
+    def _read(self, path: str, limit: int) -> tuple[bytes, os.stat_result]:
+        """A regular file's bytes and status. What the walk found is read as it stands where it is still the same file;
+        anything else must really lie where it may be read."""
+        walked = self._stats.get(path)
+        place = os.path.join(self.root, path) if walked is not None else self._contained(path)
+        data, status = files.read_with_status(place, limit or largest_file())
+        if walked is not None and (
+            walked[2] != _stamp(status)[2] or status.st_dev != self._devices.get(path, self._device)
+        ):
+            self._contained(path)
+            self._devices[path] = status.st_dev
+        return data, status
+
+    def _contained(self, path: str) -> str:
+        """The absolute path of what may be read. Raises OSError for what really lies outside of the tree."""
+        clean = inside(path)
+        if clean is None:
+            raise outside(path)
+        real = os.path.realpath(os.path.join(self.root, clean))
+        if self._refused(real):
+            raise outside(path)
+        return real
+
+    def exists(self, path: str) -> bool:
+        if path in self._stats or path in self._folders:
+            return True
+        real = self._real(path)
+        return real is not None and os.path.exists(real)
+
+    def is_dir(self, path: str) -> bool:
+        if path in self._stats:
+            return False
+        if path in self._folders:
+            return True
+        real = self._real(path)
+        return real is not None and os.path.isdir(real)
+
+    def _real(self, path: str) -> str | None:
+        """The real path of what may be asked about; None for what lies outside."""
+        clean = inside(path)
+        if clean is None:
+            return None
+        real = os.path.realpath(os.path.join(self.root, clean))
+        return real if self.follow_links or within(real, self._real_root) else None
+
+    def memory_key(self) -> bytes | None:
+        return self.root.encode("utf-8", "surrogateescape")
+
+    def recall(self, memory: bytes) -> None:
+        self._remembered = _decode_memory(memory)
+
+    def memory(self) -> bytes | None:
+        stale = len(self._remembered) > 2 * len(self._stats) + 100
+        if not self._fresh and not stale:
+            return None
+        stats = self._stats
+        return _encode_memory({path: kept for path, kept in self._remembered.items() if path in stats})
+
+
+def _stamp(status: os.stat_result) -> tuple[int, int, int, int]:
+    return (status.st_size, status.st_mtime_ns, status.st_ino & 0x7FFFFFFFFFFFFFFF, status.st_ctime_ns)
+
+
+def _reason(error: OSError) -> str:
+    return (error.strerror or type(error).__name__).lower()
+
+
+def _encode_memory(remembered: dict[str, tuple[tuple[int, int, int, int], str]]) -> bytes:
+    stamps = array("q")
+    for stamp, _ in remembered.values():
+        stamps.extend(stamp)
+    paths = "\0".join(remembered).encode("utf-8", "surrogateescape")
+    ids = bytes.fromhex("".join(content for _, content in remembered.values()))
+    return msgspec.msgpack.encode((_INDEX_FORMAT, paths, stamps.tobytes(), ids))
+
+
+def _decode_memory(memory: bytes) -> dict[str, tuple[tuple[int, int, int, int], str]]:
+    try:
+        version, paths, packed, ids = msgspec.msgpack.decode(memory, type=tuple[int, bytes, bytes, bytes])
+        stamps = array("q")
+        stamps.frombytes(packed)
+    except (msgspec.MsgspecError, ValueError):
+        return {}
+    names = paths.decode("utf-8", "surrogateescape").split("\0") if paths else []
+    if version != _INDEX_FORMAT or len(stamps) != 4 * len(names) or len(ids) != 20 * len(names):
+        return {}
+    digits = ids.hex()
+    four = iter(stamps)
+    rows = zip(four, four, four, four, strict=True)
+    return {
+        name: (stamp, digits[40 * at : 40 * at + 40]) for at, (name, stamp) in enumerate(zip(names, rows, strict=True))
+    }
