@@ -891,7 +891,12 @@ def rows() -> list[Attack]:
         found.append(Attack(f"library that loops: {kind}", GROUP, {"install/bad/lib/libbad.so": elf(kind)}, install))
     found += [
         Attack(
-            "library of 3 GB", GROUP, sparse("install/bad/lib/libbad.so", 3_000_000_000, elf("itself")[:200]), install
+            "library of 3 GB",
+            GROUP,
+            sparse("install/bad/lib/libbad.so", 3_000_000_000, elf("itself")[:200]),
+            install,
+            (0, 1, 2),
+            found="",
         ),
         Attack("C++: 60 MB", GROUP, large("src/bad/src/n.cpp", b"int a;\n", 8_600_000), CHECK),
         Attack("a manifest of 100 MB", GROUP, large("src/bad/package.xml", b"<package>  ", 9_000_000), CHECK),
