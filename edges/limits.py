@@ -53,6 +53,7 @@ class Limits:
     entries: int = 2_000_000  # files and folders of one tree
     depth: int = 200  # folders, or nested nodes of a document
     nodes: int = 200_000  # of one YAML document, aliases expanded
+    items: int = 20_000  # of one sort that one file lists: includes, imports, dependencies, commands
     seconds: int = 3  # of processor time that the extraction of one file may take, and as many more for each MB
     memory: int = 768 * MB  # that extraction may need beyond what the process has
 

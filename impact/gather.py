@@ -101,7 +101,7 @@ class Gathered:
             except (ValueError, msgspec.MsgspecError):
                 pass
         # The store lost it, or holds something else under its name: the file is still there.
-        data, content = self.tree.read_with_id(path)
+        data, content = self.tree.read_with_id(path, _largest(key[1]))
         ((_, ((_, kind, made, failure),)),) = _extracted(iter([[(path, content, (key[1],), data)]]), 1)
         if failure:
             return kinds.FileFacts(kind, kinds.empty(kind, Problem(1, failure)))
@@ -251,10 +251,10 @@ def _chunks(
         items: list[tuple[str, str, dict[str, bytes], bytes]] = []
         for expected, path, those in batch:
             try:
-                data, content = gathered.tree.read_with_id(path)
+                data, content = gathered.tree.read_with_id(path, max(map(_largest, those)))
             except OSError as error:
-                reason = (error.strerror or type(error).__name__).lower()
-                _unreadable(looks, path, f"cannot be read: {reason}")
+                reason = error.strerror or type(error).__name__
+                _unreadable(looks, path, f"cannot be read: {reason[:1].lower()}{reason[1:]}")
                 advance(expected)
                 continue
             if data.startswith(_LFS_POINTER):

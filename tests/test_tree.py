@@ -534,3 +534,108 @@ def test_paths_as_they_are_printed(path, text):
 )  # fmt: skip
 def test_inside(path, expected):
     assert inside(path) == expected
+
+
+# what a link leads to, words of the problem that names it
+LEAVING = {
+    "a file": ("../secret", "--follow-links"),
+    "a folder": ("..", "--follow-links"),
+    "nothing": ("../nowhere", "--follow-links"),
+    "a device": ("/dev/zero", "--follow-links"),
+    "a process's environment": ("/proc/self/environ", "--follow-links"),
+    "a database of version control": (".git/config", "`.git`, which is not read"),
+}
+
+
+@pytest.mark.parametrize(("target", "words"), LEAVING.values(), ids=LEAVING)
+def test_links_out_of_the_tree_are_named_and_not_followed(tmp_path, target, words):
+    write(tmp_path, {"secret": "key", "ws/.git/config": "token", "ws/link": "->" + target, "ws/x": ""})
+    tree = WorkingTree(tmp_path / "ws")
+    assert paths(tree) == ["x"]
+    assert [problem.path for problem in tree.problems] == ["link"] and words in tree.problems[0].message
+    with pytest.raises(OSError):
+        tree.read("link")
+    if words == "--follow-links":
+        assert not tree.exists("link") and not tree.is_dir("link") and not tree.exists("link/secret")
+
+
+def test_links_out_of_the_tree_are_followed_when_asked_for(tmp_path):
+    write(tmp_path, {"secret": "key", "lib/a.h": "", "ws/link": "->../secret", "ws/lib": "->../lib"})
+    tree = WorkingTree(tmp_path / "ws", follow_links=True)
+    assert paths(tree) == ["lib/a.h", "link"] and tree.read("link") == b"key"
+
+
+def test_links_out_of_a_folder_of_a_revision(tmp_path):
+    commit(write(tmp_path, {"shared/a.h": "", "ws/l": "->../shared", "ws/x": ""}))
+    assert paths(GitTree(tmp_path, "HEAD", "ws")) == ["x"]
+    assert paths(GitTree(tmp_path, "HEAD", "ws", follow_links=True)) == ["l/a.h", "x"]
+
+
+def test_a_root_that_is_a_link_is_read(tmp_path):
+    write(tmp_path, {"real/a": "1", "ws": "->real"})
+    tree = WorkingTree(tmp_path / "ws")
+    assert paths(tree) == ["a"] and tree.read("a") == b"1"
+
+
+def test_a_file_that_became_a_link_out_of_the_tree_is_not_read(tmp_path):
+    write(tmp_path, {"secret": "key", "ws/a": "1"})
+    tree = WorkingTree(tmp_path / "ws")
+    tree.entries()
+    os.remove(tmp_path / "ws/a")
+    os.symlink("../secret", tmp_path / "ws/a")
+    with pytest.raises(OSError, match="outside"):
+        tree.read("a")
+
+
+def test_files_over_a_limit_are_not_read(tmp_path):
+    git = GitTree(tmp_path, commit(write(tmp_path, {"a": "12345"})))
+    for tree in (WorkingTree(tmp_path), git):
+        assert tree.read("a", 5) == b"12345"
+        with pytest.raises(OSError, match="larger than 4 bytes"):
+            tree.read("a", 4)
+
+
+@pytest.mark.parametrize("spoil", [lambda data: data[: len(data) // 2], lambda data: b"", lambda data: b"x" * 99])
+def test_a_damaged_object_costs_its_file_alone(tmp_path, spoil):
+    commit(write(tmp_path, {"a": "0123456789abcdefghij", "b": "2"}))
+    oid = blob_id(b"0123456789abcdefghij")
+    place = tmp_path / ".git/objects" / oid[:2] / oid[2:]
+    place.chmod(0o644)
+    place.write_bytes(spoil(place.read_bytes()))
+    tree = GitTree(tmp_path)
+    assert paths(tree) == ["a", "b"] and tree.read("b") == b"2"
+    with pytest.raises(OSError):
+        tree.read("a")
+
+
+@pytest.mark.parametrize("name", ["HEAD", "config", "packed-refs", "refs/heads/x", "objects/ab/cd", "shallow"])
+def test_a_pipe_in_a_repository_is_named(tmp_path, name):
+    commit(write(tmp_path, {"a": ""}))
+    place = tmp_path / ".git" / name
+    place.parent.mkdir(exist_ok=True)
+    place.unlink(missing_ok=True)
+    os.mkfifo(place)
+    with pytest.raises(TreeError, match="not a regular file"):
+        GitTree(tmp_path)
+    assert paths(WorkingTree(tmp_path)) == ["a"]
+
+
+def test_a_folder_that_stands_everywhere_is_cut_off(tmp_path):
+    repo = pygit2.Repository(pygit2.init_repository(str(tmp_path), initial_head="main").path)
+    item, mode = repo.create_blob(b"x"), pygit2.enums.FileMode.BLOB
+    for _ in range(8):
+        builder = repo.TreeBuilder()
+        for number in range(10):
+            builder.insert(str(number), item, mode)
+        item, mode = builder.write(), pygit2.enums.FileMode.TREE
+    who = pygit2.Signature("t", "t@example.org", 1_600_000_000, 0)
+    repo.create_commit("HEAD", who, who, "many", item, [])
+    tree = GitTree(tmp_path)
+    assert len(tree.entries()) <= 100_000
+    assert all("the same folder stands at more than" in problem.message for problem in tree.problems)
+
+
+def test_a_folder_is_no_base(tmp_path):
+    commit(write(tmp_path, {"src/a": "1"}))
+    with pytest.raises(TreeError, match="without a commit"):
+        GitTree(tmp_path).merge_base("HEAD:src")

@@ -80,7 +80,8 @@ PACKAGE = Offer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
         ),
         (
             [answer("package", PACKAGE, used=("a/b.cpp:1",), undeclared=("a",), changes=("c",))],
-            "on jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\n  c\nused at 1 place:\n  a/b.cpp:1\n"
+            "on jazzy: `x` as package\n  package cv_bridge  4.1.0  since 2024-04-19\n  c\n"
+            "used at 1 place:\n  a/b.cpp:1\n"
             "not safe: used and not declared in a",
         ),
         (
@@ -93,3 +94,14 @@ PACKAGE = Offer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
 )
 def test_answers_as_text(found, expected):
     assert as_text("x", found) == expected
+
+
+def test_what_is_recognised_as_a_workspace(tmp_path, monkeypatch):
+    from rosimpact.impact.why import is_workspace
+
+    assert not is_workspace(tmp_path)
+    (tmp_path / "src/a/b").mkdir(parents=True)
+    (tmp_path / "src/a/b/package.xml").touch()
+    assert is_workspace(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert not is_workspace(tmp_path), "all of a home folder would be read"

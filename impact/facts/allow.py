@@ -9,7 +9,7 @@ from .place import Allow
 MARK = b"rosimpact:"
 # `#` and `//` open a comment that the line's end closes; `<!--` and `/*` are closed by what follows the parenthesis.
 COMMENT = re.compile(
-    rb"^(?P<before>.*?)(?:#|//|<!--|/\*|%|;|--)\s*rosimpact:\s*allow\(\s*(?P<rules>[A-Za-z0-9_\-*,\s]*?)\s*\)"
+    rb"^(?P<before>.*?)(?:#|//|<!--|/\*|%|;|--)\s*rosimpact:\s*allow\((?P<rules>[A-Za-z0-9_\-*,\s]*)\)"
 )
 NAME = re.compile(rb"[A-Za-z0-9_*-]+")
 

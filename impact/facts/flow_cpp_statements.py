@@ -146,7 +146,7 @@ class Statements(Declarations):
         headed: Node | None = None
         jumped: Node | None = None
         regions = self.regions
-        for child in children:
+        for place, child in enumerate(children):
             number = child.kind_id
             if number == COMMENT:
                 continue
@@ -159,7 +159,7 @@ class Statements(Declarations):
                 self.statement(child, outer)
                 continue
             if number == EXPRESSION_STATEMENT and child.child_count == 2 and child.children[1].is_missing:
-                if self.heads(child, children):
+                if self.heads(child, children[place + 1 : place + 20]):
                     headed = child.children[0]
                     self.value(headed, guard)
                     continue

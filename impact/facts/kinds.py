@@ -213,13 +213,32 @@ def _facts(kind: str, data: bytes) -> Any:
             # is then merely not known.
             old = {"problems": (), "unresolved": ("written for Python 2",)} if python.python2_only else {}
             facts = msgspec.structs.replace(facts, python=python, **old)
-        return facts
+        return _within_limits(facts)
     except MemoryError:
         raise
     except RecursionError:
         return empty(kind, Problem(1, "nested too deeply to be read"))
     except Exception as error:  # one file must not end the run: what broke is named with it
         return empty(kind, Problem(1, f"cannot be read: {type(error).__name__}: {error}"[:200]))
+
+
+# Sets of names, which are looked up and not gone through.
+_LOOKED_UP = frozenset(("words", "qualified", "mentioned"))
+
+
+def _within_limits(facts: Any) -> Any:
+    """The same facts; lists that are longer than any person or generator writes are cut, which is a problem."""
+    most = limits().items
+    cut: dict[str, Any] = {}
+    for field in type(facts).__struct_fields__:
+        value = getattr(facts, field)
+        if type(value) is tuple and len(value) > most and field not in _LOOKED_UP:
+            cut[field] = value[:most]
+    if not cut:
+        return facts
+    named = ", ".join(sorted(field.replace("_", " ") for field in cut))
+    problems = (Problem(1, f"lists more than {most:,} {named}; the rest was not read"), *facts.problems)
+    return msgspec.structs.replace(facts, **{**cut, "problems": problems[:most]})
 
 
 def empty(kind: str, *problems: Problem) -> Any:

@@ -327,7 +327,9 @@ def _tolerated(data: bytes, problems: tuple[Problem, ...]) -> tuple[Problem, ...
     comments, several roots, `<` in values, a misspelt or late XML declaration."""
     if not problems:
         return ()
-    blanked = COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), data)
+    # What stands behind the last comment that is closed need not be looked through for each that is opened there.
+    closed = data.rfind(b"-->") + 3 if b"-->" in data else 0
+    blanked = COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), data[:closed]) + data[closed:]
     if "declaration" in problems[0].message:
         blanked = DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), blanked, count=1)
     blanked = VALUE.sub(lambda m: m.group().replace(b"<", b"&lt;"), blanked)

@@ -18,13 +18,14 @@ TOKEN = re.compile(
     r"|<!\[CDATA\[(?P<cdata>.*?)(?:\]\]>|\Z)"
     r"|<\?.*?(?:\?>|\Z)"
     r"|<!DOCTYPE[^<>\[]*(?:\[.*?(?:\]\s*>|\Z)|>)"
-    r"|<(?P<close>/?)(?P<name>[A-Za-z_][\w:.-]*)"
+    r"|<(?P<close>/?)(?P<name>[A-Za-z_][\w:.-]*)(?![\w:.-])"
     # XML allows no `<` in a value; some readers do (`type="a::B<c::D>"`), so one may stand there within a line
     r"(?P<rest>[^<>\"']*(?:(?:\"(?:[^\"<]*|[^\"<\n]{0,400}<[^\"\n]{0,400})\""
     r"|'(?:[^'<]*|[^'<\n]{0,400}<[^'\n]{0,400})')[^<>\"']*)*)>",
     re.DOTALL,
 )
-ATTRIBUTE = re.compile(r"([A-Za-z_][\w:.-]*)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+# A name is looked for once, from where it begins on.
+ATTRIBUTE = re.compile(r"(?<![\w:.-])(?:(?![A-Za-z_])[\w:.-])*([A-Za-z_][\w:.-]*)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 DECLARED_ENCODING = re.compile(rb"^\s*<\?xml[^>]{0,200}?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']")
 ENTITY = re.compile(r"&(#[0-9]{1,7}|#[xX][0-9a-fA-F]{1,6}|lt|gt|amp|quot|apos);")
 PREDEFINED = {"lt": "<", "gt": ">", "amp": "&", "quot": '"', "apos": "'"}

@@ -74,14 +74,17 @@ _CALL = re.compile(r"\b(declare\w*_parameters?(?:_\w+)?)\s*(?:<[^;(){}]*>)?\s*\(
 _NAME = re.compile(r'\s*(?:std::string\s*\(\s*)?"([\w./]+)"\s*\)?\s*\Z')
 _LAST_NAME = re.compile(r'[\s\S]*[\w)]\s*\+\s*"\.?([\w./]+)"\s*\Z')
 _PAIR = re.compile(r'\{\s*"([\w./]+)"\s*,([^{}]*|[^{}]*\{[^{}]*\}[^{}]*)\}')
-_WRAPPED = re.compile(r"(?:(?:rclcpp::)?ParameterValue|std::string)\s*[({]\s*(.*?)\s*[)}]\Z", re.DOTALL)
+_WRAPPED = re.compile(r"(?:(?:rclcpp::)?ParameterValue|std::string)\s*[({](.*)[)}]\Z", re.DOTALL)
 _VALUE = r'(?:[-+]?[\d.][\w.+\'-]*|true|false|"(?:[^"\\\n]|\\.)*")'
 _VECTOR = re.compile(r"\Astd::vector<[\w:]+>\s*(?=\{)")
-_PLAIN = re.compile(rf"{_VALUE}\Z|\{{(?:\s*{_VALUE}\s*,?)*\}}\Z")
+# Something stands between two values, so that a row of digits can be parted in one way only.
+_PLAIN = re.compile(rf"{_VALUE}\Z|\{{\s*(?:{_VALUE}(?:\s*,\s*|\s+|(?=[\"}}])))*\}}\Z")
 _NO_DEFAULT = re.compile(
     r"(?:rclcpp::)?(?:ParameterType::)?PARAMETER_\w+\Z|rcl_interfaces::|(?:\w+_)?desc(?:riptor)?\w*\Z"
 )
 _SHOWN = 60
+# No default value that anybody compares is longer.
+_LONGEST = 10_000
 
 
 def _in_cpp(data: bytes) -> Iterator[Declared]:
@@ -107,8 +110,10 @@ def _in_cpp(data: bytes) -> Iterator[Declared]:
 
 def _cpp_value(text: str) -> str | None:
     value = " ".join(text.split())
+    if len(value) > _LONGEST:
+        return "?"
     while (wrapped := _WRAPPED.match(value)) is not None:
-        value = wrapped[1]
+        value = wrapped[1].strip()
     if not value or _NO_DEFAULT.match(value):
         return None
     value = _VECTOR.sub("", value.replace("'", ""))

@@ -52,7 +52,8 @@ _COOKIE = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 _SHEBANG = re.compile(r"#!.*python")
 _IMPORT_LINE = re.compile(
     r"^(?P<indent>[ \t]*)(?:import[ \t]+(?P<modules>[\w., \t]+)"
-    r"|from[ \t]+(?P<dots>\.*)[ \t]*(?P<module>[\w.]*)[ \t]+import[ \t]*(?P<names>\([^()]*\)|[\w.*, \t]+))",
+    r"|from[ \t]+(?![ \t])(?P<dots>\.*)(?!\.)(?:[ \t]*(?P<module>[\w.]+))?[ \t]+import[ \t]*"
+    r"(?P<names>\([^()]*\)|[\w.*, \t]+))",
     re.MULTILINE,
 )
 
@@ -187,7 +188,7 @@ def _imports_by_line(text: str) -> tuple[Import, ...]:
             names = [part.split() for part in match.group("names").strip("()").split(",")]
             imports.append(
                 Import(
-                    match.group("module"),
+                    match.group("module") or "",
                     tuple(words[0] for words in names if words),
                     len(match.group("dots")),
                     line,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ast
 import re
-import sys
 import warnings
 from collections.abc import Iterable
 from typing import Any
 
 import msgspec
 
+from ...edges.documents import DocumentError, load_toml
 from .markup import decode
 from .place import Problem
 from .python import PythonFile
@@ -70,7 +70,7 @@ class _Unresolved:
 
 
 REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)")
-ENTRY_POINT = re.compile(r"\s*([^=\s][^=]*?)\s*=\s*([\w.]+)\s*(?::[\w.]+)?\s*(?:\[.*\])?\s*\Z")
+ENTRY_POINT = re.compile(r"\s*([^=\s][^=]*)=\s*([\w.]+)(?:\s*:[\w.]+)?(?:\s*\[.*\])?\s*\Z")
 SETUP_CALLS = frozenset({"setup", "generate_distutils_setup"})
 JOINS = frozenset({"os.path.join", "path.join", "join", "posixpath.join", "osp.join"})
 GLOBS = frozenset({"glob", "glob.glob", "iglob", "glob.iglob"})
@@ -276,7 +276,7 @@ class _Reader:
                 if opened is not None:
                     group = opened.group(1)
                 elif group in ("console_scripts", "gui_scripts") and (entry := ENTRY_POINT.match(text)):
-                    found.append((entry[1], entry[2], line + number))
+                    found.append((entry[1].rstrip(), entry[2], line + number))
         elif isinstance(value, dict):
             for group in ("console_scripts", "gui_scripts"):
                 entries = value.get(group, [])
@@ -284,7 +284,7 @@ class _Reader:
                     if isinstance(item, _Unresolved):
                         self.unresolved.append(f"entry_points: {item.what}")
                     elif isinstance(item, str) and (entry := ENTRY_POINT.match(item)):
-                        found.append((entry[1], entry[2], getattr(item, "line", 1)))
+                        found.append((entry[1].rstrip(), entry[2], getattr(item, "line", 1)))
         elif isinstance(value, _Unresolved):
             self.unresolved.append(f"entry_points: {value.what}")
         return found
@@ -371,7 +371,7 @@ def _setup_cfg(data: bytes) -> SetupFile:
     for group in ("console_scripts", "gui_scripts"):
         for entry in entries("options.entry_points", group):
             if (found := ENTRY_POINT.match(entry)) is not None:
-                points.append((found[1], found[2], lines.of(entry)))
+                points.append((found[1].rstrip(), found[2], lines.of(entry)))
     files: list[tuple[str, str, int]] = []
     if parser.has_section("options.data_files"):
         for destination in parser.options("options.data_files"):
@@ -396,19 +396,12 @@ def _setup_cfg(data: bytes) -> SetupFile:
 
 
 def _pyproject(data: bytes) -> SetupFile:
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib  # pyright: ignore[reportMissingImports]
-
     text = decode(data)
     try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        said = str(error)
-        at = re.search(r"at line (\d+)", said)
-        line = int(at.group(1)) if at is not None else text.count("\n") + 1
-        return SetupFile(problems=(Problem(min(line, text.count("\n") + 1), f"not readable as TOML: {said}"),))
+        document = load_toml(text)
+    except DocumentError as error:
+        line = error.line or text.count("\n") + 1
+        return SetupFile(problems=(Problem(min(line, text.count("\n") + 1), f"not readable as TOML: {error}"),))
     lines = _Lines(text)
     project = _table(document, "project")
     setuptools = _table(document, "tool", "setuptools")

@@ -55,7 +55,10 @@ _FAR = 160
 _LONGEST = 4000
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _SPACE = re.compile(r"\s*")
-TEMPLATE_ARGUMENTS = re.compile(r"[\w:,\s*&]*(?:<[\w:,\s*&]*(?:<[\w:,\s*&<>]*>[\w:,\s*&]*)*>[\w:,\s*&]*)*>")
+_TEMPLATE_ARGUMENTS = re.compile(r"[\w:,\s*&]*(?:<[\w:,\s*&]*(?:<[\w:,\s*&<>]*>[\w:,\s*&]*)*>[\w:,\s*&]*)*>")
+_TEMPLATE_TEXT = re.compile(r"[\w:,\s*&<>]*")
+_MOST_BRACKETS = 16
+_LONGEST_TYPES = 2000
 _VARIABLE = re.compile(r"\s+[A-Za-z_]\w*\s*(?=[({])")
 _BEFORE_CALL = re.compile(r"(?:([A-Za-z_]\w*)|(>))\s+(?:[A-Za-z_]\w*\s*::\s*)*\Z")
 _NOT_A_TYPE = frozenset(
@@ -160,6 +163,15 @@ def _in_bytes(expression: str) -> re.Pattern[bytes]:
     return re.compile(expression.encode())
 
 
+def template_arguments(text: str, at: int) -> re.Match[str] | None:
+    """The arguments of a template, from behind its `<` to its `>`; None where they are none, or too many to be read."""
+    end = _TEMPLATE_TEXT.match(text, at, at + _LONGEST_TYPES).end()  # type: ignore[union-attr]
+    while text.count("<", at, end) > _MOST_BRACKETS:
+        # Brackets can be paired in very many ways: only the first are.
+        end = text.rfind("<", at, end)
+    return _TEMPLATE_ARGUMENTS.match(text, at, end)
+
+
 def declares(data: bytes, function: str) -> bool:
     """Whether a C++ file seems to declare or define a function of this name: a type stands before it in its line, or
     at the end of the line before where it begins its own."""
@@ -247,7 +259,7 @@ def _fits(pattern: Pattern, text: str, start: int, end: int) -> str | None:
     at, shown = end, ""
     opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
     if pattern.language == "cpp" and text.startswith("<", opened):
-        types = TEMPLATE_ARGUMENTS.match(text, opened + 1)
+        types = template_arguments(text, opened + 1)
         if types is not None:
             if pattern.template is not None and not _compiled(pattern.template).fullmatch(types.group()[:-1].strip()):
                 return None
@@ -338,7 +350,7 @@ def argument_spans(text: str, at: int) -> tuple[list[tuple[int, int]], int] | No
                     given.append((begins, place))
                 return given, position
         elif character == "<":
-            types = TEMPLATE_ARGUMENTS.match(text, position)
+            types = template_arguments(text, position)
             if types is not None and text[types.end() : types.end() + 1] in ("(", "{", ":", ",", ")", ">"):
                 position = types.end()
         elif len(depth) == 1:

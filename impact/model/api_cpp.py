@@ -14,7 +14,7 @@ from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from ..facts.cpp import standing
-from ..facts.usage import TEMPLATE_ARGUMENTS, arguments_at, declares_next
+from ..facts.usage import arguments_at, declares_next, template_arguments
 from .api import ASSIGNING, CALLED, CLASSES, Found, Vocabulary
 from .expressions_cpp import (
     FAR,
@@ -35,7 +35,7 @@ _TYPES = CLASSES | {"alias", "enum"}
 _POINTERS = frozenset(["shared_ptr", "unique_ptr", "weak_ptr", "intrusive_ptr"])
 _MAKERS = frozenset(["make_shared", "make_unique", "allocate_shared"])
 _SEQUENCES = frozenset(["vector", "array", "deque", "list", "set", "initializer_list"])
-_POINTED = re.compile(r"(?:Const|Shared|Unique|Weak|ConstShared|ConstUnique|ConstWeak)*(?:Ptr|_ptr)")
+_POINTED = re.compile(r"(?:Const|Shared|Unique|Weak)*(?:Ptr|_ptr)")
 _SUFFIX = re.compile(r"(?:Const|Shared|Unique|Weak)*Ptr\Z")
 _SAME = frozenset(["get()", "lock()", "value()"])
 _ELEMENT = frozenset(["front()", "back()", "at()"])
@@ -54,9 +54,16 @@ _QUALIFIERS = re.compile(r"\b(?:const|volatile|typename|class|struct|mutable|sta
 _TEMPLATE = re.compile(r"([\w:\s]+?)\s*<(.*)>\s*((?:::\s*\w+\s*)*)\Z", re.DOTALL)
 _VARIABLE = re.compile(r"\s+[A-Za-z_]\w*\s*(?=[({])")
 _CLOSED = re.compile(r"\s*>\s*(?=\()")
-_MADE = re.compile(r"\s*(?:std|boost)?\s*(?:::)?\s*(make_shared|make_unique|allocate_shared)\s*<")
+_MADE = re.compile(r"\s*(?:(?:std|boost)\s*)?(?:::\s*)?(make_shared|make_unique|allocate_shared)\s*<")
 _AUTO = re.compile(r"\s*([=:])\s*")
+_LONGEST_ALIAS = 2000
 _NOT_BEFORE = re.compile(r"(?:\b(?:class|struct|enum|namespace|goto|typename)\s+|[#\"'])\Z")
+
+
+def _statement(text: str, at: int) -> str:
+    """What stands from a place on up to a semicolon, with single blanks; cut where it is longer than any alias."""
+    end = text.find(";", at, at + _LONGEST_ALIAS)
+    return " ".join(text[at : end + 1].split()) if end >= 0 else ""
 
 
 class Type(NamedTuple):
@@ -102,7 +109,7 @@ class Text:
         """Names that it gives to types."""
         found = {}
         for at in (*self._at_using, *standing("typedef", self.text)):
-            match = _ALIAS.match(self.text, at)
+            match = _ALIAS.match(_statement(self.text, at))
             if match is not None and match.group(1):
                 found[match.group(1)] = match.group(2)
             elif match is not None:
@@ -123,13 +130,13 @@ class Text:
     @cached_property
     def opened(self) -> tuple[str, ...]:
         """Namespaces that `using namespace` opens."""
-        matches = (_USING_NAMESPACE.match(self.text, at) for at in self._at_using)
+        matches = (_USING_NAMESPACE.match(_statement(self.text, at)) for at in self._at_using)
         return tuple(dict.fromkeys("".join(match.group(1).split()) for match in matches if match is not None))
 
     @cached_property
     def spaces(self) -> dict[str, str]:
         """Other names of namespaces."""
-        matches = (_NAMESPACE_ALIAS.match(self.text, at) for at in self._at_namespace)
+        matches = (_NAMESPACE_ALIAS.match(_statement(self.text, at)) for at in self._at_namespace)
         return {match.group(1): "".join(match.group(2).split()) for match in matches if match is not None}
 
     @cached_property
@@ -326,7 +333,7 @@ class ApiUses:
         end, templated = at + len(word), False
         opened = _SPACE.match(self.text, end).end()  # type: ignore[union-attr]
         if self.text.startswith("<", opened):
-            types = TEMPLATE_ARGUMENTS.match(self.text, opened + 1)
+            types = template_arguments(self.text, opened + 1)
             if types is None:
                 return None
             end, templated = types.end(), True
@@ -362,7 +369,7 @@ class ApiUses:
         templated, how, count, given = False, "name", -1, ()
         opened = _SPACE.match(self.text, end).end()  # type: ignore[union-attr]
         if self.text.startswith("<", opened):
-            types = TEMPLATE_ARGUMENTS.match(self.text, opened + 1)
+            types = template_arguments(self.text, opened + 1)
             if types is not None:
                 templated, opened = True, _SPACE.match(self.text, types.end()).end()  # type: ignore[union-attr]
         if known.what in CALLED and self.text.startswith("(", opened):
@@ -608,7 +615,7 @@ class ApiUses:
             return None
         made = _MADE.match(self.text, given.end())
         if made is not None:
-            types = TEMPLATE_ARGUMENTS.match(self.text, made.end())
+            types = template_arguments(self.text, made.end())
             arguments = split_at_commas(types.group()[:-1]) if types is not None else []
             inner = self.type_of(arguments[0]) if arguments else None
             return inner._replace(pointer=True) if inner is not None else None

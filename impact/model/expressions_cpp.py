@@ -267,13 +267,19 @@ class Region(NamedTuple):
 
 _MARKS = re.compile(r"[{};]")
 _DIRECTIVE = re.compile(r"^[ \t]*#[^\n]*(?:(?<=\\)\n[^\n]*)*", re.MULTILINE)
-_NAMESPACE = re.compile(r"(?:\bnamespace\b(?:\s*\[\[[^\]]*\]\])?\s*([\w:\s]*?)|\bextern\s*\"[^\"]*\")\s*\Z")
+_NAMESPACE = re.compile(r"(?:\bnamespace\b(?:\s*\[\[[^\]]*\]\])?([\w:\s]*)|\bextern\s*\"[^\"]*\")\Z")
 _CLASS = re.compile(
-    r"\b(?:class|struct|union)\b(?:\s*\[\[[^\]]*\]\]|\s*\b__attribute__\s*\(\(.*?\)\)|\s+[A-Z][A-Z0-9_]{3,}(?:\s*\([^()]*\))?)*"
+    r"\b(?:class|struct|union)\b(?:\s*\[\[[^\]]*\]\]|\s*\b__attribute__\s*\(\([^()]*(?:\([^()]*\)[^()]*)*\)\)|\s+[A-Z][A-Z0-9_]{3,}(?:\s*\([^()]*\))?)*"
     r"\s+(?P<name>[A-Za-z_][\w:]*)\s*(?:<[^;{}]*>)?\s*(?:\bfinal\b\s*)?(?::(?!:)(?P<bases>[^;{}]*))?\Z",
     re.DOTALL,
 )
-_QUALIFIED_FUNCTION = re.compile(r"((?:[A-Za-z_]\w*\s*(?:<[^()]*?>)?\s*::\s*)+)(?:~\s*)?(?:operator\b[^(]*|\w+)\s*\Z")
+# The arguments of a template, in which others may stand two deep: a text can be read in one way only.
+_ARGUMENTS = r"<[^()<>]*(?:<[^()<>]*(?:<[^()<>]*>[^()<>]*)*>[^()<>]*)*>"
+_QUALIFIED_FUNCTION = re.compile(
+    rf"((?:[A-Za-z_]\w*(?:\s*{_ARGUMENTS})?\s*::\s*)+)(?:~\s*)?(?:operator\b[^(]*|\w+)\s*\Z"
+)
+# No head of a class or function is longer.
+_LONGEST_HEAD = 8000
 _ACCESS = re.compile(r"\b(?:public|protected|private|virtual|typename)\b")
 _TEMPLATE = re.compile(r"<[^<>]*>")
 
@@ -313,7 +319,7 @@ def _head(text: str) -> tuple[str, str, tuple[str, ...]]:
     """What the text before an opening brace begins."""
     if "#" in text:
         text = _DIRECTIVE.sub("", text)
-    text = text.rstrip()
+    text = text[-_LONGEST_HEAD:].rstrip()
     space = _NAMESPACE.search(text) if "namespace" in text or "extern" in text else None
     if space:
         return "namespace", "".join((space.group(1) or "").split()), ()

@@ -28,7 +28,7 @@ _POINTERS = frozenset(
 _SEQUENCES = frozenset(["vector", "array", "deque", "list", "BoundedVector"])
 _SAME = frozenset(["get", "operator", "value", "lock"])
 _ELEMENT = frozenset(["front", "back", "at"])
-_POINTED = re.compile(r"(?:Const|Shared|Unique|Weak|ConstShared|ConstUnique)*Ptr")
+_POINTED = re.compile(r"(?:Const|Shared|Unique|Weak)*Ptr")
 _QUALIFIED_BACK = re.compile(r"((?:[A-Za-z_]\w*\s*::\s*)+)\Z")
 _WRAPPER_BACK = re.compile(r"(\w+)\s*<\s*(?:const\s+)?\Z")
 _ASSIGNED_BACK = re.compile(r"(?<![\w.>])(\w+)\s*=\s*(?:(?:std|boost)\s*::\s*)?\Z")
@@ -312,9 +312,10 @@ class CppUses:
 def _aliases_of(text: str) -> tuple[tuple[str, str], ...]:
     """Names that a text gives to others, with those."""
     return tuple(
-        (match.group(1), match.group(2)) if match.group(1) else (match.group(4), match.group(3))
+        (match.group(1), match.group(2).strip()) if match.group(1) else (words[1], words[0].strip())
         for match in _ALIAS.finditer(text)
+        if len(words := (match.group(3) or "- -").rsplit(None, 1)) == 2
     )
 
 
-_ALIAS = re.compile(r"\busing\s+(\w+)\s*=\s*([\w:\s]+?)\s*;|\btypedef\s+([\w:\s]+?)\s+(\w+)\s*;")
+_ALIAS = re.compile(r"\busing\s+(\w+)\s*=([\w:\s]+);|\btypedef\s([\w:\s]+);")

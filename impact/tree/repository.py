@@ -188,10 +188,11 @@ def _check_commit(place: str) -> None:
     """Raises OSError for a loose commit or tag that is cut off: libgit2 would wait for the rest for ever, and reads
     commits by itself. Files and folders are looked at when they are read."""
     try:
-        start = zlib.decompressobj().decompress(files.read_start(place, 64), 7)
+        data = files.read_start(place, 64)
+        start = zlib.decompressobj().decompress(data, 7)
     except (OSError, zlib.error):
         return  # libgit2 fails on it too
-    if (not start or start.startswith((b"commit ", b"tag "))) and not _is_whole(place):
+    if data and (not start or start.startswith((b"commit ", b"tag "))) and not _is_whole(place):
         raise OSError(errno.EIO, "a damaged object of git", place)
 
 
@@ -270,6 +271,7 @@ class Objects:
         self._faults = (KeyError, ValueError, TypeError, AttributeError, pygit2.GitError)
         self._folders: dict[Any, tuple[tuple[str, int, Any], ...]] = {}
         self._names: dict[Any, dict[str, tuple[int, Any]]] = {}
+        self._links: dict[Any, str] = {}
         self._header = getattr(opened.repository.odb, "read_header", None)
 
     def size(self, oid: Any) -> int:
@@ -344,7 +346,10 @@ class Objects:
 
     def link(self, oid: Any) -> str:
         """What a link leads to."""
-        return self.blob(oid, LONGEST_PATH).decode("utf-8", "surrogateescape")
+        target = self._links.get(oid)
+        if target is None:
+            target = self._links[oid] = self.blob(oid, LONGEST_PATH).decode("utf-8", "surrogateescape")
+        return target
 
 
 def name_of(place: str, folder: str) -> str:

@@ -38,7 +38,7 @@ def test_sizes_as_people_write_them(size, text):
 def test_the_documentation_lists_every_limit_with_its_default():
     page = (Path(__file__).parents[2] / "docs" / "security.md").read_text(encoding="utf-8")
     rows = dict(re.findall(r"(?m)^\| `(\w+)` \| .* \| ([^|]+) \|$", page))
-    counts, seconds = {"entries", "depth", "nodes"}, {"seconds"}
+    counts, seconds = {"entries", "depth", "nodes", "items"}, {"seconds"}
     expected = {}
     for field in fields(Limits):
         value = field.default

@@ -628,11 +628,35 @@ def test_math(text, expected):
     assert calculate(text) == expected
 
 
-def test_regular_expressions_end():
-    assert match("(a+)+b", "a" * 60) is None
-    assert match("([0-9]+)\\.([0-9]+)", "v1.24") == ("1.24", "1", "24")
-    assert match("^[a-z]$", "ab") is False
-    assert match("(", "a") is None
+@pytest.mark.parametrize(
+    ("pattern", "text", "expected"),
+    [
+        ("([0-9]+)\\.([0-9]+)", "v1.24", ("1.24", "1", "24")),
+        ("^[a-z]$", "ab", False),
+        ("^(a|b|c|d|e|f|g|h|i|j|k|l|m)-.*$", "m-x", ("m-x", "m")),
+        ("^-?[0-9]+(\\.[0-9]+)?(e[+-]?[0-9]+)?$", "-1.5e3", ("-1.5e3", ".5", "e3")),
+        ("([0-9]+\\.)+", "1.2.3", ("1.2.", "2.")),
+        ("(", "a", None),
+        ("(a+)+b", "a" * 60, None),
+        ("(((a+)+)+)+b", "a" * 16, None),
+        ("(a?a?)*b", "a" * 60, None),
+        ("a?" * 30 + "a" * 30, "a" * 30, None),
+        ("(a|a)" * 30 + "b", "a" * 30, None),
+        ("a*a*a*b", "a" * 200, None),
+        ("a*b", "a" * 200_000, None),
+        ("a" * 100_000, "a", None),
+    ],
+)
+def test_regular_expressions_end(pattern, text, expected):
+    assert match(pattern, text, lambda steps: None) == expected
+
+
+def test_regular_expressions_cost_what_they_may_take():
+    spent = []
+    match("a*b", "a" * 20_000, spent.append)
+    match("(.*)/(.*)", "src/node.cpp", spent.append)
+    assert spent[0] > 1000
+    assert spent[1] == 0
 
 
 @pytest.mark.parametrize(

@@ -95,3 +95,32 @@ def test_what_cannot_be_read_is_named(tmp_path, settings, says):
     with pytest.raises(ConfigError, match=says) as error:
         unknown(root, tmp_path / "cache")
     assert "rosimpact.toml" in str(error.value)
+
+
+def test_an_address_in_an_index_is_not_fetched(tmp_path):
+    root = workspace(tmp_path, 'index = "index-v4.yaml"\n')
+    (root / "index-v4.yaml").write_text(
+        "distributions:\n  jazzy:\n    distribution: ['http://h/distribution.yaml']\ntype: index\nversion: 4\n"
+    )
+    with pytest.raises(ConfigError, match="is not fetched"):
+        unknown(root, tmp_path / "cache")
+
+
+@pytest.mark.parametrize("place", ["../rules.yaml", "link.yaml"])
+def test_rosdep_rules_outside_of_the_workspace_are_the_users_to_name(tmp_path, place):
+    root = workspace(tmp_path, f'rosdep_sources = ["{place}"]\n')
+    (tmp_path / "rules.yaml").write_text("tf_old:\n  ubuntu: [libtf]\n")
+    (root / "link.yaml").symlink_to("../rules.yaml")
+    with pytest.raises(ConfigError, match="lies outside of the workspace"):
+        unknown(root, tmp_path / "cache")
+    options = Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1, config=root / "rosimpact.toml")
+    assert not [f for f in check(root, options).findings if f.subject == "tf_old"]
+
+
+def test_a_configuration_that_is_a_link_out_of_the_workspace_is_refused(tmp_path):
+    root = workspace(tmp_path, "")
+    (root / "rosimpact.toml").rename(tmp_path / "other.toml")
+    (root / "rosimpact.toml").symlink_to("../other.toml")
+    with pytest.raises(ConfigError, match="--follow-links"):
+        unknown(root, tmp_path / "cache")
+    check(root, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1, follow_links=True))

@@ -65,6 +65,8 @@ class World(Protocol):
 
     def quotes_protect(self) -> bool: ...
 
+    def spend(self, steps: int) -> None: ...
+
 
 def evaluate(tokens: list[Token], world: World) -> bool | None:
     """The value of a condition, None when it depends on what is not known or is malformed."""
@@ -240,7 +242,7 @@ class _Parser:
         if operator == "MATCHES":
             if not left_known or not other.sure:
                 return None
-            groups = match(other.text, left)
+            groups = match(other.text, left, self.world.spend)
             if groups is None or groups is False:
                 return groups
             self.world.matched(groups)

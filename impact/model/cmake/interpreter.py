@@ -333,6 +333,8 @@ class Interpreter:
                 continue
             if value is True and not before:  # the only branch that can be taken
                 return self.run_body(body)
+            # Every branch stands under the tests of all before it; real chains are short.
+            self.spend(len(before) ** 2 >> 6)
             own = before if value is True else (*before, self.test(text))
             signal, changes = self.run_branch(body, merge(outer, own))
             if signal in (RETURN, FATAL):
@@ -710,6 +712,7 @@ class Interpreter:
 
     def push(self, scope: dict[str, Value]) -> None:
         """Opens a variable scope."""
+        self.spend(len(scope) >> 7)
         self.scopes.append(scope)
         self.scope = scope
 
@@ -727,6 +730,8 @@ class Interpreter:
 
     def assign(self, where: dict[str, Value], name: str, value: Value) -> None:
         """Writes into a scope, so that a branch on trial can take it back."""
+        if len(value.text) > 4096:
+            self.spend(len(value.text) >> 12)
         if self.recording:
             self.journal.append((where, name, where.get(name)))
         where[name] = value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from .blocks import Call
 from .interpreter import Interpreter, handles
@@ -20,6 +21,9 @@ from .values import (
     with_conditions,
     word,
 )
+
+# A text that is cut or given up afterwards may be so long.
+_LONGEST = 4 * MAX_TEXT
 
 
 def list_items(values: list[Word]) -> list[Word]:
@@ -101,7 +105,7 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
         else:
             run.set_unknown(rest[1], call.at)
     elif action == "JOIN" and len(rest) == 2:
-        run.set_text(rest[1], str(rest[0]).join(words), call.at, known)
+        run.set_text(rest[1], _joined(str(rest[0]), words), call.at, known)
     elif action == "SUBLIST" and len(rest) == 3:
         start, length = integer(rest[0]), integer(rest[1])
         if start is None or length is None:
@@ -124,7 +128,7 @@ def list_(run: Interpreter, call: Call, args: list[Word]) -> None:
         kept: list[Word] = []
         run.spend(REGEX_STEPS * len(words) >> 2)
         for item in words:
-            pattern = usable(rest[2], item)
+            pattern = usable(rest[2], item, run.spend)
             hit = pattern.search(item) is not None if pattern is not None else rest[0] == "INCLUDE"
             if hit == (rest[0] == "INCLUDE"):
                 kept.append(item)
@@ -141,6 +145,20 @@ def _store(run: Interpreter, name: str, words: list[Word], known: bool) -> None:
 def _at(words: tuple[Word, ...], index: Word) -> Word | None:
     number = integer(index)
     return words[number] if number is not None and -len(words) <= number < len(words) else None
+
+
+def _joined(separator: str, words: Sequence[Word]) -> str:
+    """Words joined, up to about the length that a text may have."""
+    if len(separator) * len(words) + sum(map(len, words)) <= _LONGEST:
+        return separator.join(words)
+    parts: list[str] = []
+    length = 0
+    for item in words:
+        parts.append(item)
+        length += len(item) + len(separator)
+        if length > MAX_TEXT:
+            break
+    return separator.join(parts)
 
 
 def integer(text: str) -> int | None:
@@ -178,7 +196,7 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
             made.append(item)
             continue
         if pattern_text:
-            pattern = usable(pattern_text, item)
+            pattern = usable(pattern_text, item, run.spend)
             if pattern is None or not pattern.search(item):
                 made.append(item)
                 continue
@@ -194,7 +212,7 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
         elif action == "STRIP":
             text = item.strip()
         elif action == "REPLACE" and len(rest) > 2:
-            text = _regex_replace(rest[1], rest[2], item) or item
+            text = _regex_replace(run, rest[1], rest[2], item) or item
         made.append(word(text, item.at, item.conditions, item.sure))
     run.assign(run.scope, output, Value(tuple(made), known))
 
@@ -231,13 +249,15 @@ def string(run: Interpreter, call: Call, args: list[Word]) -> None:
     elif action == "CONCAT":
         put(rest[0], "".join(rest[1:]))
     elif action == "JOIN" and len(rest) >= 2:
-        put(rest[1], str(rest[0]).join(rest[2:]))
+        put(rest[1], _joined(str(rest[0]), rest[2:]))
     elif action == "STRIP" and len(rest) == 2:
         put(rest[1], rest[0].strip())
     elif action == "LENGTH" and len(rest) == 2:
         put(rest[1], str(len(rest[0].encode())))
     elif action == "REPLACE" and len(rest) >= 4:
-        put(rest[2], "".join(rest[3:]).replace(rest[0], rest[1]) if rest[0] else None)
+        text = "".join(rest[3:])
+        fits = rest[0] and len(text) + text.count(rest[0]) * len(rest[1]) <= _LONGEST
+        put(rest[2], text.replace(rest[0], rest[1]) if fits else None)
     elif action == "SUBSTRING" and len(rest) == 4:
         begin, length = integer(rest[1]), integer(rest[2])
         known = begin is not None and length is not None
@@ -275,12 +295,12 @@ def _regex(run: Interpreter, rest: list[Word], sure: bool, put) -> None:
     run.spend(REGEX_STEPS)
     mode = rest[0]
     if mode == "REPLACE" and len(rest) >= 5:
-        put(rest[3], _regex_replace(rest[1], rest[2], "".join(rest[4:])))
+        put(rest[3], _regex_replace(run, rest[1], rest[2], "".join(rest[4:])))
         return
     if mode not in ("MATCH", "MATCHALL"):
         return
     text = "".join(rest[3:])
-    pattern = usable(rest[1], text)
+    pattern = usable(rest[1], text, run.spend)
     if pattern is None:
         put(rest[2], None)
     elif not sure:
@@ -294,9 +314,9 @@ def _regex(run: Interpreter, rest: list[Word], sure: bool, put) -> None:
         put(rest[2], ";".join(found.group() for found in pattern.finditer(text)))
 
 
-def _regex_replace(pattern_text: str, replacement: str, text: str) -> str | None:
+def _regex_replace(run: Interpreter, pattern_text: str, replacement: str, text: str) -> str | None:
     """The text with every match replaced, None when it cannot be told."""
-    pattern = usable(pattern_text, text)
+    pattern = usable(pattern_text, text, run.spend)
     if pattern is None:
         return None
 
@@ -309,7 +329,15 @@ def _regex_replace(pattern_text: str, replacement: str, text: str) -> str | None
 
         return re.sub(r"\\(.)", group, replacement, flags=re.DOTALL)
 
-    return pattern.sub(expand, text)
+    parts: list[str] = []
+    length = last = 0
+    for found in pattern.finditer(text):
+        parts += [text[last : found.start()], expand(found)]
+        length += len(parts[-1])
+        last = found.end()
+        if length > MAX_TEXT:
+            return None
+    return "".join([*parts, text[last:]])
 
 
 _MATH = re.compile(r"\s*(0[xX][0-9a-fA-F]{1,15}|\d{1,18}|<<|>>|[-+*/%|&^~()])")

@@ -21,6 +21,9 @@ _OTHER_SIDE = {
     "publisher": "subscriber", "subscriber": "publisher", "server": "client", "client": "server",
     "action server": "action client", "action client": "action server",
 }  # fmt: skip
+# Pairs that are looked at under one name: publishers times subscribers, which hostile code has by the ten thousand.
+_MOST_PAIRS = 10_000
+_MOST_PAIRS_IN_ALL = 100_000
 _SIDES = (("publisher", "subscriber"), ("server", "client"), ("action server", "action client"))
 _WHAT = {"publisher": "topic", "subscriber": "topic", "server": "service", "client": "service"}
 
@@ -65,9 +68,13 @@ class Flow:
             names.setdefault((one.node, one.role, one.path, one.line, one.written), set()).add(one.topic)
         self._alone = {key for key, topics in names.items() if len(topics) == 1}
         self.known: dict[tuple[str, str], list[Endpoint]] = {}
+        self._of_role: dict[tuple[str, str], list[Endpoint]] = {}
+        self._of_node: dict[tuple[str, str, str], list[Endpoint]] = {}
         for one in graph.endpoints:
             if one.topic:
                 self.known.setdefault((_kind(one.role), one.topic), []).append(one)
+                self._of_role.setdefault((one.role, one.topic), []).append(one)
+                self._of_node.setdefault((one.node, one.role, one.topic), []).append(one)
 
     def sure(self, *roles: str) -> Iterator[Sure]:
         """Endpoints whose name is certain, of some roles or of all: in the order of the graph."""
@@ -98,8 +105,7 @@ class Flow:
 
     def others(self, endpoint: Endpoint) -> list[Endpoint]:
         """The other side of an endpoint's topic, service or action, sure or not."""
-        wanted = _OTHER_SIDE[endpoint.role]
-        return [one for one in self.known.get((_kind(endpoint.role), endpoint.topic), ()) if one.role == wanted]
+        return self._of_role.get((_OTHER_SIDE[endpoint.role], endpoint.topic), [])
 
     def may_have(self, role: str, type_: str) -> bool:
         """Whether something in the workspace of this role and type has a name that is not known or not certain, or
@@ -121,18 +127,23 @@ class Flow:
 
     def of_node(self, one: Endpoint) -> list[Endpoint]:
         """Everything of the same node and role at the same name: code may choose among several."""
-        same = self.known.get((_kind(one.role), one.topic), ())
-        return [other for other in same if other.node == one.node and other.role == one.role]
+        return self._of_node.get((one.node, one.role, one.topic), [])
 
     def pairs(self, launch: str = "") -> Iterator[Pair]:
-        """Every two sure endpoints that meet under a name, each two places of source once."""
+        """Every two sure endpoints that meet under a name, each two places of source once; of a name that very many
+        meet under, the first."""
         seen = set()
+        in_all = _MOST_PAIRS_IN_ALL
         for giving, taking in _SIDES:
             givers: dict[str, list[Sure]] = {}
             for one in self.sure(giving):
                 givers.setdefault(one.endpoint.topic, []).append(one)
+            left = dict.fromkeys(givers, _MOST_PAIRS)
             for taker in self.sure(taking):
-                for giver in givers.get(taker.endpoint.topic, ()):
+                topic = taker.endpoint.topic
+                for giver in givers.get(topic, ())[: min(left.get(topic, 0), in_all)]:
+                    left[topic] -= 1
+                    in_all -= 1
                     key = (*_place(giver.endpoint), *_place(taker.endpoint))
                     if key not in seen:
                         seen.add(key)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from msgspec import structs
 
@@ -24,6 +24,7 @@ from .values import Value, Values, beside
 _HANDLES = frozenset(("handle", "image_transport", "cloud_transport"))
 LOST = "?"
 """Begins the namespace of a node handle that is not known."""
+_PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
 _ROLES: dict[str, Role] = {
     "publisher": "publisher",
     "subscriber": "subscriber",
@@ -140,6 +141,7 @@ class Sites:
     def __init__(self, code: Code, calls: Calls, values: Values, defined: Defined):
         self.code, self.calls, self.values, self.defined = code, calls, values, defined
         self.templates = Templates(code)
+        self._held: dict[int, tuple[dict[tuple[Expr, ...], str], dict[tuple[str, tuple[Expr, ...]], list[Any]]]] = {}
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -241,23 +243,37 @@ class Sites:
         if use.row.on and "filter" in use.row.on:
             receiver = self.calls.receiver_of(use)
             return self.code.identity(receiver, use.fn) if receiver else None
-        # `pubs.push_back(nh.advertise(...))`, `pubs.emplace(name, create_publisher(...))`
-        for call in use.fn.facts.calls:
-            if tail(call.callee) in ("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"):
-                for argument in call.arguments:
-                    if (
-                        argument.kind in ("call", "make")
-                        and argument.parts == use.call.arguments
-                        and "." in call.callee
-                    ):
-                        return self.code.identity(call.callee.rpartition(".")[0], use.fn)
-        # `fast_ = std::make_unique<RealtimePublisher<T>>(create_publisher<T>(...))`
-        for each in use.fn.facts.assignments if use.row.does == "publisher" else ():
-            inner = (part for part in each.value.parts if part.kind == "call") if each.value.kind == "make" else ()
-            same = any(part.parts == use.call.arguments and part.text == use.call.callee for part in inner)
-            if same and self._is_publisher(each.value, use.fn):
-                return self.code.identity(each.target, use.fn)
+        put, wrapped = self._holders(use.fn)
+        callee = put.get(use.call.arguments)
+        if callee is not None:
+            return self.code.identity(callee.rpartition(".")[0], use.fn)
+        if use.row.does == "publisher":
+            for each in wrapped.get((use.call.callee, use.call.arguments), ()):
+                if self._is_publisher(each.value, use.fn):
+                    return self.code.identity(each.target, use.fn)
         return None
+
+    def _holders(self, fn: Fn) -> tuple[dict[tuple[Expr, ...], str], dict[tuple[str, tuple[Expr, ...]], list[Any]]]:
+        """What a function puts into containers, by the arguments of the call that makes it: the first call that puts
+        it; and what it wraps, by that call: the assignments."""
+        known = self._held.get(id(fn))
+        if known is not None:
+            return known
+        # `pubs.push_back(nh.advertise(...))`, `pubs.emplace(name, create_publisher(...))`
+        put: dict[tuple[Expr, ...], str] = {}
+        for call in fn.facts.calls:
+            if "." in call.callee and tail(call.callee) in _PUTS:
+                for argument in call.arguments:
+                    if argument.kind in ("call", "make"):
+                        put.setdefault(argument.parts, call.callee)
+        # `fast_ = std::make_unique<RealtimePublisher<T>>(create_publisher<T>(...))`
+        wrapped: dict[tuple[str, tuple[Expr, ...]], list[Any]] = {}
+        for each in fn.facts.assignments:
+            for part in each.value.parts if each.value.kind == "make" else ():
+                if part.kind == "call":
+                    wrapped.setdefault((part.text, part.parts), []).append(each)
+        self._held[id(fn)] = put, wrapped
+        return put, wrapped
 
     def _is_publisher(self, value: Expr, fn: Fn) -> bool:
         """Whether an object that is made is a publisher."""

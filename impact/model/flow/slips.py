@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
+from typing import Generic, TypeVar
+
+T = TypeVar("T")
 
 # Shorter words of one letter's difference are other words.
 _SHORTEST = 5
@@ -57,6 +61,59 @@ def _alone(name: str, place: int) -> bool:
     before = place == 0 or not name[place - 1].isalpha()
     after = place == len(name) - 1 or not name[place + 1].isalpha()
     return before and after
+
+
+class NearNames(Generic[T]):
+    """Things by their names, asked for those whose name is a slip of another, or within a namespace of it: as
+    is_slip() and is_in_namespace() say, without comparing every name with every other. Very long names are no slips.
+    """
+
+    def __init__(self, things: Iterable[tuple[str, T]], *, namespaces: bool = False):
+        self._named = list(things)
+        self._namespaces = namespaces
+        self._traces: dict[str, list[int]] = {}
+        self._whole: dict[str, list[int]] = {}
+        self._ends: dict[str, list[int]] = {}
+        for number, (name, _) in enumerate(self._named):
+            if len(name) > _LONGEST:
+                continue
+            for trace in _traces_of(name):
+                self._traces.setdefault(trace, []).append(number)
+            if namespaces:
+                self._whole.setdefault(name, []).append(number)
+                for end in _ends_of(name):
+                    self._ends.setdefault(end, []).append(number)
+
+    def near(self, name: str) -> Iterator[T]:
+        """The things of nearly this name, in their order; at most a thousand are looked at."""
+        if len(name) > _LONGEST:
+            return
+        found: set[int] = set()
+        for trace in _traces_of(name):
+            found.update(self._traces.get(trace, ())[:_MOST_ALIKE])
+        if self._namespaces:
+            found.update(self._ends.get(name, ())[:_MOST_ALIKE])
+            for end in _ends_of(name):
+                found.update(self._whole.get(end, ())[:_MOST_ALIKE])
+        for number in sorted(found)[:_MOST_ALIKE]:
+            other, thing = self._named[number]
+            if is_slip(name, other) or (self._namespaces and is_in_namespace(name, other)):
+                yield thing
+
+
+_LONGEST = 200
+_MOST_ALIKE = 1000
+
+
+def _traces_of(name: str) -> set[str]:
+    """Texts of which two names have one in common when one is a slip of the other: the name without a letter."""
+    plain = name.strip("/")
+    traces = {plain[:at] + plain[at + 1 :] for at in range(len(plain))}
+    return {*traces, plain, plain.replace("_", "").lower()}
+
+
+def _ends_of(name: str) -> Iterator[str]:
+    return (name[at:] for at in range(1, len(name)) if len(name) - at >= _SHORTEST - 1)
 
 
 def is_in_namespace(one: str, other: str) -> bool:

@@ -18,6 +18,9 @@ NODE, NAMESPACE = "{node}", "{ns}"
 _MOST = 12
 _DEEPEST = 12
 _FAR = 6
+# Expressions looked at for one value, and characters of it: each variable may be written from two others.
+_MOST_STEPS = 5_000
+_LONGEST = 10_000
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
@@ -61,6 +64,7 @@ class Values:
         when None."""
         self.calls, self.code = calls, calls.code
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
+        self._left = _MOST_STEPS
 
     def under(self, settings: Mapping[str, str], arguments: Sequence[str] | None = None) -> Values:
         """The same code where a launch sets parameters and gives arguments."""
@@ -82,6 +86,7 @@ class Values:
 
     def of(self, value: Expr | None, fn: Fn, line: int = 0) -> list[Value]:
         """What an expression may be worth, each once; unknown ones last. line: of the statement it stands in."""
+        self._left = _MOST_STEPS
         found = list(dict.fromkeys(self._of(value, fn, line, ())))
         known = [one for one in found if one.text is not None]
         return known or found[:1] or [Value(None, "unresolved", "no value is given")]
@@ -90,7 +95,8 @@ class Values:
         if value is None:
             yield Value(None, "unresolved", "no value is given")
             return
-        if len(seen) > _DEEPEST:
+        self._left -= 1
+        if len(seen) > _DEEPEST or self._left < 0:
             yield Value(None, "unresolved", "too many steps")
             return
         kind = value.kind
@@ -123,6 +129,9 @@ class Values:
             unknown = next((one for one in row if one.text is None), None)
             if unknown is not None:
                 yield unknown
+                continue
+            if sum(len(one.text or "") for one in row) > _LONGEST:
+                yield Value(None, "unresolved", f"longer than {_LONGEST:,} characters")
                 continue
             hows = {one.how for one in row}
             known: list[How] = [how for how in _LEAST if how in hows]

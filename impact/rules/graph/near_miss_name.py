@@ -25,7 +25,7 @@ Not reported
 
 from ...model.build import At
 from ...model.flow.edges import Flow, Sure, flows, said, unstarted
-from ...model.flow.slips import is_in_namespace, is_slip
+from ...model.flow.slips import NearNames
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 
@@ -54,18 +54,19 @@ def near_miss_name(workspace: Workspace):
 def _near(flow: Flow, closed: bool):
     """Subscribers that nobody feeds, each with the only publisher of nearly its name that nobody reads. closed: whether
     all that runs is known, so that namespaces can be compared."""
-    unread = [one for one in flow.sure("publisher") if not one.endpoint.implied and not flow.others(one.endpoint)]
+    unread: dict[str, list[tuple[str, Sure]]] = {}
+    for one in flow.sure("publisher"):
+        if not one.endpoint.implied and not flow.others(one.endpoint):
+            unread.setdefault(flow.type_of(one.endpoint), []).append((one.endpoint.topic, one))
+    near = {type_: NearNames(givers, namespaces=closed) for type_, givers in unread.items()}
     for taker in flow.sure("subscriber"):
         one = taker.endpoint
         type_ = flow.type_of(one)
         if not type_ or one.implied or flow.others(one) or flow.may_have("publisher", type_):
             continue
         found: dict[str, Sure] = {}
-        for giver in unread:
-            other = giver.endpoint
-            if flow.type_of(other) != type_ or giver.node.id == taker.node.id:
-                continue
-            if is_slip(one.topic, other.topic) or (closed and is_in_namespace(one.topic, other.topic)):
-                found.setdefault(other.topic, giver)
+        for giver in near[type_].near(one.topic) if type_ in near else ():
+            if giver.node.id != taker.node.id:
+                found.setdefault(giver.endpoint.topic, giver)
         if len(found) == 1:
             yield taker, next(iter(found.values()))

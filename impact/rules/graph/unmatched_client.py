@@ -24,7 +24,7 @@ Not reported
 
 from ...model.build import At
 from ...model.flow.edges import Flow, Sure, begins, flows, said, unstarted
-from ...model.flow.slips import is_in_namespace, is_slip
+from ...model.flow.slips import NearNames, is_in_namespace, is_slip
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 
@@ -63,6 +63,12 @@ def unmatched_client(workspace: Workspace):
 
 def _unmatched(flow: Flow):
     """Clients without a server, each with the only sure server of its type and nearly its name."""
+    serving: dict[tuple[str, str], list[tuple[str, Sure]]] = {}
+    for giver in flow.sure(*_SERVER.values()):
+        if not (begins(giver.endpoint, "~") and not giver.node.started):
+            key = giver.endpoint.role, giver.endpoint.type
+            serving.setdefault(key, []).append((giver.endpoint.topic, giver))
+    near = {key: NearNames(givers, namespaces=True) for key, givers in serving.items()}
     for taker in flow.sure(*_SERVER):
         one = taker.endpoint
         role = _SERVER[one.role]
@@ -71,10 +77,8 @@ def _unmatched(flow: Flow):
         if flow.others(one) or flow.may_have(role, one.type):
             continue
         found: dict[str, Sure] = {}
-        for giver in flow.sure(role):
+        for giver in near[role, one.type].near(one.topic) if (role, one.type) in near else ():
             other = giver.endpoint
-            if other.type != one.type or (begins(other, "~") and not giver.node.started):
-                continue
             if is_slip(one.topic, other.topic) or _lacks_namespace(taker, giver):
                 found.setdefault(other.topic, giver)
         if len(found) == 1:
