@@ -491,8 +491,8 @@ def row(command: str, format: str, place: str) -> Attack:
         arguments,
         (STATUS[command],),
         git=command in NEEDS_GIT,
-        # `why` lists the first places alone.
-        found="" if command in ("impact", "why") or "--launch" in arguments else None,
+        # `why` and Markdown list the first alone.
+        found="" if command in ("impact", "why") or format == "markdown" or "--launch" in arguments else None,
         snapshot=False,
         refusable="rosimpact.toml" if "toml" in place else "",
     )

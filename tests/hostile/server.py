@@ -83,10 +83,8 @@ def watch(child, job):
         if pending and pending[3:] and not os.path.exists(pending[3]):
             begun = now
         elif pending and now - begun >= pending[1]:
-            if pending[2:] == ["group"]:
-                os.killpg(child, pending[0])
-            else:
-                os.kill(child, pending[0])
+            with contextlib.suppress(OSError):  # at its end, or before it has a group
+                (os.killpg if pending[2:3] == ["group"] else os.kill)(child, pending[0])
             pending = None
         if now - looked > LOOK and not killed:
             looked = now
