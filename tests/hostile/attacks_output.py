@@ -446,6 +446,7 @@ def rows() -> list[Attack]:
                 everywhere(NAMES),
                 (*COMMANDS[command], "-f", format, "-o", "{out}/report"),
                 (STATUS[command],),
+                found="" if format == "markdown" else None,
                 snapshot=False,
             )
         )
