@@ -359,8 +359,7 @@ FILES: list[tuple[str, dict[str, str | bytes]]] = [
         + 'int main() { f0(n, "x"); }\n',
     ),
     file_row("C++: one line of 4 MB", "src/bad/src/n.cpp", "int a = 1; " * 350_000),
-    file_row("C++: 8 MB of an open comment", "src/bad/src/n.cpp", "/* " + "x/*" * 2_000_000),
-    file_row("C++: 60 MB", "src/bad/src/n.cpp", b"int a;\n" * 8_600_000),
+    file_row("C++: 3 MB of an open comment", "src/bad/src/n.cpp", "/* " + "x/*" * 1_000_000),
     file_row("C++: raw strings that do not end", "src/bad/src/n.cpp", 'R"a(' * 50_000),
     file_row("C++: quotes that do not end", "src/bad/src/n.cpp", "'\"" * 200_000),
     file_row("C++: backslashes", "src/bad/src/n.cpp", '"' + "\\" * 2_000_001 + '\n"'),
@@ -576,7 +575,6 @@ FILES: list[tuple[str, dict[str, str | bytes]]] = [
         CMAKE.format(name="bad", more="# rosimpact: ignore[" + "a," * 300_000 + "]"),
     ),
     file_row("a file of 3 GB without contents", "src/bad/src/n.cpp", b""),
-    file_row("a manifest of 100 MB", "src/bad/package.xml", b"<package>" + b" " * 100_000_000),
     file_row(
         "spaces before a keyword, for regular expressions",
         "src/bad/src/n.cpp",
@@ -639,6 +637,11 @@ def deep_folders(levels: int) -> Callable[[Place], None]:
             os.chdir(here)
 
     return make
+
+
+def large(path: str, part: bytes, count: int) -> Callable[[Place], None]:
+    """A large file, which is not kept in memory as the others are."""
+    return lambda place: write(place.ws, {path: part * count})
 
 
 def many_files(place: Place) -> None:
@@ -835,7 +838,7 @@ def rows() -> list[Attack]:
         "10,000 patterns": "".join(f'[paths."{"*" * 30}a{n}"]\nignore = ["all"]\n' for n in range(1_000)),
         "a pattern that backtracks": '[paths."' + "**/*a" * 30 + 'b"]\nignore = ["removed-header"]\n',
         "private names that backtrack": "[workspace]\nprivate = ['" + "*a" * 40 + "b']\n",
-        "20 MB": "# " + "x" * 20_000_000,
+        "3 MB": "# " + "x" * 3_000_000,
     }
     found += [
         Attack(
@@ -888,7 +891,21 @@ def rows() -> list[Attack]:
         found.append(Attack(f"library that loops: {kind}", GROUP, {"install/bad/lib/libbad.so": elf(kind)}, install))
     found += [
         Attack(
-            "library of 3 GB", GROUP, sparse("install/bad/lib/libbad.so", 3_000_000_000, elf("itself")[:200]), install
+            "library of 3 GB",
+            GROUP,
+            sparse("install/bad/lib/libbad.so", 3_000_000_000, elf("itself")[:200]),
+            install,
+            (0, 1, 2),
+            found="",
+        ),
+        Attack("C++: 60 MB", GROUP, large("src/bad/src/n.cpp", b"int a;\n", 8_600_000), CHECK),
+        Attack("a manifest of 100 MB", GROUP, large("src/bad/package.xml", b"<package>  ", 9_000_000), CHECK),
+        Attack(
+            "rosimpact.toml: 100 MB",
+            GROUP,
+            large("rosimpact.toml", b"# x\n", 25_000_000),
+            CHECK,
+            refusable="rosimpact.toml",
         ),
         Attack("folders 1,500 deep", GROUP, deep_folders(1_500), CHECK, snapshot=False),
         Attack("graph: folders 1,500 deep", GROUP, deep_folders(1_500), COMMANDS["graph"], snapshot=False),
@@ -985,7 +1002,7 @@ def rows() -> list[Attack]:
         Attack(
             "a report of 100 MB to triage",
             GROUP,
-            {"r.txt": "x " * 50_000_000},
+            large("r.txt", b"x ", 50_000_000),
             ("triage", "{ws}/r.txt"),
             status=(0, 2),
             found="",

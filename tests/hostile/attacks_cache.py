@@ -12,7 +12,7 @@ import zlib
 from collections.abc import Callable
 from pathlib import Path
 
-from .harness import COMMANDS, STATUS, Attack, Ended, Place, remove
+from .harness import COMMANDS, ENTRY, STATUS, Attack, Ended, Place, remove
 
 GROUP = "cache"
 CHECK = COMMANDS["check"]
@@ -215,7 +215,7 @@ def many_at_once(place: Place, ended: Ended) -> list[str]:
     command = [
         interpreter,
         "-c",
-        "from rosimpact.impact.cli import main; main()",
+        ENTRY,
         "check",
         str(place.ws),
         "-q",
@@ -246,7 +246,7 @@ def once_more(place: Place, ended: Ended) -> list[str]:
     command = [
         interpreter,
         "-c",
-        "from rosimpact.impact.cli import main; main()",
+        ENTRY,
         "check",
         str(place.ws),
         "-q",
@@ -513,7 +513,7 @@ def warmed(command: str, then: Callable[[Place], None]) -> Callable[[Place], Non
         interpreter = place.interpreter  # pyright: ignore[reportAttributeAccessIssue]
         arguments = [place.filled(argument) for argument in COMMANDS[command]]
         subprocess.run(
-            [interpreter, "-c", "from rosimpact.impact.cli import main; main()", *arguments],
+            [interpreter, "-c", ENTRY, *arguments],
             env=environment,
             capture_output=True,
             timeout=120,

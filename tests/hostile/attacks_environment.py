@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 
 from .attacks_output import folder_of_bytes, folders
-from .harness import COMMANDS, FORMATS, NEEDS_GIT, STATUS, Attack, Ended, Place, write
+from .harness import BEGUN, COMMANDS, ENTRY, FORMATS, NEEDS_GIT, STATUS, Attack, Ended, Place, write
 
 GROUP = "environment"
 CHECK = COMMANDS["check"]
@@ -182,6 +182,7 @@ def rows() -> list[Attack]:
                     folders() | folder_of_bytes(),
                     (*COMMANDS[command], "-f", format),
                     (STATUS[command],),
+                    found="" if command == "why" else None,
                     environment=environment,
                     encoding=encoding,
                     direct=True,
@@ -224,8 +225,8 @@ def rows() -> list[Attack]:
                 CHECK,
                 (0, 1, 130, -2),
                 found="",
-                signal=(int(signal.SIGINT), seconds, "group"),
-                direct=True,
+                signal=(int(signal.SIGINT), seconds, "group", "{home}/begun"),
+                program=("{python}", "-c", BEGUN),
                 after=short,
             )
         )
@@ -466,7 +467,6 @@ def rows() -> list[Attack]:
     for name, (path, text) in deep.items():
         found.append(Attack(name, GROUP, {path: text}, CHECK, (1,)))
         found.append(Attack(f"graph: {name}", GROUP, {path: text}, COMMANDS["graph"], (0,)))
-    installed = ("{python}", "-c", "import sys; from rosimpact.impact.cli import main; main()")
     found += [
         Attack(
             "modules of the folder: the installed command",
@@ -474,7 +474,7 @@ def rows() -> list[Attack]:
             shadows(""),
             CHECK,
             (1,),
-            program=("{python}", "-I", "-c", installed[2]),
+            program=("{python}", "-I", "-c", ENTRY),
         ),
         Attack("modules of the folder: the script", GROUP, shadows(""), CHECK, (1,), program=("{script}",)),
         Attack(

@@ -594,6 +594,7 @@ def follows(command: str) -> Attack:
         make,
         (*COMMANDS[command], "--follow-links"),
         (STATUS[command],),
+        found="" if command == "impact" else None,
         git=command in NEEDS_GIT,
         words=() if command == "impact" else ("followed",) if command != "why" else ("elsewhere",),
     )

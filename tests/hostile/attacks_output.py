@@ -446,6 +446,7 @@ def rows() -> list[Attack]:
                 everywhere(NAMES),
                 (*COMMANDS[command], "-f", format, "-o", "{out}/report"),
                 (STATUS[command],),
+                found="" if format == "markdown" else None,
                 snapshot=False,
             )
         )
@@ -491,8 +492,8 @@ def row(command: str, format: str, place: str) -> Attack:
         arguments,
         (STATUS[command],),
         git=command in NEEDS_GIT,
-        # `why` lists the first places alone.
-        found="" if command in ("impact", "why") or "--launch" in arguments else None,
+        # `why` and Markdown list the first alone.
+        found="" if command in ("impact", "why") or format == "markdown" or "--launch" in arguments else None,
         snapshot=False,
         refusable="rosimpact.toml" if "toml" in place else "",
     )
@@ -577,7 +578,7 @@ OPTIONS: dict[str, tuple[str, ...]] = {
     "check --baseline": (*COMMANDS["check"], "--baseline", "{ws}/TEXT"),
     "check --config": (*COMMANDS["check"], "--config", "TEXT"),
     "check --install": (*COMMANDS["check"], "--install", "TEXT"),
-    "check --output": (*COMMANDS["check"], "--output", "{ws}/nowhere/TEXT/x"),
+    "check --output": (*COMMANDS["check"], "--output", "{out}/nowhere/TEXT/x"),
     "check of a path": ("check", "{ws}/TEXT", "-t", "jazzy"),
     "graph --launch": (*COMMANDS["graph"], "--launch", "TEXT"),
     "graph --set": (*COMMANDS["graph"], "--launch", "healthy.launch.py", "--set", "TEXT"),

@@ -183,7 +183,7 @@ def rows() -> list[Attack]:
         Attack(
             "--fix on a full disk",
             GROUP,
-            {SOURCE: LINES + "// x\n" * 100_000},
+            {SOURCE: LINES + "// more\n" * 100_000},
             FIX,
             (0, 1, 2),
             limits={"RLIMIT_FSIZE": 100_000},
@@ -332,7 +332,7 @@ def keeps(part: bytes) -> Callable[[Place, Ended], list[str]]:
 
 def whole_source(place: Place, ended: Ended) -> list[str]:
     data = (place.ws / SOURCE).read_text()
-    return [] if data.endswith("// x\n") and data.count("// x\n") == 100_000 else [f"{SOURCE} is cut"]
+    return [] if data.endswith("// more\n") and data.count("// more\n") == 100_000 else [f"{SOURCE} is cut"]
 
 
 def temporary_links(place: Place) -> None:

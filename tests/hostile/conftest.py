@@ -22,7 +22,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "attack" not in metafunc.fixturenames:
         return
     groups = metafunc.module.GROUPS
-    chosen = metafunc.config.getoption("--attacks") or os.environ.get("ROSIMPACT_ATTACKS", "sample")
+    chosen = metafunc.config.getoption("--attacks", None) or os.environ.get("ROSIMPACT_ATTACKS", "sample")
     rows = [row for row in (attacks() if chosen == "all" else sample()) if row.group in groups]
     metafunc.parametrize(
         "attack", rows, ids=[f"{row.group}: {row.name}".encode("ascii", "backslashreplace").decode() for row in rows]

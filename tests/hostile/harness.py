@@ -22,6 +22,27 @@ import pygit2
 
 from . import outputs
 
+# What the installed command does; older versions began elsewhere.
+ENTRY = """try:
+    from rosimpact.edges.start import main
+except ImportError:
+    from rosimpact.impact.cli import main
+import sys
+sys.argv[0] = "rosimpact"
+sys.exit(main())
+"""
+# Interrupts are sent once this has made the file: Python's own start is not ours to mend.
+BEGUN = (
+    """try:
+    from rosimpact.edges import interrupts
+    interrupts.install()
+except ImportError:
+    pass
+import os, sys
+open(os.environ["HOME"] + "/begun", "w").close()
+"""
+    + ENTRY
+)
 MANIFEST = """<?xml version="1.0"?>
 <package format="3">
   <name>{name}</name><version>1.0.0</version><description>d</description>
@@ -356,9 +377,11 @@ class Range:
 
     def __init__(self, interpreter: str = sys.executable, root: Path | None = None) -> None:
         self.interpreter = interpreter
-        self.script = os.path.join(os.path.dirname(interpreter), "rosimpact")
         self.root = Path(tempfile.mkdtemp(prefix="hostile-")) if root is None else root
         self._own = root is None
+        self.script = str(self.root / "rosimpact")
+        Path(self.script).write_text(f"#!{interpreter}\n{ENTRY}")
+        Path(self.script).chmod(0o755)
         self._count = 0
 
     def __enter__(self) -> Range:
@@ -407,7 +430,7 @@ class Range:
             program = (
                 self.interpreter,
                 "-c",
-                script.format(str(listing)) + "from rosimpact.impact.cli import main; main()",
+                script.format(str(listing)) + "\n" + ENTRY,
             )
             ended = self._run(
                 Attack("warm", "", {}, (), direct=True, program=program), place, [place.filled(a) for a in arguments]
@@ -437,11 +460,7 @@ class Range:
             **{name: self.url for name in ("http_proxy", "https_proxy", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")},
             **{name: place.filled(value) for name, value in attack.environment.items()},
         }
-        program = attack.program or (
-            (self.interpreter, "-c", "from rosimpact.impact.cli import main; main()")
-            if attack.direct
-            else ("rosimpact",)
-        )
+        program = attack.program or ((self.interpreter, "-c", ENTRY) if attack.direct else ("rosimpact",))
         program = tuple(
             place.filled(part).replace("{python}", self.interpreter).replace("{script}", self.script)
             for part in program
@@ -457,7 +476,7 @@ class Range:
                 "stdout": attack.stdout or str(streams["stdout"]),
                 "stderr": attack.stderr or str(streams["stderr"]),
                 "limits": dict(attack.limits),
-                "signal": list(attack.signal),
+                "signal": [place.filled(part) if isinstance(part, str) else part for part in attack.signal],
                 "seconds": attack.seconds,
                 "wall": 90,
             }
@@ -483,7 +502,8 @@ class Range:
             return Result(attack.name, attack.group, failures, ended.cpu, ended.rss)
         finally:
             if not keep:
-                shutil.rmtree(place.root, ignore_errors=True)
+                # Not shutil's, which recurs into folders.
+                subprocess.run(["rm", "-rf", str(place.root)], check=False)
 
     def _states(self, place: Place) -> dict[str, tuple]:
         found = {f"ws/{name}": what for name, what in state(place.ws).items()}

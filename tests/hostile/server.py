@@ -71,7 +71,7 @@ def start(job):
 
 def watch(child, job):
     """Waits for the child. Gives what is known of its end."""
-    began = looked = moved = time.monotonic()
+    began = begun = looked = moved = time.monotonic()
     used = most = 0.0
     killed = ""
     pending = job["signal"]
@@ -80,11 +80,11 @@ def watch(child, job):
         now = time.monotonic()
         if pid:
             break
-        if pending and now - began >= pending[1]:
-            if pending[2:] == ["group"]:
-                os.killpg(child, pending[0])
-            else:
-                os.kill(child, pending[0])
+        if pending and pending[3:] and not os.path.exists(pending[3]):
+            begun = now
+        elif pending and now - begun >= pending[1]:
+            with contextlib.suppress(OSError):  # at its end, or before it has a group
+                (os.killpg if pending[2:3] == ["group"] else os.kill)(child, pending[0])
             pending = None
         if now - looked > LOOK and not killed:
             looked = now
@@ -158,7 +158,10 @@ def main():
 
 
 if __name__ == "__main__" and main():
-    from rosimpact.impact.cli import main as run
+    try:
+        from rosimpact.edges.start import main as run
+    except ImportError:  # older versions
+        from rosimpact.impact.cli import main as run
 
     sys.stdin = os.fdopen(0, closefd=False)
-    run()
+    sys.exit(run())

@@ -8,4 +8,5 @@ GROUPS = ("bombs",)
 
 
 def test_attack(shooting_range: Range, attack: Attack) -> None:
-    assert shooting_range.attempt(attack).failures == []
+    failures = shooting_range.attempt(attack).failures
+    assert not failures, "\n".join(failures)

@@ -12,4 +12,5 @@ GROUPS = (
 
 
 def test_attack(shooting_range: Range, attack: Attack) -> None:
-    assert shooting_range.attempt(attack).failures == []
+    failures = shooting_range.attempt(attack).failures
+    assert not failures, "\n".join(failures)
