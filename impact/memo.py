@@ -13,7 +13,7 @@ import msgspec
 from msgspec import structs
 
 from .cache import code_stamp
-from .facts.store import Store
+from .facts.store import Store, encodable
 from .model import watch
 from .model.build import At
 from .model.flow.wanted import stamp
@@ -63,7 +63,7 @@ def watched(store: Store) -> Watched:
     names = watch.watched()
     # The table of fields and the surfaces are read from files of their own, where they are asked.
     bare = structs.replace(names, fields=None, surfaces=None)
-    store.remember("watched", [(name, msgspec.msgpack.encode(bare))])
+    store.remember("watched", encodable([(name, bare)]))
     return names
 
 
@@ -133,7 +133,7 @@ def _keep(store: Store, key: bytes, hits: Iterable[tuple[str, Hit]], unresolved:
         )
         for rule, hit in hits
     )
-    store.remember("judgement", [(key, msgspec.msgpack.encode(_Judgement(stored, unresolved)))])
+    store.remember("judgement", encodable([(key, _Judgement(stored, unresolved))]))
 
 
 def _recalled(store: Store, key: bytes) -> tuple[list[tuple[str, Hit]], dict[str, tuple[str, ...]]] | None:
@@ -161,7 +161,7 @@ def prepare(store: Store, target: Target) -> None:
                 continue
             except msgspec.MsgspecError:
                 pass
-        store.remember("changes", [(name, msgspec.msgpack.encode([tuple(change) for change in one.changes()]))])
+        store.remember("changes", encodable([(name, [tuple(change) for change in one.changes()])]))
 
 
 def _hit(h: _Hit) -> Hit:

@@ -22,6 +22,9 @@ import stat
 import time
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+import msgspec
 
 from ...edges.console import visible
 from ...edges.files import NOT_REGULAR
@@ -78,6 +81,14 @@ def unpack(data: bytes) -> bytes:
     if not inflater.eof:
         raise ValueError("cut off, or larger than a row may be")
     return whole
+
+
+def encodable(rows: Iterable[tuple[bytes, Any]]) -> Iterator[tuple[bytes, bytes]]:
+    """(key, value) as (key, msgpack), for remember(). Values that hold a name of bytes that are no UTF-8 are left out,
+    since msgpack cannot carry them: they are made again by every run."""
+    for key, value in rows:
+        with contextlib.suppress(UnicodeEncodeError):
+            yield key, msgspec.msgpack.encode(value)
 
 
 def _seal(table: str, key: bytes, data: bytes) -> bytes:

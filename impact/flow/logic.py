@@ -16,10 +16,10 @@ import msgspec
 
 from .. import processes
 from ..facts import kinds
-from ..facts.store import Store, fact_key, pack, unpack
+from ..facts.store import Store, encodable, fact_key, pack, unpack
 from .history import Commit, History, State
 from .logic_changes import Change, Reached, Side
-from .logic_states import compared, decoded, digest_key, safe_digest, stamp
+from .logic_states import compared, decoded, digest_key, packed_digest, safe_digest, stamp
 from .statements import EMPTY, Before, kind_of_facts
 
 Progress = Callable[[str, int, int], None]
@@ -230,8 +230,8 @@ class _Run:
             yield chunk, rows
 
     def _remember(self, rows: Iterable[tuple[str, _Result]]) -> None:
-        encode, folder = msgspec.msgpack.encode, self.history.folder
-        self.store.remember("logic", [(_commit_key(commit, folder), encode(row)) for commit, row in rows])
+        folder = self.history.folder
+        self.store.remember("logic", encodable((_commit_key(commit, folder), row) for commit, row in rows))
 
 
 def _numbered(task: Callable[..., Any], chunks: Sequence[Any], what: Sequence[Any], number: int) -> Any:
@@ -241,7 +241,7 @@ def _numbered(task: Callable[..., Any], chunks: Sequence[Any], what: Sequence[An
 def _unread(state: State) -> tuple[bytes, bytes]:
     """What stands for the digest of a state that could not be made: all its files count as not read."""
     files = tuple(file.path for file in state.files)
-    return state.key, pack(msgspec.msgpack.encode(msgspec.structs.replace(EMPTY, unread=files)))
+    return state.key, packed_digest(msgspec.structs.replace(EMPTY, unread=files))
 
 
 def _reaching(change: Change, listeners: Mapping[str, list[Reached]]) -> Change:
@@ -359,7 +359,7 @@ def _digest_chunk(repository: str, folder: str, states: Sequence[State]) -> list
             known = {key: facts for key, facts in known.items() if key in wanted}
             known.update(_facts(history, store, [key for key in wanted if key not in known]))
             facts = {file.path: known.get((file.id, kind_of_facts(file))) for file in state.files}
-            rows.append((state.key, pack(msgspec.msgpack.encode(safe_digest(state, facts, before)))))
+            rows.append((state.key, packed_digest(safe_digest(state, facts, before))))
     return rows
 
 

@@ -10,7 +10,8 @@ from typing import Any
 
 import msgspec
 
-from ..facts.store import unpack
+from ...edges.console import visible
+from ..facts.store import pack, unpack
 from .guard_renames import propose_renames
 from .guards import Language
 from .history import File, State
@@ -70,6 +71,25 @@ def safe_digest(state: State, facts: Mapping[str, Any], before: Before | None = 
         if before is not None:
             before.code = None
         return EMPTY
+
+
+def packed_digest(digest: Digest) -> bytes:
+    """A digest as it is kept. Names of bytes that are no UTF-8, which msgpack cannot carry, are kept as they are
+    shown."""
+    try:
+        return pack(msgspec.msgpack.encode(digest))
+    except UnicodeEncodeError:
+        return pack(msgspec.msgpack.encode(_visible_all(msgspec.to_builtins(digest))))
+
+
+def _visible_all(value: Any) -> Any:
+    if isinstance(value, str):
+        return visible(value)
+    if isinstance(value, (list, tuple)):
+        return [_visible_all(item) for item in value]
+    if isinstance(value, dict):
+        return {_visible_all(key): _visible_all(item) for key, item in value.items()}
+    return value
 
 
 def decoded(data: bytes | None) -> Digest:

@@ -10,8 +10,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-import msgspec
-
 from .. import processes
 from ..facts.kinds import FLOW, script_kind
 from ..facts.store import Store, pack, unpack
@@ -20,7 +18,7 @@ from ..model.package import role_of_folder
 from ..model.workspace import Package, Workspace
 from .history import File, State
 from .logic_changes import Change, Side
-from .logic_states import compared, decoded, digest_key, safe_digest
+from .logic_states import compared, decoded, digest_key, packed_digest, safe_digest
 from .statements import Digest, kind_of_facts
 
 _KINDS = {flow: plain for plain, flow in FLOW.items()} | {name: name for name in (*FLOW, "cmake", "setup_py")}
@@ -204,4 +202,4 @@ def _one(workspace: Workspace, gathered: Gathered, state: State) -> tuple[bytes,
         source = gathered if kind_of_facts(file) in _CODE else workspace.gathered
         facts[file.path] = source.facts(path).facts if path in source.kinds else None
     gathered.forget(whole.values())
-    return state.key, pack(msgspec.msgpack.encode(safe_digest(state, facts)))
+    return state.key, packed_digest(safe_digest(state, facts))

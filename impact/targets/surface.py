@@ -17,6 +17,7 @@ import msgspec
 from ..facts import kinds
 from ..facts.interface import PRIMITIVES, Field, Interface, Section, full_name
 from ..facts.parameters import last_part, mentions
+from ..facts.store import encodable
 from ..facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
 from ..model.package import role_of_folder
 from . import surface_build, surface_diff, surface_python
@@ -153,11 +154,10 @@ def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None)
                 pass  # of another version; it is made again
     surfaces = surfaces_of(tree, store, jobs)
     if folder:
-        store.remember("surface", [(key, _encoder.encode(surfaces))])
+        store.remember("surface", encodable([(key, surfaces)]))
     return surfaces
 
 
-_encoder = msgspec.msgpack.Encoder()
 _decoder = msgspec.msgpack.Decoder(dict[str, Surface])
 
 

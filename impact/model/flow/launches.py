@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import msgspec
 
+from ...facts.store import encodable
 from ..launch import Launched, SettingFile, Started, file_values, follow
 from ..names_ros import NameRefused, canonical, ros1_name, ros2_name, ros2_rule
 from ..package import role_of_folder
@@ -80,7 +81,7 @@ def launches(workspace: Workspace) -> tuple[Launch, ...]:
             pass  # of another version: made anew
     found = tuple(_launches(workspace))
     if store is not None:
-        store.remember("launches", [(key, msgspec.msgpack.encode(found))])
+        store.remember("launches", encodable([(key, found)]))
     return found
 
 

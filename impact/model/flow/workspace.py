@@ -11,6 +11,7 @@ import msgspec
 from ...cache import code_stamp
 from ...facts.flow import FlowFile
 from ...facts.kinds import kind_of
+from ...facts.store import encodable
 from ...gather import Gathered, gather
 from ..package import Watched, role_of_folder
 from ..workspace import Package, Workspace, link
@@ -174,8 +175,8 @@ def graph_of(
             pass  # of another version: made anew
     graph = workspace.code.graph(unread=_unread(workspace.code))
     if store is not None:
-        store.remember("graph", [(key, msgspec.msgpack.encode(graph))])
-        store.remember("callers", [(key, msgspec.msgpack.encode(callers(workspace.code)))])
+        store.remember("graph", encodable([(key, graph)]))
+        store.remember("callers", encodable([(key, callers(workspace.code))]))
     return msgspec.structs.replace(graph, root=root, rev=rev)
 
 
@@ -190,7 +191,7 @@ def callers_of(workspace: Workspace, store) -> Callers:
             pass  # of another version: made anew
     found = callers(workspace.code)
     if store is not None:
-        store.remember("callers", [(key, msgspec.msgpack.encode(found))])
+        store.remember("callers", encodable([(key, found)]))
     return found
 
 
