@@ -386,10 +386,10 @@ def test_a_file_that_vanishes_while_it_is_read(say, ws, monkeypatch):
 
     read = WorkingTree.read_with_id
 
-    def gone(self, path):
+    def gone(self, path, limit=0):
         if path == "src/bad/CMakeLists.txt":
             raise FileNotFoundError(2, "No such file or directory", path)
-        return read(self, path)
+        return read(self, path, limit)
 
     monkeypatch.setattr(WorkingTree, "read_with_id", gone)
     said = check(say, write(ws, {"src/bad/CMakeLists.txt": CMAKE + "# read here alone\n"}))
@@ -402,10 +402,10 @@ def test_a_file_that_may_not_be_read(say, ws, monkeypatch):
 
     read = WorkingTree.read_with_id
 
-    def denied(self, path):
+    def denied(self, path, limit=0):
         if path == "src/bad/package.xml":
             raise PermissionError(13, "Permission denied", path)
-        return read(self, path)
+        return read(self, path, limit)
 
     monkeypatch.setattr(WorkingTree, "read_with_id", denied)
     said = check(say, write(ws, {"src/bad/package.xml": GOOD + "<!-- read here alone -->"}))

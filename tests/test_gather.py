@@ -171,7 +171,9 @@ def test_a_large_file_is_not_read(tmp_path, monkeypatch):
         file.truncate(50_000_000)
     tree = WorkingTree(tmp_path / "ws")
     read = tree.read_with_id
-    monkeypatch.setattr(tree, "read_with_id", lambda path: pytest.fail(path) if "generated" in path else read(path))
+    monkeypatch.setattr(
+        tree, "read_with_id", lambda path, limit: pytest.fail(path) if "generated" in path else read(path, limit)
+    )
     with Store(tmp_path / "cache") as store:
         gathered = gather(tree, store)
     assert "p/src/generated.hpp" not in gathered.kinds
@@ -203,10 +205,10 @@ def test_a_file_that_cannot_be_read(tmp_path, monkeypatch, error, message):
     tree = WorkingTree(write(tmp_path / "ws", FILES))
     read = tree.read_with_id
 
-    def refuse(path):
+    def refuse(path, limit):
         if path == "p/src/node.cpp":
             raise error
-        return read(path)
+        return read(path, limit)
 
     monkeypatch.setattr(tree, "read_with_id", refuse)
     with Store(tmp_path / "cache") as store:
@@ -289,7 +291,7 @@ def test_two_looks_at_a_file_take_one_visit(tmp_path, monkeypatch, small_chunks,
     tree = WorkingTree(tmp_path / "ws")
     read = []
     read_with_id = tree.read_with_id
-    monkeypatch.setattr(tree, "read_with_id", lambda path: read.append(path) or read_with_id(path))
+    monkeypatch.setattr(tree, "read_with_id", lambda path, limit: read.append(path) or read_with_id(path, limit))
     with Store(tmp_path / "cache") as store:
         gathered = gather(tree, store, jobs=jobs, second=second_look)
         second = gathered.second
