@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from ...edges.console import counted, visible
 from ..rules.rule import Finding
@@ -13,9 +13,9 @@ _LINES = 10
 _SYMBOL = {"error": "❌", "warning": "⚠️", "note": "💡"}
 _LONGEST = 300
 _SPAN = re.compile(r"(`[^`]+`)")
-_LINKED = re.compile(
-    r"\S*(?:@(?=\w)|#(?=\d)|\$|://|\bwww\.|\b(?:mailto|xmpp):|\bGH-(?=\d))\S*|\b[0-9a-f]{7,40}\b", re.IGNORECASE
-)
+_WORD = re.compile(r"\S+")
+_LINKED = re.compile(r"@(?=\w)|#(?=\d)|\$|://|\bwww\.|\b(?:mailto|xmpp):|\bGH-(?=\d)", re.IGNORECASE)
+_COMMIT = re.compile(r"\b[0-9a-f]{7,40}\b", re.IGNORECASE)
 _BEFORE, _BEHIND = "([{\"'", ")]}\"',.;:"
 
 
@@ -116,13 +116,22 @@ def escaped(text: str) -> str:
 def _without_links(text: str) -> str:
     parts: list[str] = []
     last = 0
-    for match in _LINKED.finditer(text):
+    for match in _links(text):
         word = match[0].rstrip(_BEHIND)
         inner = word.lstrip(_BEFORE)
         start = match.start() + len(word) - len(inner)
         parts += [_inert(text[last:start]), code(inner) if inner else ""]
         last = start + len(inner)
     return "".join([*parts, _inert(text[last:])])
+
+
+def _links(text: str) -> Iterator[re.Match[str]]:
+    """Words, or commits in them, that GitHub makes a link of."""
+    for word in _WORD.finditer(text):
+        if _LINKED.search(word[0]):
+            yield word
+        else:
+            yield from _COMMIT.finditer(text, *word.span())
 
 
 def _inert(text: str) -> str:
