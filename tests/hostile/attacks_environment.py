@@ -263,7 +263,7 @@ def rows() -> list[Attack]:
                 GROUP,
                 {},
                 CHECK,
-                (0, 1, 143, -15),
+                (0, 1, 130, 143, -15),
                 found="",
                 signal=(int(signal.SIGTERM), seconds, "group"),
                 after=short,
