@@ -162,7 +162,8 @@ class History:
         import pygit2
 
         try:
-            found = self.repo[commit].peel(pygit2.Tree).id
+            # The id alone: the tree itself may be damaged, and is looked at before libgit2 reads it.
+            found = self.repo[commit].peel(pygit2.Commit).tree_id
         except (ValueError, TypeError, pygit2.GitError) as error:
             raise KeyError(commit) from error
         for part in self.folder.split("/") if self.folder else ():
@@ -291,6 +292,7 @@ class History:
         if not parent:
             return {}
         try:
+            self._check_folders(*(self.repo[each].peel(pygit2.Commit).tree_id for each in (parent, commit)))
             diff = self.repo[parent].tree.diff_to_tree(self.repo[commit].tree, context_lines=0)
             for delta in diff.deltas:
                 if delta.status != pygit2.enums.DeltaStatus.MODIFIED and self._is_large(delta):
@@ -303,6 +305,18 @@ class History:
             }
         except (OSError, KeyError, ValueError, TypeError, AttributeError, pygit2.GitError):
             return {}
+
+    def _check_folders(self, one, other) -> None:
+        """Reads the folders in which two trees differ, as libgit2 will. Raises OSError where one is damaged."""
+        pairs = [(one, other)]
+        while pairs:
+            sides = [
+                {name: item for name, mode, item in self.tree.list(side) if mode == _MODE_FOLDER} if side else {}
+                for side in pairs.pop()
+            ]
+            names = sides[0].keys() | sides[1].keys()
+            both = ((sides[0].get(name), sides[1].get(name)) for name in names)
+            pairs += [(old, new) for old, new in both if old != new]
 
     def _is_large(self, delta) -> bool:
         sides = (delta.old_file.id, delta.new_file.id)
