@@ -79,7 +79,7 @@ class GitTree(Walked):
         self.aliases: dict[str, str] = {}
         self.folder = inside(folder) or ""
         self.name = name_of(self.repositories[""], self.folder)
-        self._top = tree.id
+        self._top = tree
         self._entries: list[Entry] | None = None
         self._blobs: dict[str, Any] = {}
         self._folders: set[str] = set()
@@ -106,7 +106,7 @@ class GitTree(Walked):
     def merge_base(self, revision: str) -> GitTree:
         """The tree at the merge base of this revision and another. Raises TreeError when they share no history."""
         other, tree = resolve(self._repo, revision, self.repository)
-        for each, commit, top in ((revision, other, tree.id), (self.revision, self.commit, self._top)):
+        for each, commit, top in ((revision, other, tree), (self.revision, self.commit, self._top)):
             if commit == str(top):
                 raise TreeError(f"`{shown(each)}` is a folder without a commit; give a branch, a tag or a commit")
         base = merge_base(self._repo, self.commit, other)

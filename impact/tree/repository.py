@@ -226,20 +226,21 @@ def _alternates(objects: str) -> Iterator[str]:
 
 
 def resolve(repo: Any, revision: str, place: str) -> tuple[str, Any]:
-    """(id of the commit, its tree) of a revision; a tree without a commit has an id too. Raises TreeError."""
+    """(id of the commit, id of its tree) of a revision; a tree without a commit has one id twice. The tree itself is not
+    read: it may be damaged, and Objects looks at it before libgit2 does. Raises TreeError."""
     import pygit2
 
     for spelling in (revision, f"origin/{revision}"):
         try:
             found = repo.revparse_single(spelling)
-            tree = found.peel(pygit2.Tree)
         except (KeyError, ValueError, TypeError, OSError, pygit2.GitError):
             continue
         try:
-            found = found.peel(pygit2.Commit)
-        except (ValueError, TypeError, pygit2.GitError):  # a tree without a commit will do
-            found = tree
-        return str(found.id), tree
+            commit = found.peel(pygit2.Commit)
+            return str(commit.id), commit.tree_id
+        except (KeyError, ValueError, TypeError, OSError, pygit2.GitError):
+            if found.type_str == "tree":
+                return str(found.id), found.id
     cure = "its history is cut off (shallow), fetch more of it" if repo.is_shallow else "git rev-parse must know it"
     raise TreeError(f"`{shown(revision)}` is no revision of `{shown(place)}`; {cure}")
 
