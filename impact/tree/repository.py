@@ -226,8 +226,10 @@ def _alternates(objects: str) -> Iterator[str]:
 
 
 def resolve(repo: Any, revision: str, place: str) -> tuple[str, Any]:
-    """(id of the commit, id of its tree) of a revision; a tree without a commit has one id twice. The tree itself is not
-    read: it may be damaged, and Objects looks at it before libgit2 does. Raises TreeError."""
+    """(id of the commit, id of its tree) of a revision; a tree without a commit has one id twice. Raises TreeError.
+
+    The tree itself is not read: it may be damaged, and Objects looks at it before libgit2 does.
+    """
     import pygit2
 
     for spelling in (revision, f"origin/{revision}"):
