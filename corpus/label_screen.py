@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -348,6 +349,8 @@ def run(session: Session, suggest: Suggest) -> None:
     need_terminal()
     from .keyboard import Keyboard
 
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # signs that the terminal's encoding has not got; one column each
     console = Console()
     screen = Screen(session, suggest, GUIDE_FILE.read_text(encoding="utf-8"))
     with Keyboard(sys.stdin.fileno(), sys.stdout.fileno()) as keyboard, console.screen() as shown:

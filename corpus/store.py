@@ -389,6 +389,8 @@ class Store:
         for key, id, packed in self._all(
             "SELECT key, id, report FROM report WHERE key >= ? AND key < ?", (f"{old.lower()}#", f"{old.lower()}$")
         ):
+            if not isinstance(id, str):
+                raise self._damaged(TypeError(f"the id of `{key}` is no text"))
             number = id.rpartition("#")[2]
             now_id = f"{new}#{number}"
             if packed is not None:
