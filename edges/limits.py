@@ -58,6 +58,9 @@ class Limits:
     memory: int = 768 * MB  # that extraction may need beyond what the process has
 
 
+# What decides whether something is read at all, and not what is found in it.
+_OF_THE_RUN = frozenset(("baseline", "capture", "listing", "index", "row", "entries", "seconds", "memory"))
+
 _UNITS = {"": 1, "k": KB, "kb": KB, "m": MB, "mb": MB, "g": GB, "gb": GB}
 
 
@@ -84,6 +87,14 @@ def limits() -> Limits:
 def of_environment(environment: Mapping[str, str]) -> Limits:
     """The limits that an environment asks for. Raises LimitError."""
     return parse(environment.get(VARIABLE, ""))
+
+
+@cache
+def limits_stamp() -> str:
+    """What the user's limits add to the key of anything that is remembered; empty with the usual ones."""
+    usual, asked = Limits(), limits()
+    changed = ((field.name, getattr(asked, field.name)) for field in fields(Limits) if field.name not in _OF_THE_RUN)
+    return "".join(f" {name}={value}" for name, value in changed if value != getattr(usual, name))
 
 
 def size_text(size: int) -> str:

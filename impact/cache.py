@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
+from ..edges.limits import limits_stamp
+
 CACHE_VARIABLE = "ROSIMPACT_CACHE"
 
 
@@ -21,7 +23,7 @@ def cache_folder(environment: Mapping[str, str] = os.environ) -> Path:
 
 @cache
 def code_stamp() -> str:
-    """Changes whenever a file of the tool does: sizes and times of its modules."""
+    """Changes whenever a file of the tool does: sizes and times of its modules. So it does with the user's limits."""
     root = Path(__file__).parent
     stamp = hashlib.sha1()
     for folder, folders, files in os.walk(root):
@@ -32,7 +34,7 @@ def code_stamp() -> str:
                 stamp.update(
                     f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape")
                 )
-    return stamp.hexdigest()
+    return stamp.hexdigest() + limits_stamp()
 
 
 @cache

@@ -29,6 +29,8 @@ from .targets.providers import default_providers
 from .targets.resolve import Chosen, choose_targets
 from .targets.version import compare
 from .tree import LEAVES, GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
+from .tree.ignore import Index, enclosing_repository
+from .tree.paths import within
 
 if TYPE_CHECKING:
     from .flow.impact import Impact
@@ -291,7 +293,7 @@ def open_workspace(
         second = code_kinds(tree) if asks_flow else None
         gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second)
         workspace = link(tree, gathered, store, None, memo.watched(store), options.jobs)
-        gathered.problems += [*workspace.discovered.problems, *_left_out(workspace, gathered)]
+        gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
         targets = choose_targets(options.targets, config, workspace, tree)
         asked = frozenset(chosen.target.distro for chosen in targets)
         views = [View(workspace, chosen.target, default_providers(), config, asked) for chosen in targets]
@@ -305,16 +307,14 @@ def open_workspace(
         yield Opened(tree, store, gathered, workspace, targets, views, config, installed, shelves)
 
 
-def _left_out(workspace: Workspace, gathered: Gathered) -> Iterator[PathProblem]:
+def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
     """Packages that another of the same name stands for; build tools refuse such a workspace."""
-    present = {package.path: package.name for package in workspace}
     paths = {package.name: package.path for package in workspace}
-    for place in workspace.discovered.packages:
-        if place.path not in present and place.manifest_path in gathered.kinds:
-            other = shown(paths.get(place.name) or ".")
-            yield PathProblem(
-                place.manifest_path, f"not analysed, since another package named `{place.name}` is in {other}"
-            )
+    for place in workspace.hidden:
+        other = shown(paths.get(place.name) or ".")
+        yield PathProblem(
+            place.manifest_path, f"not analysed, since another package named `{place.name}` is in {other}"
+        )
 
 
 def settings_of(root: Path, tree: Tree, file: Path | None, *, follow_links: bool = False) -> Config:
@@ -337,6 +337,13 @@ def open_tree(root: Path, rev: str, *, follow_links: bool = False) -> Tree:
     followed. Raises TreeError.
     """
     bare = (root / "objects").is_dir() and (root / "refs").is_dir() and (root / "HEAD").is_file()
+    if not follow_links and (link := _leaving_link(root)):
+        raise TreeError(
+            f"`{shown(link)}` is a link of the repository that leads out of it, and is not followed; give the folder "
+            "that it leads to, or --follow-links"
+        )
+    # A change can add all that makes a folder look like a bare repository, and show another workspace in it.
+    bare = bare and enclosing_repository(os.path.realpath(root)) is None
     if not root.exists() or not (rev or bare):
         return WorkingTree(root, follow_links=follow_links)
     if not root.is_dir():
@@ -348,6 +355,21 @@ def open_tree(root: Path, rev: str, *, follow_links: bool = False) -> Tree:
     if not inside:
         return tree
     return GitTree(root, rev or "HEAD", folder.replace(os.sep, "/"), follow_links=follow_links)
+
+
+def _leaving_link(root: Path) -> str:
+    """The first link on the way to a folder that a git repository tracks and that leads out of the repository; empty
+    without one. A change can put such a link where the workspace was."""
+    place = Path(os.path.abspath(root))
+    for path in (*reversed(place.parents), place):
+        if path.is_symlink():
+            parent = os.path.realpath(path.parent)
+            repository = enclosing_repository(parent)
+            if repository is not None and not within(os.path.realpath(path), repository):
+                index = Index.of(repository)
+                if index is None or index.tracks(os.path.relpath(os.path.join(parent, path.name), repository)):
+                    return os.fspath(path)
+    return ""
 
 
 def reader(tree: Tree) -> Callable[[str], bytes | None]:

@@ -10,6 +10,7 @@ from ..edges import files
 from ..edges.console import UserError
 from ..edges.documents import DocumentError, load_toml
 from ..edges.limits import limits
+from .tree.paths import VERSION_CONTROL
 
 
 class ConfigError(UserError, ValueError):
@@ -59,8 +60,8 @@ def load(folder: Path, file: Path | None = None, *, follow_links: bool = False) 
     trusted = file is not None or follow_links
     if not trusted and not lies_in(path, folder):
         raise ConfigError(
-            f"{path}: is a link that leads out of the workspace and is not read; give the file with --config, or "
-            "follow links with --follow-links"
+            f"{path}: is a link that leads out of the workspace, or into `.git`, and is not read; give the file with "
+            "--config, or follow links with --follow-links"
         )
     try:
         data = files.read_file(path, limits().settings)
@@ -74,9 +75,11 @@ def load(folder: Path, file: Path | None = None, *, follow_links: bool = False) 
 
 
 def lies_in(path: str | os.PathLike[str], folder: str | os.PathLike[str]) -> bool:
-    """Whether a path really leads to something below a folder."""
+    """Whether a path really leads to something below a folder, outside of the version control's own folders."""
     real, top = os.path.realpath(path), os.path.realpath(folder)
-    return real == top or real.startswith(top.rstrip(os.sep) + os.sep)
+    if real != top and not real.startswith(top.rstrip(os.sep) + os.sep):
+        return False
+    return VERSION_CONTROL.isdisjoint(real[len(top) :].split(os.sep))
 
 
 def check_inside(path: Path, config: Config, where: str) -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import re
+from array import array
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,7 +23,11 @@ _MARKUP = re.compile(
     re.DOTALL,
 )
 # Bracket arguments and comments, quoted arguments, escapes and comments, in which a parenthesis is none.
-_CMAKE = re.compile(rb"""\#?\[(?P<equals>=*)\[.*?\](?P=equals)\]|"(?:[^"\\]|\\.)*"|\\.|\#[^\n]*|[()]""", re.DOTALL)
+# What is not closed reaches to the end of the file, so that going through it takes linear time.
+_CMAKE = re.compile(
+    rb"""(?:\#|(?<![^\s()]))\[(?P<equals>=*)\[.*?(?:\](?P=equals)\]|\Z)|"(?:[^"\\]|\\.)*(?:"|\Z)|\\.|\#[^\n]*|[()]""",
+    re.DOTALL,
+)
 _CMAKE_REST = re.compile(rb"[ \t\r]*(?:#.*)?\Z")
 _DECLARATION = re.compile(r"\s*<(?:\w+_)?depend>")
 _COMMENTS_ONLY = re.compile(rb"(?:[ \t]*<!--(?:(?!-->|\n).)*-->)*[ \t]*\Z")
@@ -212,17 +218,23 @@ def offset_of(data: bytes, line: int, column: int = 1) -> int:
 
     The column behind the last character is the line's end. Raises ValueError for a place outside the file.
     """
-    start = len(_BOM) if data.startswith(_BOM) else 0
-    for _ in range(line - 1):
-        end = data.find(b"\n", start)
-        if end < 0:
-            raise ValueError(f"there is no line {line}")
-        start = end + 1
+    starts = _line_starts(data)
+    if line > len(starts):
+        raise ValueError(f"there is no line {line}")
+    start = starts[max(line, 1) - 1]
     end = data.find(b"\n", start)
     text = data[start : len(data) if end < 0 else end].decode("utf-8", "surrogateescape")
     if line < 1 or not 1 <= column <= len(text) + 1:
         raise ValueError(f"there is no column {column} in line {line}")
     return start + len(text[: column - 1].encode("utf-8", "surrogateescape"))
+
+
+@lru_cache(maxsize=4)
+def _line_starts(data: bytes) -> array[int]:
+    """The offset of each line; one file may have as many fixes as lines."""
+    starts = array("q", (len(_BOM) if data.startswith(_BOM) else 0,))
+    starts.extend(match.end() for match in re.finditer(rb"\n", data))
+    return starts
 
 
 def replace_text(path: str, data: bytes, line: int, column: int, old: str, new: str) -> Edit | None:
@@ -353,8 +365,12 @@ def remove_dependency(data: bytes, name: str, tag: str = "", path: str = "packag
     return tuple(edits)
 
 
+@lru_cache(maxsize=4)
 def _manifest(data: bytes) -> _Manifest | None:
     """The children of <package> with their offsets, None when the file is no manifest that can be followed."""
+    # In what is no XML, or has a DOCTYPE, the patterns take quadratic time, and mean something else.
+    if b"<!DOCTYPE" in data or not _is_xml(data):
+        return None
     children: list[_Element] = []
     open_tags: list[str] = []
     version = 1
@@ -386,6 +402,16 @@ def _manifest(data: bytes) -> _Manifest | None:
             if not match["empty"]:
                 open_tags.append(tag)
     return None
+
+
+def _is_xml(data: bytes) -> bool:
+    from xml.parsers import expat
+
+    try:
+        expat.ParserCreate().Parse(data, True)
+    except (expat.ExpatError, ValueError, LookupError):
+        return False
+    return True
 
 
 def _insertion(data: bytes, manifest: _Manifest, name: str, tag: str, path: str) -> Edit:

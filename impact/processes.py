@@ -103,8 +103,10 @@ class Workers:
             try:
                 _send(worker.tasks, thing)
                 return
-            except BrokenPipeError:  # killed while it had nothing to do
-                self._end(worker)
+            except BrokenPipeError:
+                if worker.fresh:
+                    return  # it ended while it took the thing: finished() says so
+                self._end(worker)  # killed while it had nothing to do
 
     def finished(self) -> list[tuple[Any, Any]]:
         """Waits until at least one thing is done: (thing, result or Died) of all that are. What a task raises is raised

@@ -10,7 +10,7 @@ import pygit2
 import pytest
 from rosimpact.impact.base import BaseError, base_tree, compare, read_pinned
 from rosimpact.impact.check import Options, check
-from rosimpact.impact.tree import GitTree, WorkingTree
+from rosimpact.impact.tree import GitTree, TreeError, WorkingTree
 
 MANIFEST = """<package format="3">
   <name>{name}</name><version>1.0.0</version><description>d</description>
@@ -239,6 +239,43 @@ def test_a_bare_repository(tmp_path):
     report = check(tmp_path / "bare.git")
     assert [f.package for f in report.findings if f.severity == "error"] == ["a"]
     assert [target.name for target in report.targets] == ["robot"]
+
+
+def test_a_folder_of_a_repository_is_no_bare_repository(tmp_path):
+    """What a change adds beside a workspace does not show another one in its place."""
+    package(tmp_path / "empty/clean")
+    commit(tmp_path / "empty")
+    package(tmp_path / "work/ws/a", WRONG)
+    pygit2.clone_repository(str(tmp_path / "empty"), str(tmp_path / "bare.git"), bare=True)
+    shutil.copytree(tmp_path / "bare.git", tmp_path / "work/ws", dirs_exist_ok=True)
+    commit(tmp_path / "work")
+    assert [f.package for f in check(tmp_path / "work/ws").findings if f.severity == "error"] == ["a"]
+
+
+@pytest.mark.parametrize(("target", "tracked", "refused"), [
+    ("../secret", True, True), ("../secret", False, False), ("src", True, False),
+])  # fmt: skip
+def test_a_workspace_that_a_repository_links_elsewhere(tmp_path, target, tracked, refused):
+    package(tmp_path / "secret/a", WRONG)
+    package(tmp_path / "work/src/a", WRONG)
+    if tracked:
+        (tmp_path / "work/ws").symlink_to(target)
+    commit(tmp_path / "work")
+    if not tracked:
+        (tmp_path / "work/ws").symlink_to(target)
+    if refused:
+        with pytest.raises(TreeError, match="leads out of it, and is not followed"):
+            check(tmp_path / "work/ws")
+    found = check(tmp_path / "work/ws", Options(follow_links=refused))
+    assert [f.package for f in found.findings if f.severity == "error"] == ["a"]
+
+
+@pytest.mark.parametrize("folder", ["0", "z"])
+def test_a_package_that_another_of_its_name_stands_for_is_a_warning(tmp_path, folder):
+    package(tmp_path / "a", WRONG)
+    package(tmp_path / folder / "a")
+    told = [f for f in check(tmp_path, JAZZY).findings if "not analysed, since another package named" in f.message]
+    assert [finding.severity for finding in told] == ["warning"]
 
 
 def test_base_tree_of_a_revision_is_a_revision(tmp_path):

@@ -3,6 +3,7 @@
 import os
 import stat
 import subprocess
+import time
 
 import pytest
 from catkin_pkg.package import parse_package_string
@@ -371,3 +372,43 @@ def test_what_rules_propose_becomes_edits(proposed, before, after, kept):
 def test_insert_lines(data, line, text, expected):
     change = insert_lines("f", data, line, text)
     assert (change and apply([(change,)], {"f": data}.get).files["f"]) == expected
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: insert_lines("CMakeLists.txt", b"set(x " + b"a[[" * 200_000 + b")\nfind_package(y)\n", 2, "z"),
+        lambda: insert_lines("CMakeLists.txt", b"set(x " + b"[[ " * 200_000 + b")\nfind_package(y)\n", 2, "z"),
+        lambda: insert_lines("CMakeLists.txt", b'set(x "' + b"[=[" * 200_000 + b")\nfind_package(y)\n", 2, "z"),
+        lambda: declare_dependency(b"<package>" + b"<!--" * 200_000, "x"),
+        lambda: declare_dependency(b"<package>" + b'<a "' * 200_000, "x"),
+        lambda: declare_dependency(
+            b"<!DOCTYPE package [<!ENTITY a ']>" + b"<!--" * 200_000 + b"'>]><package></package>", "x"
+        ),
+    ],
+)
+def test_no_file_takes_long(make):
+    start = time.process_time()
+    make()
+    assert time.process_time() - start < 5
+
+
+def test_many_fixes_of_one_long_file_take_no_longer_than_few():
+    data = b"\n" * 1_000_000 + b"#include <a.h>\n" * 5_000
+    start = time.process_time()
+    edits = [replace_text("a.cpp", data, line, 10, "<a.h>", "<b.h>") for line in range(1_000_001, 1_005_001)]
+    assert edits[0] == Edit("a.cpp", 1_000_009, 1_000_014, "<b.h>") and all(edits)
+    assert time.process_time() - start < 5
+
+
+@pytest.mark.parametrize(
+    ("data", "line", "expected"),
+    [
+        (b"set(x a[[b c)\nfind_package(y)\n", 1, b"set(x a[[b c)\nz\nfind_package(y)\n"),
+        (b"set(x [[)]] )\nfind_package(y)\n", 1, b"set(x [[)]] )\nz\nfind_package(y)\n"),
+        (b"set(x [[ c)\nfind_package(y)\n", 1, None),
+    ],
+)
+def test_brackets_begin_arguments_alone(data, line, expected):
+    edit = insert_lines("CMakeLists.txt", data, line, "z")
+    assert (edit and apply([(edit,)], {"CMakeLists.txt": data}.get).files["CMakeLists.txt"]) == expected

@@ -469,3 +469,23 @@ def test_an_empty_tree(tmp_path):
         (tmp_path / "ws").mkdir()
         gathered = gather(WorkingTree(tmp_path / "ws"), store)
         assert (gathered.kinds, gathered.ids, gathered.problems, gathered.extracted) == ({}, {}, [], 0)
+
+
+@pytest.mark.skipif(not processes.may_fork(), reason="processes are forked on Linux only")
+def test_memory_that_another_file_took_is_not_held_against_a_file(tmp_path, monkeypatch):
+    extract, taken = kinds.extract, []
+
+    def fill(kind, data):
+        if taken:
+            raise MemoryError
+        if b"POISON" in data:
+            taken.append(data)
+        return extract(kind, data)
+
+    monkeypatch.setattr(kinds, "extract", fill)
+    files = {"src/a.cpp": "// POISON " + "x" * 1000, "src/b.cpp": "// innocent"}
+    write(tmp_path / "ws", files)
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=1)
+    assert gathered.problems == []
+    assert sorted(gathered.kinds) == sorted(files)

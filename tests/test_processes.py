@@ -157,6 +157,13 @@ def children():
 
 
 @needs_fork
+@pytest.mark.parametrize("size", [1, 1_000_000])
+def test_processes_that_end_before_they_take_a_thing_are_no_endless_row(monkeypatch, size):
+    monkeypatch.setattr(processes, "_limit_memory", lambda: os._exit(1))
+    assert [result for _, result in processes.forked(len, [b"x" * size], 1)] == [processes.Died("crashed")]
+
+
+@needs_fork
 def test_no_process_and_no_descriptor_is_left():
     before, born_before = sorted(os.listdir("/proc/self/fd")), children()
     for _ in processes.forked(_doubled, range(20), 3, 2):

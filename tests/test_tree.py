@@ -639,3 +639,22 @@ def test_a_folder_is_no_base(tmp_path):
     commit(write(tmp_path, {"src/a": "1"}))
     with pytest.raises(TreeError, match="without a commit"):
         GitTree(tmp_path).merge_base("HEAD:src")
+
+
+@pytest.mark.parametrize(("kind", "entries", "told"), [
+    (WorkingTree, 7, True), (GitTree, 7, True), (WorkingTree, 50, False), (GitTree, 50, False),
+])  # fmt: skip
+def test_paths_have_so_many_characters_in_all(tmp_path, monkeypatch, kind, entries, told):
+    from rosimpact.edges.limits import Limits
+    from rosimpact.impact.tree import git, paths, working
+
+    for name in ("a", "b", "c"):
+        place = tmp_path / ("d" * 250) / name
+        place.parent.mkdir(exist_ok=True)
+        place.write_text(name)
+    commit(tmp_path)
+    for module in (git, paths, working):
+        monkeypatch.setattr(module, "limits", lambda: Limits(entries=entries))
+    tree = kind(tmp_path)
+    tree.entries()
+    assert any("characters in all" in problem.message for problem in tree.problems) is told

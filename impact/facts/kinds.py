@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 import msgspec
 
-from ...edges.limits import limits, size_text
+from ...edges.limits import limits, limits_stamp, size_text
 from .allow import allows
 from .place import Allow, Problem
 
@@ -151,7 +151,11 @@ _BUDGETS = {
 
 
 def version_of(kind: str) -> str:
-    """The part of a store key that changes when an extractor does."""
+    """The part of a store key that changes when an extractor does, or what it may read at most."""
+    return _extractors_of(kind) + limits_stamp()
+
+
+def _extractors_of(kind: str) -> str:
     if kind == "script":
         return f"script.{EXTRACTORS['python'][2]}.{EXTRACTORS['shell'][2]}.{EXTRACTORS[kind][2]}"
     if kind == "flow_script":
@@ -214,8 +218,8 @@ def _facts(kind: str, data: bytes) -> Any:
             old = {"problems": (), "unresolved": ("written for Python 2",)} if python.python2_only else {}
             facts = msgspec.structs.replace(facts, python=python, **old)
         return _within_limits(facts)
-    except MemoryError:
-        raise
+    except (MemoryError, ImportError, OSError):
+        raise  # of this run and not of the file: such facts must not be remembered
     except RecursionError:
         return empty(kind, Problem(1, "nested too deeply to be read"))
     except Exception as error:  # one file must not end the run: what broke is named with it

@@ -318,6 +318,8 @@ def _verdict(
     except AssertionError:
         given = document.elements[0].get("format")
         problems.append(Problem(1, f"manifest format `{given}` is none of 1, 2 and 3"))
+    except MemoryError:
+        raise
     except Exception as error:  # whatever else a hostile file makes it raise is a fact about that file
         problems.append(Problem(1, f"catkin_pkg cannot read it: {type(error).__name__}: {error}"[:200]))
     noted = tuple(Problem(_line_of(w, document, children), _clause(w)) for w in warnings)

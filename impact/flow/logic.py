@@ -169,7 +169,12 @@ class _Run:
         compared: list[tuple[_Step, tuple[Change, ...]]] = []
         known = self.digests.packed
         for chunk, found in self._each(_compare_chunk, chunks, self.history.path, known):
-            compared.extend((step, row or ()) for step, row in zip(chunk, found, strict=True))
+            for step, row in zip(chunk, found, strict=True):
+                if row is None:
+                    # Not remembered: the next run tries again.
+                    yield step.commit.id, _Result((), False)
+                else:
+                    compared.append((step, row))
             done += len(chunk)
             self.progress("comparing commits", done, len(steps))
         reaching = [step for step, found in compared if any(change.topics for change in found)]
@@ -347,6 +352,10 @@ def _chunked(states: Iterable[State]) -> list[list[State]]:
     return sorted(chunks, key=lambda chunk: -sum(len(state.files) for state in chunk))
 
 
+# The digest of a package may take as much time as a file of this size.
+_JOIN_BYTES = 10_000_000
+
+
 def _digest_chunk(repository: str, folder: str, states: Sequence[State]) -> list[tuple[bytes, bytes]]:
     """(key, packed digest) of states of one package. folder: of the store of facts."""
     history = History(repository)
@@ -359,6 +368,7 @@ def _digest_chunk(repository: str, folder: str, states: Sequence[State]) -> list
             known = {key: facts for key, facts in known.items() if key in wanted}
             known.update(_facts(history, store, [key for key in wanted if key not in known]))
             facts = {file.path: known.get((file.id, kind_of_facts(file))) for file in state.files}
+            processes.begin_part(0, _JOIN_BYTES)
             rows.append((state.key, packed_digest(safe_digest(state, facts, before))))
     return rows
 

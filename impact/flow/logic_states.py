@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 
 from ...edges.console import visible
+from ...edges.limits import limits_stamp
 from ..facts.store import pack, unpack
 from .guard_renames import propose_renames
 from .guards import Language
@@ -111,7 +112,7 @@ def digest_key(key: bytes) -> bytes:
 def stamp(*folders: str) -> bytes:
     """Changes whenever the code does that makes facts, joins them, or compares."""
     root = FilePath(__file__).parent.parent
-    hashed = hashlib.sha1()
+    hashed = hashlib.sha1(limits_stamp().encode())
     files = [path for folder in folders for path in (root / folder).glob("*.*") if path.suffix in (".py", ".toml")]
     files += [root / "flow" / name for name in ("statements.py", "history.py", "logic_meaning.py")]
     for path in sorted(set(files)):

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
+from ...edges.limits import limits_stamp
 from .. import processes
 from ..facts.kinds import EXTRACTORS
 from ..facts.manifest import Manifest
@@ -108,6 +109,14 @@ class Workspace:
 
     def __iter__(self):
         return iter(self.packages.values())
+
+    @property
+    def hidden(self) -> Iterator[PackagePlace]:
+        """Packages that are not analysed, since another of the same name stands for them."""
+        present = {package.path for package in self}
+        for place in self.discovered.packages:
+            if place.path not in present and place.manifest_path in self.gathered.kinds:
+                yield place
 
     @cached_property
     def headers(self) -> dict[str, list[str]]:
@@ -499,6 +508,8 @@ class _Linker:
     def joined_one(self, place: PackagePlace, before: Digest | None) -> _Joined:
         try:
             digest, read = self.join(place, before)
+        except MemoryError:
+            raise  # ends a process, whose package is then tried in a new one
         except Exception as error:
             # One package that nobody foresaw must not take the others with it.
             why = f"{type(error).__name__}: {error}; this is a fault of rosimpact, please report it"
@@ -529,7 +540,8 @@ class _Linker:
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
-        about = f"{_VERSIONS} {self.watched.version} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n"
+        versions = f"{_VERSIONS}{limits_stamp()} {self.watched.version}"
+        about = f"{versions} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n"
         digest = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
         digest.update(
             "\n".join([f"{path} {ids.get(path, '')}" for path in self.paths_of[place.path]]).encode(

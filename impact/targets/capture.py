@@ -124,8 +124,10 @@ def read(path: Path) -> Machine:
     """Reads a captured file. Raises TargetError with what is wrong and what to do."""
     try:
         data = load_json(files.read_file(path, limits().capture))
-    except (OSError, DocumentError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
+        # Half a pair of surrogates (`\\ud800`) is valid JSON, and no text that can be written again.
+        json.dumps(data, ensure_ascii=False).encode()
+    except (OSError, DocumentError, UnicodeEncodeError, RecursionError) as error:
+        reason = getattr(error, "strerror", None) or (error if isinstance(error, DocumentError) else "is no text")
         raise TargetError(
             f"{path}: cannot be read as a captured machine: {reason}; write it anew with `rosimpact env capture`"
         ) from None

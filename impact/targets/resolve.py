@@ -100,15 +100,19 @@ def _configured(
         versions = {str(key): str(value) for key, value in versions.items()}
     except ValueError:  # an integer of thousands of digits
         raise TargetError(f'{where}: `versions` must be texts, such as {{ opencv = "4.9" }}') from None
-    date = day or (str(table["date"]) if "date" in table else None)
-    platform = str(table["platform"]) if "platform" in table else None
+    try:
+        date = day or (str(table["date"]) if "date" in table else None)
+        platform = str(table["platform"]) if "platform" in table else None
+        file = str(table["file"]) if "file" in table else ""
+    except ValueError:  # as above
+        raise TargetError(f"{where}: `date`, `platform` and `file` must be texts") from None
     if "file" in table:
         folder = config.path.parent if config.path else Path()
         if config.path:
-            check_inside(folder / str(table["file"]), config, f"{where} `file`")
-        base = parse_target(str(table["file"]), None, folder, data)
+            check_inside(folder / file, config, f"{where} `file`")
+        base = parse_target(file, None, folder, data)
         return base.changed(date=date, platform=platform, versions=versions, name=asked)
-    distro = str(table.get("distro", ""))
+    distro = table.get("distro", "")
     if "@" in distro:
         distro, _, written = distro.partition("@")
         date = date or written

@@ -9,6 +9,7 @@ from typing import Any
 
 from ...edges.limits import limits
 from .paths import (
+    CHARACTERS,
     IGNORE_MARKERS,
     LEAVES,
     LONGEST_PATH,
@@ -21,6 +22,7 @@ from .paths import (
     join,
     largest_file,
     shown,
+    too_long,
     too_many,
     within,
 )
@@ -85,6 +87,7 @@ class GitTree(Walked):
         self._folders: set[str] = set()
         self._places: Counter[Any] = Counter()
         self._left = limits().entries
+        self._characters_left = limits().entries * CHARACTERS
         self._steps = _STEPS_AT_MOST
         if self.folder and self._find(self.folder)[1] != _FOLDER:
             raise TreeError(f"`{shown(self.folder)}` is no folder of {self.label}; give one that this revision has")
@@ -182,6 +185,10 @@ class GitTree(Walked):
             self.problems.append(PathProblem(folder or ".", too_many("files and folders", limits().entries)))
             items = items[: self._left]
         self._left -= len(items)
+        self._characters_left -= len(items) * len(folder)
+        if self._characters_left < 0 < self._left:
+            self.problems.append(PathProblem(folder[:100] + "…", too_long(limits().entries)))
+            self._left = 0
         self._folders.add(folder)
         for name, mode, item in items:
             path = join(folder, name)

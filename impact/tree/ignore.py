@@ -87,6 +87,13 @@ class Index:
         at = bisect_left(self._paths, prefix)
         return at < len(self._paths) and self._paths[at].startswith(prefix)
 
+    def tracks(self, path: str) -> bool:
+        """True when git tracks a file or link of this path, or when that is not known."""
+        try:
+            return os.fsencode(path) in _paths(self._data) if self._data else False
+        except (ValueError, IndexError):
+            return True
+
 
 def _paths(data: bytes) -> Iterator[bytes]:
     """The paths of an index. Raises ValueError or IndexError where it is damaged, split or sparse."""

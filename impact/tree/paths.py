@@ -16,14 +16,17 @@ from ...edges.console import visible as shown
 from ...edges.limits import limits
 
 __all__ = [
-    "IGNORE_MARKERS", "LEAVES", "LONGEST_PATH", "VERSION_CONTROL", "Entry", "PathProblem", "Tree", "TreeError",
-    "Walked", "blob_id", "inside", "join", "largest_file", "outside", "shown", "too_many", "within",
+    "CHARACTERS", "IGNORE_MARKERS", "LEAVES", "LONGEST_PATH", "VERSION_CONTROL", "Entry", "PathProblem", "Tree",
+    "TreeError", "Walked", "blob_id", "inside", "join", "largest_file", "outside", "shown", "too_long", "too_many",
+    "within",
 ]  # fmt: skip
 
 IGNORE_MARKERS = frozenset(
     ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "_setup_util.py", "_order_isolated_packages.py")
 )
 VERSION_CONTROL = frozenset((".git", ".hg", ".svn", ".bzr", ".jj"))
+# Characters of all paths together, for each file that a tree may hold: deep folders make long paths.
+CHARACTERS = 100
 # What a working copy can hold: Linux opens no longer paths (PATH_MAX).
 LONGEST_PATH = 4096
 LEAVES = "the link leads out of the workspace, not followed; --follow-links follows it"
@@ -142,6 +145,11 @@ def outside(path: str) -> OSError:
 def too_many(what: str, number: int) -> str:
     """The problem of a tree that holds too much of something."""
     return f"more than {number:,} {what}, the rest is left out"
+
+
+def too_long(entries: int) -> str:
+    """The problem of a tree whose paths are too long, all together. entries: files and folders that it may hold."""
+    return f"the paths have {entries * CHARACTERS:,} characters in all, the rest is left out"
 
 
 @cache

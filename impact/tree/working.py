@@ -14,6 +14,7 @@ from ...edges import files
 from ...edges.limits import limits
 from .ignore import Index, enclosing_repository
 from .paths import (
+    CHARACTERS,
     IGNORE_MARKERS,
     LEAVES,
     VERSION_CONTROL,
@@ -27,6 +28,7 @@ from .paths import (
     largest_file,
     outside,
     shown,
+    too_long,
     too_many,
     within,
 )
@@ -36,8 +38,6 @@ PRODUCTS = frozenset(("build", "install", "devel", "log"))
 # it (FAT keeps two seconds), so its id is not remembered. Git calls such entries racy.
 RACY_NS = 2_000_000_000
 LINKED_FILES_AT_MOST = 20_000
-# Characters of all paths together, for each file that a tree may hold: deep folders make long paths.
-_CHARACTERS = 100
 _INDEX_FORMAT = 1
 
 
@@ -67,7 +67,7 @@ class WorkingTree(Walked):
         self._stats: dict[str, tuple[int, int, int, int]] = {}
         self._devices: dict[str, int] = {}
         self._left = limits().entries
-        self._characters_left = limits().entries * _CHARACTERS
+        self._characters_left = limits().entries * CHARACTERS
         self._ids: dict[str, str] = {}
         self._remembered: dict[str, tuple[tuple[int, int, int, int], str]] = {}
         self._fresh = False
@@ -189,8 +189,7 @@ class WorkingTree(Walked):
         self._left -= items
         self._characters_left -= items * len(folder)
         if self._characters_left < 0 < self._left:
-            message = f"the paths have {number * _CHARACTERS:,} characters in all, the rest is left out"
-            self.problems.append(PathProblem(folder or ".", message))
+            self.problems.append(PathProblem(folder or ".", too_long(number)))
             self._left = 0
 
     def _refused(self, real: str) -> str:

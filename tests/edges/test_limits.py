@@ -5,7 +5,8 @@ from dataclasses import fields
 from pathlib import Path
 
 import pytest
-from rosimpact.edges.limits import KB, MB, LimitError, Limits, of_environment, parse, size_text
+from rosimpact.edges import limits as limits_module
+from rosimpact.edges.limits import KB, MB, LimitError, Limits, limits_stamp, of_environment, parse, size_text
 
 
 @pytest.mark.parametrize(
@@ -45,3 +46,16 @@ def test_the_documentation_lists_every_limit_with_its_default():
         unit = f"{value:,}" if field.name in counts else f"{value} s" if field.name in seconds else size_text(value)
         expected[field.name] = unit
     assert rows == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("", ""), ("seconds=60,memory=1GB", ""), ("items=5", " items=5"), ("depth=200,cpp=1KB", " cpp=1024")],
+)
+def test_what_is_remembered_depends_on_the_limits_that_decide_it(monkeypatch, text, expected):
+    monkeypatch.setattr(limits_module, "limits", lambda: parse(text))
+    limits_stamp.cache_clear()
+    try:
+        assert limits_stamp() == expected
+    finally:
+        limits_stamp.cache_clear()

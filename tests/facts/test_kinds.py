@@ -128,6 +128,18 @@ def test_a_failing_extractor_is_contained(monkeypatch):
     assert [p.message for p in facts.problems] == ["cannot be read: RuntimeError: broken on purpose"]
 
 
+@pytest.mark.parametrize("error", [MemoryError(), OSError(12, "Cannot allocate memory"), ImportError("failed to map")])
+def test_what_is_no_fault_of_the_file_gives_no_facts(monkeypatch, error):
+    from rosimpact.impact.facts import manifest
+
+    def fails(data):
+        raise error
+
+    monkeypatch.setattr(manifest, "extract", fails)
+    with pytest.raises(type(error)):
+        extract("manifest", b"<package/>")
+
+
 def test_a_setup_py_is_a_python_file_too():
     facts = extract("setup_py", b"from distutils.core import setup\nsetup(packages=['a'])\n").facts
     assert facts.packages == ("a",)

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -83,3 +84,58 @@ def test_hooks_know_their_options(hook):
     environment = os.environ | {"COLUMNS": "200"}
     known = subprocess.run([PROGRAM, command, "--help"], capture_output=True, text=True, env=environment)
     assert [option for option in options if option not in known.stdout] == []
+
+
+def test_nothing_of_the_checkout_runs_when_the_program_is_installed(tmp_path):
+    """The step stands in the checkout of the pull request, which may hold modules of any name."""
+    for name in ("venv", "ensurepip", "sitecustomize", "runpy"):
+        (tmp_path / f"{name}.py").write_text("open('executed', 'w')")
+    (install,) = [step["run"] for step in STEPS if step.get("name") == "Install rosimpact"]
+    (making,) = [line for line in install.splitlines() if "-m venv" in line and line.strip().startswith('"$PYTHON"')]
+    environment = {"PATH": os.environ["PATH"], "PYTHON": sys.executable, "RUNNER_TEMP": str(tmp_path / "temp")}
+    subprocess.run(["bash", "-c", f"{making} --without-pip"], cwd=tmp_path, env=environment, check=True)
+    assert (tmp_path / "temp/rosimpact-venv/bin/python").exists()
+    assert not (tmp_path / "executed").exists()
+
+
+def test_inputs_are_no_patterns_of_file_names():
+    assert "set +e -fuo pipefail" in script("check")
+
+
+def test_sarif_is_uploaded_by_what_the_check_says(tmp_path):
+    """hashFiles() knows no files outside of the checkout, such as those in RUNNER_TEMP."""
+    _, outputs, _ = run_check_step(tmp_path)
+    assert outputs["has-sarif"] == "true"
+    assert "hashFiles" not in (ROOT / "action.yml").read_text(encoding="utf-8")
+
+
+GH = """#!/bin/sh
+if [ "$1" = pr ]; then cat "$HOME/comments.json" | jq -r "$9"; else echo "$@" >>"$HOME/calls"; fi
+"""
+
+
+@pytest.mark.skipif(shutil.which("jq") is None, reason="stands in for gh --jq")
+@pytest.mark.parametrize(
+    ("own", "call"),
+    [
+        (True, "api --silent -X PATCH repos/o/r/issues/comments/17 "),
+        (False, "api --silent -X POST repos/o/r/issues/1/comments "),
+    ],
+)
+def test_only_a_comment_of_our_own_is_changed(tmp_path, own, call):
+    body = "<!-- rosimpact -->\nnothing breaks"
+    comments = [
+        {"viewerDidAuthor": False, "body": body, "url": "https://github.com/o/r/pull/1#issuecomment-16"},
+        {"viewerDidAuthor": own, "body": body, "url": "https://github.com/o/r/pull/1#issuecomment-17"},
+    ]
+    (tmp_path / "comments.json").write_text(json.dumps({"comments": comments}))
+    (tmp_path / "rosimpact.markdown").write_text("safe")
+    (tmp_path / "gh").write_text(GH)
+    (tmp_path / "gh").chmod(0o755)
+    (step,) = [step["run"] for step in STEPS if step.get("name") == "Comment on the pull request"]
+    environment = {
+        "PATH": f"{tmp_path}:{os.environ['PATH']}", "HOME": str(tmp_path), "RUNNER_TEMP": str(tmp_path),
+        "GITHUB_REPOSITORY": "o/r", "PULL_REQUEST": "1",
+    }  # fmt: skip
+    subprocess.run(["bash", "-e", "-o", "pipefail", "-c", step], env=environment, check=True)
+    assert (tmp_path / "calls").read_text().startswith(call)

@@ -108,6 +108,7 @@ def test_written_and_read_back(tmp_path):
         ('{"rosimpact_target": ' + "9" * 5000 + "}", "cannot be read"),
         ("[" * 100_000, "nested too deeply"),
         ('{"rosimpact_target": 1e999}', "no captured machine"),
+        ('{"rosimpact_target": 1, "distro": "humble", "packages": {"a": "1\\ud800"}}', "is no text"),
     ],
 )
 def test_what_is_no_captured_machine_is_named(tmp_path, text, words):

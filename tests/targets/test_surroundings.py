@@ -124,3 +124,16 @@ def test_a_configuration_that_is_a_link_out_of_the_workspace_is_refused(tmp_path
     with pytest.raises(ConfigError, match="--follow-links"):
         unknown(root, tmp_path / "cache")
     check(root, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1, follow_links=True))
+
+
+@pytest.mark.parametrize("setting", ["", 'rosdep_sources = [".git/config"]\n'])
+def test_what_lies_in_git_folders_is_not_read_as_configuration(tmp_path, setting):
+    """A checkout may keep a token there."""
+    root = workspace(tmp_path, setting)
+    (root / ".git").mkdir()
+    (root / ".git/config").write_text("tf_old:\n  ubuntu: [libtf]\n" if setting else "[workspace]\n")
+    if not setting:
+        (root / "rosimpact.toml").unlink()
+        (root / "rosimpact.toml").symlink_to(".git/config")
+    with pytest.raises(ConfigError, match="is not read"):
+        unknown(root, tmp_path / "cache")

@@ -295,3 +295,11 @@ def test_a_file_that_is_none_is_not_opened(tmp_path, make, name):
     make(tmp_path / name)
     with pytest.raises(TargetError, match=name):
         parse_target(name, folder=tmp_path)
+
+
+@pytest.mark.parametrize("key", ["date", "platform", "file", "versions"])
+def test_numbers_that_cannot_be_written_are_no_texts(key):
+    number = 16**9000
+    table = {"distro": "jazzy", key: {"opencv": number} if key == "versions" else number}
+    with pytest.raises(TargetError, match="must be texts"):
+        parse_target("robot", Config(targets={"robot": table}))

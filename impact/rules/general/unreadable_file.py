@@ -8,7 +8,8 @@ Why it matters
 
 Severity
     note: what else is wrong with the file is for its own reader to say; the coverage line counts it too. warning for
-    CMake whose blocks do not match, where CMake itself stops.
+    CMake whose blocks do not match, where CMake itself stops, and for a package that another of the same name stands
+    for, since build tools refuse such a workspace.
 """
 
 from ...model.build import At
@@ -18,9 +19,11 @@ from ..rule import Hit, rule
 
 @rule(severity="note", per_target=False)
 def unreadable_file(workspace: Workspace):
+    hidden = {place.manifest_path for place in workspace.hidden}
     for problem in workspace.gathered.problems:
         owner = workspace.discovered.owner(problem.path)
-        yield Hit(At(problem.path, 1), problem.path, problem.message, "", owner.name if owner else "")
+        severity = "warning" if problem.path in hidden else ""
+        yield Hit(At(problem.path, 1), problem.path, problem.message, "", owner.name if owner else "", severity)
     for package in workspace:
         told = set()
         for path, line, message in package.digest.problems:
