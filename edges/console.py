@@ -46,7 +46,7 @@ _OBEYED = re.compile(
     "|##[A-Za-z]{0,20}\\[|^[^\\S\n]*::"
 )
 # In our own output colours are the only escape sequences.
-_COLOUR = re.compile(r"\x1b\[[0-9;]{0,20}m")
+_COLOUR = re.compile(r"\x1b\[(?:0|2|1|1;3[0-7]|3[0-7])m")
 
 
 def visible(text: str) -> str:

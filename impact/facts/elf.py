@@ -78,7 +78,7 @@ def read(data: bytes | IO[bytes]) -> Elf | None:
     found: dict[str, Any] = {}
     try:
         _read(stream, found)
-    except OSError:
+    except (OSError, MemoryError):
         raise
     except Exception as error:  # pyelftools raises whatever its parsers meet in damaged bytes
         found["problem"] = f"no ELF file that can be read to its end ({_clause(error)})"

@@ -19,8 +19,8 @@ from ..facts import kinds
 from ..facts.store import Store, encodable, fact_key, pack, unpack
 from .history import Commit, History, State
 from .logic_changes import Change, Reached, Side
-from .logic_states import compared, decoded, digest_key, packed_digest, safe_digest, stamp
-from .statements import EMPTY, Before, kind_of_facts
+from .logic_states import compared, decoded, digest_key, packed_digest, safe_digest, stamp, unread_digest
+from .statements import Before, kind_of_facts
 
 Progress = Callable[[str, int, int], None]
 _STATES_AT_ONCE = 24
@@ -159,7 +159,7 @@ class _Run:
         for chunk, made in self._each(_digest_chunk, chunks, self.history.path, self.store.folder):
             self.digests.add([row for row in made if row is not None])
             lost = [state for state, row in zip(chunk, made, strict=True) if row is None]
-            self.digests.packed.update(_unread(state) for state in lost)
+            self.digests.packed.update(unread_digest(state) for state in lost)
             done += len(chunk)
             self.progress("reading packages", done, len(missing))
 
@@ -241,12 +241,6 @@ class _Run:
 
 def _numbered(task: Callable[..., Any], chunks: Sequence[Any], what: Sequence[Any], number: int) -> Any:
     return task(*what, chunks[number])
-
-
-def _unread(state: State) -> tuple[bytes, bytes]:
-    """What stands for the digest of a state that could not be made: all its files count as not read."""
-    files = tuple(file.path for file in state.files)
-    return state.key, packed_digest(msgspec.structs.replace(EMPTY, unread=files))
 
 
 def _reaching(change: Change, listeners: Mapping[str, list[Reached]]) -> Change:

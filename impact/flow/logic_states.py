@@ -83,6 +83,12 @@ def packed_digest(digest: Digest) -> bytes:
         return pack(msgspec.msgpack.encode(_visible_all(msgspec.to_builtins(digest))))
 
 
+def unread_digest(state: State) -> tuple[bytes, bytes]:
+    """What stands for the digest of a state that could not be made: all its files count as not read."""
+    files = tuple(file.path for file in state.files)
+    return state.key, packed_digest(msgspec.structs.replace(EMPTY, unread=files))
+
+
 def _visible_all(value: Any) -> Any:
     if isinstance(value, str):
         return visible(value)

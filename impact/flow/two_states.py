@@ -18,7 +18,7 @@ from ..model.package import role_of_folder
 from ..model.workspace import Package, Workspace
 from .history import File, State
 from .logic_changes import Change, Side
-from .logic_states import compared, decoded, digest_key, packed_digest, safe_digest
+from .logic_states import compared, decoded, digest_key, packed_digest, safe_digest, unread_digest
 from .statements import Digest, kind_of_facts
 
 _KINDS = {flow: plain for plain, flow in FLOW.items()} | {name: name for name in (*FLOW, "cmake", "setup_py")}
@@ -162,7 +162,8 @@ def _digests(workspace: Workspace, states: Sequence[State]) -> list[Digest]:
     if missing:
         gathered = flow_facts(workspace, missing)
         made = dict(_made(workspace, gathered, missing))
-        store.remember("digest", [(digest_key(key), unpack(data)) for key, data in made.items()])
+        lost = {unread_digest(state) for state in missing}
+        store.remember("digest", [(digest_key(row[0]), unpack(row[1])) for row in made.items() if row not in lost])
         packed.update(made)
     return [decoded(packed.get(state.key)) for state in states]
 
@@ -187,9 +188,8 @@ def _made(workspace: Workspace, gathered: Gathered, states: Sequence[State]) -> 
         return
     workspace.gathered.store.close()  # no other process may go on with a connection of this one
     large_first = sorted(states, key=lambda state: -len(state.files))
-    for _, made in processes.forked(_one, large_first, jobs, workspace, gathered):
-        if not isinstance(made, processes.Died):
-            yield made
+    for state, made in processes.forked(_one, large_first, jobs, workspace, gathered):
+        yield unread_digest(state) if isinstance(made, processes.Died) else made
 
 
 def _one(workspace: Workspace, gathered: Gathered, state: State) -> tuple[bytes, bytes]:

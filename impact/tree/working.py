@@ -91,7 +91,9 @@ class WorkingTree(Walked):
             self._folder(folder, real, repository, (), stack, links, found)
         followed: set[str] = set()
         visited: set[str] = set()
+        links.sort()  # a folder's order on the disk decides nothing
         for link, target, parents in links:  # grows while links lead to further links
+            known = len(links)
             if any(within(parent, target) for parent in parents):
                 self.problems.append(PathProblem(link, "the link leads to one of its own parent folders, not followed"))
                 continue
@@ -113,6 +115,7 @@ class WorkingTree(Walked):
                     self.problems.append(PathProblem(link, message))
                     break
                 self._folder(folder, real, repository, parents, stack, links, found)
+            links[known:] = sorted(links[known:])
 
     def _folder(
         self,
