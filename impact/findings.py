@@ -179,6 +179,9 @@ def _attributed(text: str, names: Sequence[str]) -> str:
     return f"{text} ({', '.join(named)})" if named else text
 
 
+_LONGEST_LINE = 10_000
+
+
 def fingerprinted(findings: Iterable[Finding], line_text: Callable[[str, int], str]) -> list[Finding]:
     """Findings with a fingerprint that stays the same when lines above them come and go.
 
@@ -187,8 +190,13 @@ def fingerprinted(findings: Iterable[Finding], line_text: Callable[[str, int], s
     """
     seen: Counter[str] = Counter()
     result = []
+    place, text = ("", 0), ""
     for finding in findings:
-        text = " ".join(line_text(finding.path, finding.line).split()) if finding.line else ""
+        if (finding.path, finding.line) != place:
+            place = finding.path, finding.line
+            text = " ".join(line_text(*place).split()) if finding.line else ""
+            if len(text) > _LONGEST_LINE:  # it may have as many findings
+                text = _digest(text)
         content = "\0".join((finding.rule, finding.path, finding.package, finding.subject, text))
         digest = _digest(f"{content}\0{seen[content]}")
         seen[content] += 1
