@@ -179,6 +179,9 @@ def _attributed(text: str, names: Sequence[str]) -> str:
     return f"{text} ({', '.join(named)})" if named else text
 
 
+_LONGEST_LINE = 10_000
+
+
 def fingerprinted(findings: Iterable[Finding], line_text: Callable[[str, int], str]) -> list[Finding]:
     """Findings with a fingerprint that stays the same when lines above them come and go.
 
@@ -187,8 +190,13 @@ def fingerprinted(findings: Iterable[Finding], line_text: Callable[[str, int], s
     """
     seen: Counter[str] = Counter()
     result = []
+    place, text = ("", 0), ""
     for finding in findings:
-        text = " ".join(line_text(finding.path, finding.line).split()) if finding.line else ""
+        if (finding.path, finding.line) != place:
+            place = finding.path, finding.line
+            text = " ".join(line_text(*place).split()) if finding.line else ""
+            if len(text) > _LONGEST_LINE:  # it may have as many findings
+                text = _digest(text)
         content = "\0".join((finding.rule, finding.path, finding.package, finding.subject, text))
         digest = _digest(f"{content}\0{seen[content]}")
         seen[content] += 1
@@ -359,7 +367,7 @@ def suppressed(
     kept: list[Finding] = []
     silent: list[Finding] = []
     used: set[tuple[str, int, str]] = set()
-    reach: dict[str, dict[int, list[Allow]]] = {}
+    reach: dict[str, dict[int, dict[str, tuple[int, int]]]] = {}
     for finding in findings:
         comments = allows.get(finding.path, ())
         hit = None
@@ -368,15 +376,13 @@ def suppressed(
             if lines is None:
                 lines = reach[finding.path] = _reach(comments)
             names = (finding.rule, families.get(finding.rule, ""), *EVERYTHING)
-            hit = next(
-                (
-                    (finding.path, allow.line, name)
-                    for allow in (*lines.get(finding.line, ()), *lines.get(0, ()))
-                    for name in names
-                    if name in allow.rules
-                ),
-                None,
-            )
+            for line in (finding.line, 0):
+                there = lines.get(line)
+                found = [(*there[name], name) for name in names if name in there] if there else []
+                if found:
+                    _, at, name = min(found, key=lambda one: one[0])  # of one comment the first name counts
+                    hit = finding.path, at, name
+                    break
         if hit is None:
             kept.append(finding)
         else:
@@ -393,17 +399,18 @@ def suppressed(
     return Suppression(kept, silent, sorted(unused))
 
 
-def _reach(comments: Sequence[Allow]) -> dict[int, list[Allow]]:
-    """Comments by the lines they hold for; a block of comment lines reaches the line behind the block."""
-    alone = {allow.line for allow in comments if allow.own_line}
-    lines: dict[int, list[Allow]] = defaultdict(list)
-    for allow in comments:
-        lines[allow.line].append(allow)
-        if allow.own_line and allow.line:
-            after = allow.line + 1
-            while after in alone:
-                after += 1
-            lines[after].append(allow)
+def _reach(comments: Sequence[Allow]) -> dict[int, dict[str, tuple[int, int]]]:
+    """By the lines that comments hold for, the names that they allow: which comment is the first, and its line. A block
+    of comment lines reaches the line behind the block."""
+    after: dict[int, int] = {}
+    for line in sorted({allow.line for allow in comments if allow.own_line}, reverse=True):
+        after[line] = after.get(line + 1, line + 1)
+    lines: dict[int, dict[str, tuple[int, int]]] = defaultdict(dict)
+    for number, allow in enumerate(comments):
+        reached = [allow.line, after[allow.line]] if allow.own_line and allow.line else [allow.line]
+        for line in reached:
+            for name in allow.rules:
+                lines[line].setdefault(name, (number, allow.line))
     return lines
 
 

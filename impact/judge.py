@@ -3,7 +3,7 @@ where an earlier run judged the same."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 # Starting processes costs about as much as judging this many packages on one target.
 _ALONE = 16
 _PARTS_PER_JOB = 4
+# Judging a package may take as much time as extracting from this much text, and as much more for each file.
+_PACKAGE_BYTES = 1 << 20
+_FILE_BYTES = 20 << 10
+# Of the message flow of a whole workspace, beyond what a process may need.
+_PACKAGE_MEMORY = 8 << 20
 
 # (rule, why it failed) to the targets on which it did
 Crashes = dict[tuple[str, str], list[str]]
@@ -71,12 +76,15 @@ def _judged(
 ) -> Iterator[tuple[int, list[tuple[str, Hit]]]]:
     """What the rules say of these views, each with its place among them."""
     packages = list(opened.workspace.packages)
-    size = max(1, -(-len(packages) // (_PARTS_PER_JOB * jobs)))
-    tasks = [(place, at) for place in places for at in range(0, len(packages), size)]
-    if jobs < 2 or len(tasks) < 2 or len(packages) * len(places) < _ALONE or not processes.may_fork():
+    if not packages or not processes.may_fork():
         for place in places:
             yield place, list(_all(rules, opened.views[place], crashed))
         return
+    if len(packages) * len(places) < _ALONE:
+        jobs = 1
+    # A rule that does not come to its end on a package does not stop the run: no package is judged in this process.
+    size = max(1, -(-len(packages) // (_PARTS_PER_JOB * jobs) if jobs > 1 else len(packages)))
+    tasks = [(place, at) for place in places for at in range(0, len(packages), size)]
     done = {}
     opened.store.close()  # no other process may go on with a connection of this one
     for task, result in processes.forked(_part, tasks, jobs, opened, rules, packages, size):
@@ -102,11 +110,19 @@ def _part(
     place, at = task
     view = opened.views[place]
     crashed: Crashes = {}
-    view.part = frozenset(packages[at : at + size])
+    part = packages[at : at + size]
+    view.part = frozenset(part)
+    processes.begin_part(0, _bytes(opened.workspace, part))
     try:
         return list(_all(rules, view, crashed)), view.unresolved, crashed
     finally:
         view.part = None
+
+
+def _bytes(workspace: Workspace, packages: Collection[str]) -> int:
+    """How much text it may take as long to extract from as to judge these packages."""
+    files = sum(len(workspace.packages[name].digest.files) for name in packages)
+    return (1 + len(packages)) * _PACKAGE_BYTES + files * _FILE_BYTES
 
 
 def _one_by_one(
@@ -149,11 +165,32 @@ def _of_flow(
     if known is not None:
         return known
     failed: Crashes = {}
-    said = [(rule.name, hit) for rule in rules for hit in _tried(rule, "", failed, _run(rule, opened, before))]
+    said: list[tuple[str, Hit]] = []
+    if processes.may_fork():
+        opened.store.close()  # no other process may go on with a connection of this one
+        found = dict(processes.forked(_flow_part, [0], 1, opened, rules, before))[0]
+        if isinstance(found, processes.Died):
+            failed[", ".join(rule.name for rule in rules), f"the check of the message flow {found.why}"] = []
+        else:
+            said, failed = found
+    else:
+        said, failed = _flow_part(opened, rules, before, 0)
     if not failed:
         memo.remember_flow(opened.store, key, said)
     crashed.update(failed)
     return said
+
+
+def _flow_part(
+    opened: Opened, rules: Sequence[Rule], before: Workspace | None, _: int
+) -> tuple[list[tuple[str, Hit]], Crashes]:
+    """What rules say of the message flow, and the rules that failed."""
+    packages = opened.workspace.packages
+    processes.begin_part(0, _bytes(opened.workspace, packages))
+    processes.allow_memory(len(packages) * _PACKAGE_MEMORY)
+    failed: Crashes = {}
+    said = [(rule.name, hit) for rule in rules for hit in _tried(rule, "", failed, _run(rule, opened, before))]
+    return said, failed
 
 
 def _of_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Hit]]:

@@ -195,6 +195,17 @@ def begin_part(part: int, size: int) -> None:
         signal.setitimer(signal.ITIMER_PROF, seconds_for(size))
 
 
+def allow_memory(size: int) -> None:
+    """Lets a task need so many bytes more than a process of its own may."""
+    if _SHARED:
+        import resource
+
+        now, most = resource.getrlimit(resource.RLIMIT_AS)
+        if now >= 0:
+            with contextlib.suppress(OSError, ValueError):
+                resource.setrlimit(resource.RLIMIT_AS, (now + size if most < 0 else min(now + size, most), most))
+
+
 def seconds_for(size: int) -> float:
     """Seconds of processor time that extracting from so many bytes may take."""
     budget = limits()

@@ -2,6 +2,7 @@
 
 import json
 import re
+import time
 
 import pytest
 from hypothesis import given
@@ -10,10 +11,12 @@ from rosimpact.impact.config import PathSetting
 from rosimpact.impact.facts.place import Allow
 from rosimpact.impact.findings import (
     SettingsError,
+    _reach,
     baseline,
     checked,
     chosen,
     fails,
+    fingerprinted,
     glob_matches,
     joined,
     known_from,
@@ -413,3 +416,29 @@ def test_counts_of_a_baseline_have_a_limit():
     known = known_from(json.dumps({"schema": 1, "findings": list(entries)}))
     assert known["a"] == 1_000_000 and known["b"] == 0 and known["c"] == 2
     assert pruned(known, [])[1] == 1_000_002
+
+
+def test_a_block_of_comments_is_walked_once():
+    """The time of each comment does not grow with the block that it stands in."""
+    most = 20_000
+    comments = [Allow(line, ("x",), True) for line in range(1, most + 1)]
+    started = time.process_time()
+    reach = _reach(comments)
+    assert time.process_time() - started < 2
+    assert reach[most + 1] == {"x": (0, 1)}
+    assert reach[5] == {"x": (4, 5)}
+
+
+def test_a_long_line_with_many_findings_is_read_once():
+    asked = []
+
+    def line_text(path, line):
+        asked.append((path, line))
+        return "a " * 500_000
+
+    found = [Finding("rule", "note", "p", "a.cpp", 1, column, f"name{column}", (), "") for column in range(1, 2_000)]
+    started = time.process_time()
+    prints = {finding.fingerprint for finding in fingerprinted(found, line_text)}
+    assert time.process_time() - started < 2
+    assert asked == [("a.cpp", 1)]
+    assert len(prints) == len(found)

@@ -252,6 +252,44 @@ def test_rules_that_end_their_process_on_a_package_are_named_and_lose_no_other(t
     assert found == [f for f in whole.findings if f.package != "link_4" and "link_4" not in f.message]
 
 
+def _endless(*_):
+    while True:
+        pass
+
+
+@needs_fork
+def test_a_rule_that_comes_to_no_end_costs_its_package_alone(tmp_path, monkeypatch):
+    """In a workspace that is too small for several processes."""
+    ws = ring(tmp_path / "ws", 3)
+    whole = check(ws, Options(("jazzy",), cache=tmp_path / "one"))
+    part = judge._part
+
+    def of_link_1(opened, rules, packages, size, task):
+        here = "link_1" in packages[task[1] : task[1] + size]
+        return part(opened, endless if here else rules, packages, size, task)
+
+    endless = [next(iter(all_rules().values()))._replace(run=_endless)]
+    monkeypatch.setattr(judge, "_part", of_link_1)
+    monkeypatch.setattr(judge, "_bytes", lambda workspace, packages: -900_000)
+    monkeypatch.setattr(judge, "_PACKAGE_BYTES", 0)
+    report = check(ws, Options(("jazzy",), cache=tmp_path / "two"))
+    assert "the check of `link_1` needed too much time" in report.failure
+    found = [f for f in report.findings if f.package != "link_1" and "link_1" not in f.message]
+    assert found
+    assert found == [f for f in whole.findings if f.package != "link_1" and "link_1" not in f.message]
+
+
+@needs_fork
+def test_a_message_flow_that_comes_to_no_end_costs_its_rules_alone(tmp_path, monkeypatch):
+    ws = ring(tmp_path / "ws", 3)
+    whole = check(ws, Options(("jazzy",), cache=tmp_path / "one"))
+    monkeypatch.setattr(judge, "_flow_part", lambda *arguments: os.kill(os.getpid(), signal.SIGSEGV))
+    report = check(ws, Options(("jazzy",), preview=True, cache=tmp_path / "two"))
+    assert report.failure.endswith("failed: the check of the message flow crashed")
+    names = {f.rule for f in whole.findings}
+    assert [f for f in report.findings if f.rule in names] == list(whole.findings)
+
+
 def _answers(target, providers, header):
     return [p.name for p in providers.header(header)], target.version("rclcpp"), target.resolve("eigen") is not None
 

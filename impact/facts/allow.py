@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from ...edges.limits import limits
 from .place import Allow
 
 MARK = b"rosimpact:"
@@ -15,13 +16,15 @@ NAME = re.compile(rb"[A-Za-z0-9_*-]+")
 
 
 def allows(data: bytes) -> tuple[Allow, ...]:
-    """All such comments of a file, in order. own_line is True where nothing but the comment stands on the line."""
+    """All such comments of a file, in order, up to the limit of items. own_line is True where nothing but the comment
+    stands on the line."""
     at = data.find(MARK)
     if at == -1:
         return ()
     found: list[Allow] = []
     line, counted = 1, 0
-    while at != -1:
+    most = limits().items
+    while at != -1 and len(found) < most:
         start = data.rfind(b"\n", 0, at) + 1
         end = data.find(b"\n", at)
         end = len(data) if end == -1 else end

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from collections.abc import Sequence
 from itertools import accumulate, count, pairwise
 from operator import add
 from typing import NamedTuple
@@ -18,6 +19,45 @@ class Region(NamedTuple):
     end: int
     condition: str
     line: int
+
+
+class Regions:
+    """Stretches, of which one lies in another or beside it, and which of them are around a place."""
+
+    def __init__(self, regions: Sequence[Region]):
+        self._regions = regions
+        self._outer: list[int] = []  # for each, the one around it
+        self._turns: list[int] = [0]  # where another stretch becomes the innermost
+        self._inner: list[int] = [-1]  # the innermost from there on
+        opened: list[int] = []
+        for number, region in enumerate(regions):
+            self._close(opened, region.start)
+            self._outer.append(opened[-1] if opened else -1)
+            opened.append(number)
+            self._turn(region.start, number)
+        self._close(opened, -1)
+
+    def _close(self, opened: list[int], at: int) -> None:
+        while opened and (at < 0 or self._regions[opened[-1]].end <= at):
+            end = self._regions[opened.pop()].end
+            self._turn(end, opened[-1] if opened else -1)
+
+    def _turn(self, at: int, number: int) -> None:
+        self._turns.append(at)
+        self._inner.append(number)
+
+    def __bool__(self) -> bool:
+        return bool(self._regions)
+
+    def between(self, outside: int, inside: int) -> list[Region]:
+        """Those around the place `inside` that begin behind the place `outside`, the outermost first."""
+        found: list[Region] = []
+        number = self._inner[bisect_right(self._turns, inside) - 1]
+        while number >= 0 and self._regions[number].start > outside:
+            found.append(self._regions[number])
+            number = self._outer[number]
+        found.reverse()
+        return found
 
 
 class Cleaned(NamedTuple):
@@ -55,12 +95,19 @@ _EACH = re.compile(r"\b(?:BOOST_FOREACH|BOOST_REVERSE_FOREACH|Q_FOREACH|foreach)
 _BETWEEN = re.compile(r"[(),<>;{}]")
 
 
+# The grammar takes quadratic time for attributes in a row; no code has that many.
+_MOST_ATTRIBUTES = 32
+_ATTRIBUTES = re.compile(rf"(?:\[\[[^\[\]]*\]\]\s*){{{_MOST_ATTRIBUTES},}}")
+
+
 def cleaned(data: bytes) -> Cleaned:
     """The source of a file, ready to be parsed. Undecodable bytes become replacement characters, line breaks `\\n`."""
     text = text_of(data)
     source = text
     if not source.isascii() or "\0" in source:
         source = _NOT_ASCII.sub(_stand_in, source)
+    if source.count("]]") >= _MOST_ATTRIBUTES:
+        source = _ATTRIBUTES.sub(_blank_lines, source)
     if any(end in source for end in _VISIBILITY_ENDS):
         source = _without_visibility(source)
     if any(name in source for name in _EACH_NAMES):
@@ -99,6 +146,10 @@ def _stand_in(match: re.Match[str]) -> str:
 
 def _blank(match: re.Match[str]) -> str:
     return " " * len(match[0])
+
+
+def _blank_lines(match: re.Match[str]) -> str:
+    return _NOT_NEWLINE.sub(_blank, match[0])
 
 
 def _blank_macro(match: re.Match[str]) -> str:
@@ -257,8 +308,13 @@ def _flattened(
         blank.append((kept_end, directives[-1][1]))
         if len(directives) > 2:
             hidden.append((bisect_right(starts, directives[1][1]) + 1, bisect_right(starts, directives[-1][0]) - 1))
-    for start, end in blank:
-        source = source[:start] + _NOT_NEWLINE.sub(_blank, source[start:end]) + source[end:]
+    pieces: list[str] = []
+    position = 0
+    for start, end in sorted(blank):
+        if end > position:
+            pieces += [source[position:start], _NOT_NEWLINE.sub(_blank, source[max(start, position) : end])]
+            position = end
+    source = "".join(pieces) + source[position:]
     return source, tuple(sorted(regions)), tuple(hidden)
 
 

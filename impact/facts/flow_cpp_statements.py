@@ -128,11 +128,8 @@ class Statements(Declarations):
         parent = node.parent
         if parent is not None and parent.kind_id == ELSE:
             parent = parent.parent
-        for region in self.regions:
-            if region.start <= start < region.end:
-                if parent is not None and region.start <= parent.start_byte:
-                    continue
-                guard = self.guard("cpp", region.condition, region.line, guard)
+        for region in self.regions.between(parent.start_byte if parent is not None else -1, start):
+            guard = self.guard("cpp", region.condition, region.line, guard)
         return guard
 
     def block(self, node: Node, guard: int) -> Leaving:
@@ -192,7 +189,7 @@ class Statements(Declarations):
         do not stand under."""
         parent = node.parent
         around = parent.start_byte if parent is not None else node.start_byte
-        inner = [one for one in self.regions if one.start <= node.start_byte < one.end and one.start > around]
+        inner = self.regions.between(around, node.start_byte)
         if not inner:
             return leaving
         return (Condition("cpp", f"!({inner[0].condition})", inner[0].line),) if len(inner) == 1 else STAYS

@@ -18,7 +18,7 @@ from typing import Any
 from tree_sitter import Node
 
 from .flow import Access, Assignment, Call, Expr, Function, Guard
-from .flow_cpp_clean import Cleaned
+from .flow_cpp_clean import Cleaned, Regions
 from .flow_cpp_grammar import (
     ARGUMENTS,
     BINARY,
@@ -110,7 +110,7 @@ class Values:
     def __init__(self, cleaned: Cleaned) -> None:
         self.text = cleaned.text
         self.starts = cleaned.starts
-        self.regions = cleaned.regions
+        self.regions = Regions(cleaned.regions)
         self.functions: list[Function] = []
         self.nesting = 0
         self.name = ""

@@ -176,9 +176,10 @@ def _constant(type_: str, value: str) -> str:
     return value.partition("#")[0].strip()
 
 
+# A string that is never closed ends with the file, or the line: it is not looked at again from each mark in it.
 IDL_TOKEN = re.compile(
     r"(?P<space>\s+)|(?P<comment>//[^\n]*|/\*.*?(?:\*/|\Z))|(?P<directive>\#[^\n]*)"
-    r"|(?P<string>L?\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\\n]|\\.)*')"
+    r"|(?P<string>L?\"(?:[^\"\\]|\\.)*(?:\"|\\?\Z)|'(?:[^'\\\n]|\\.)*(?:'|(?=\n)|\\?\Z))"
     r"|(?P<annotation>@\s*[A-Za-z_]\w*)"
     r"|(?P<name>(?:::)?[A-Za-z_]\w*(?:\s*::\s*[A-Za-z_]\w*)*)|(?P<number>[-+]?[0-9.][0-9A-Za-z.]*)|(?P<mark>.)",
     re.DOTALL,
@@ -375,7 +376,7 @@ def _struct(idl: _Idl) -> None:
     idl.expect("}")
 
 
-STRINGS = re.compile(r"\"((?:[^\"\\]|\\.)*)\"")
+STRINGS = re.compile(r"\"((?:[^\"\\]|\\.)*)(?:\"|\\?\Z)")
 
 
 def _argument(annotation: str) -> str:

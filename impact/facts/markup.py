@@ -6,6 +6,7 @@ forgotten closing tag does not stop. Entities that a file defines are neither ex
 
 from __future__ import annotations
 
+import codecs
 import re
 from bisect import bisect_right
 from typing import NamedTuple
@@ -99,10 +100,22 @@ def decode(data: bytes) -> str:
     declared = DECLARED_ENCODING.match(data)
     if declared is not None:
         try:
-            return data.decode(declared.group(1).decode("ascii"), "replace")
+            return data.decode(text_encoding(declared.group(1).decode("ascii")), "replace")
         except (LookupError, ValueError):
             pass
     return data.decode("utf-8", "replace")
+
+
+# Codecs of Python that are no encodings of files; the first two take quadratic time.
+_NO_ENCODINGS = frozenset(("punycode", "idna", "unicode-escape", "raw-unicode-escape", "undefined"))
+
+
+def text_encoding(name: str) -> str:
+    """The name that Python has for an encoding that a file declares. Raises LookupError for what is none of text."""
+    found = codecs.lookup(name).name
+    if found in _NO_ENCODINGS:
+        raise LookupError(name)
+    return found
 
 
 def unescape(text: str) -> str:

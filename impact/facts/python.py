@@ -10,6 +10,7 @@ from typing import NamedTuple
 import msgspec
 
 from . import python2
+from .markup import text_encoding
 from .place import Problem, Reference
 from .python_objects import PythonUse
 from .python_tree import TRY, Attribute, Import, Reader
@@ -72,7 +73,7 @@ def _decode(data: bytes) -> tuple[str, tuple[Problem, ...]]:
         if line.strip() and not line.lstrip().startswith(b"#"):
             break
     try:
-        text = data.decode(encoding)
+        text = data.decode(text_encoding(encoding))
     except LookupError:
         problems.append(Problem(cookie_line, f"unknown encoding `{encoding}`"))
         text = data.decode("utf-8", "replace")

@@ -70,15 +70,16 @@ def follow(
     arguments: Mapping[str, str] | None = None,
     environment: Mapping[str, str] | None = None,
     generation: int = 0,
+    most: int = MOST_ACTIONS,
 ) -> Launched:
     """All that the launch file `$(find package)/path` starts.
 
     arguments: as given on the command line. environment: variables that are known. generation: of the workspace, for
-    files that could be of either.
+    files that could be of either. most: how many actions are done.
     """
     given = {name: known(value) for name, value in (arguments or {}).items()}
     variables = {name: known(value) for name, value in (environment or {}).items()}
-    launch = _Launch(sources, given, variables, generation)
+    launch = _Launch(sources, given, variables, generation, most)
     launch.top(package, posixpath.normpath(path).lstrip("/"))
     return Launched(
         tuple(launch.started),
@@ -87,20 +88,23 @@ def follow(
         tuple(launch.skipped),
         tuple(launch.unresolved),
         tuple(dict.fromkeys(launch.files)),
+        most - max(0, launch.budget),
     )
 
 
 class _Launch(Filling):
     """One launch under way."""
 
-    def __init__(self, sources: Sources, arguments: dict[str, Text], environment: dict[str, Text], generation: int):
+    def __init__(
+        self, sources: Sources, arguments: dict[str, Text], environment: dict[str, Text], generation: int, most: int
+    ):
         super().__init__(sources, Scope(arguments, environment, 0), generation or 2)
         self.chain: list[At] = []
         self.open: list[str] = []
         self.assumed: list[str] = []
         self.after: list[str] = []
         self.container = known("")
-        self.budget = MOST_ACTIONS
+        self.most = self.budget = most
         self.started: list[Started] = []
         self.server: dict[str, Setting] = {}
         self.declared: list[Argument] = []
@@ -134,7 +138,7 @@ class _Launch(Filling):
             self.budget -= 1
             if self.budget <= 0:
                 if self.budget == 0:
-                    self.miss(action.line, "the rest of the launch", f"more than {MOST_ACTIONS} actions")
+                    self.miss(action.line, "the rest of the launch", f"more than {self.most} actions")
                 return
             verdict, open_, assumed, after = self.decide(action.conditions)
             if verdict is False:

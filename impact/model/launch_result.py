@@ -133,7 +133,7 @@ class Argument(NamedTuple):
 
 class Launched(NamedTuple):
     """All that a launch does. server: ROS 1's parameters by their global names. files: (package, path) of the launch
-    files read."""
+    files read. actions: how many were done."""
 
     started: tuple[Started, ...]
     server: Mapping[str, Setting]
@@ -141,6 +141,7 @@ class Launched(NamedTuple):
     skipped: tuple[Skipped, ...]
     unresolved: tuple[Unresolved, ...]
     files: tuple[tuple[str, str], ...]
+    actions: int = 0
 
     def values(self, started: Started, name: str = "") -> dict[str, Setting]:
         """The private parameters of a node. name: its full name where the launch leaves it to the program; without one

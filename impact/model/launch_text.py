@@ -57,9 +57,12 @@ def within(namespace: Text, name: Text) -> Text:
                 every((namespace.assumed, name.assumed)))  # fmt: skip
 
 
+_MOST = 200
+
+
 def every(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
-    """All of several tuples, each once, in order."""
-    return tuple(dict.fromkeys(item for group in groups for item in group))
+    """All of several tuples, each once, in order, as far as a person reads on."""
+    return tuple(dict.fromkeys(item for group in groups for item in group))[:_MOST]
 
 
 def show(value: Value) -> str:

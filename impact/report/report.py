@@ -138,8 +138,8 @@ def pointed(line: str, column: int, subject: str) -> Shown:
     if start >= len(line):
         return Shown(line, 0, 0)
     if subject:
-        near = line.find(subject, start)
-        if 0 <= near - start <= 2:
+        near = line.find(subject, start, start + len(subject) + 2)
+        if near >= 0:
             return Shown(line, near, len(subject))
     word = re.compile(r"[\w./:+$-]+|.").match(line, start)
     return Shown(line, start, len(word.group()) if word else 1)

@@ -136,24 +136,31 @@ def _without_links(text: str) -> str:
     return re.sub(r"\[(?=[^\[\]]*\]\()", r"\\[", text)
 
 
+# A long line may have thousands of findings, each of which would quote it.
+_LONGEST_SNIPPET = 10_000
+
+
 def _location(report: Report, finding: Finding) -> dict[str, Any]:
     place: dict[str, Any] = {"artifactLocation": _artifact(finding.path)}
     if finding.line:
         region: dict[str, Any] = {"startLine": finding.line}
         lines = report.excerpt(finding.path, finding.line)
         first, shown = focus(finding, lines)
+        brief = sum(map(len, lines)) <= _LONGEST_SNIPPET
         if shown is not None:
-            region["snippet"] = {"text": shown.text}
+            if brief:
+                region["snippet"] = {"text": shown.text}
             if finding.column:
                 region["startColumn"] = finding.column
                 if shown.width:
                     # The end is exclusive: the column behind the last character.
                     region["endColumn"] = shown.start + shown.width + 1
-            place["contextRegion"] = {
-                "startLine": first,
-                "endLine": first + len(lines) - 1,
-                "snippet": {"text": "\n".join(lines)},
-            }
+            if brief:
+                place["contextRegion"] = {
+                    "startLine": first,
+                    "endLine": first + len(lines) - 1,
+                    "snippet": {"text": "\n".join(lines)},
+                }
         elif finding.column:
             region["startColumn"] = finding.column
         place["region"] = region

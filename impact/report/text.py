@@ -167,8 +167,8 @@ def finding_lines(report: Report, finding: Finding, style: Style) -> list[str]:
     excerpt = report.excerpt(finding.path, finding.line) if finding.line else []
     _, shown = focus(finding, excerpt)
     margin = len(str(finding.line))
-    if shown is not None and shown.text.strip():
-        text, offset, width = _clipped(shown, style.width - margin - 5)
+    if shown is not None and (near := _around_caret(shown, style.width)).text.strip():
+        text, offset, width = _clipped(near, style.width - margin - 5)
         lines.append(f"  {painted(style, 'dim', f'{finding.line} |')} {text}")
         if width:
             caret = painted(style, finding.severity, "^" * width)
@@ -181,6 +181,13 @@ def finding_lines(report: Report, finding: Finding, style: Style) -> list[str]:
     if finding.help:
         lines.append(f"  {painted(style, 'help', 'help:')} {visible(finding.help)}")
     return lines
+
+
+def _around_caret(shown: Shown, width: int) -> Shown:
+    """The part of a very long line that may be shown."""
+    far = max(1000, width)
+    begins = max(0, shown.start - far)
+    return shown._replace(text=shown.text[begins : shown.start + shown.width + far], start=shown.start - begins)
 
 
 def _clipped(shown: Shown, room: int) -> tuple[str, int, int]:

@@ -1,5 +1,6 @@
 """What no file of a workspace can do to the one who reads it: each row is hostile text, and what is known of it."""
 
+import random
 import resource
 import subprocess
 import sys
@@ -7,6 +8,8 @@ import sys
 import pytest
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.allow import allows
+from rosimpact.impact.facts.flow_cpp_clean import Region, Regions, cleaned
+from rosimpact.impact.facts.markup import text_encoding
 from rosimpact.impact.facts.parameters import _cpp_value
 from rosimpact.impact.facts.setup import ENTRY_POINT
 from rosimpact.impact.facts.usage import template_arguments
@@ -108,6 +111,14 @@ HOSTILE = [
     ("pyproject", "a." * 50_000 + "a = 1"),
     ("pyproject", "x = {" + '"a".' * 50_000 + "a = 1}"),
     ("manifest", "<package>" + "<a>" * 50_000),
+    ("idl", 'module a { "' + '\\"' * 100_000),
+    ("idl", "module a { '" + "\\'" * 100_000),
+    ("idl", '@verbatim(text /* "' + '\\"' * 100_000 + "*/) module a {"),
+    ("flow_cpp", "void f(){" + "[[a]] " * 10_000 + "x();}"),
+    ("flow_cpp", "[[a]]\n" * 10_000 + "int x;"),
+    ("flow_cpp", "void f(){\n" + "#if A\n if(a){\n#endif\n b();}\n" * 10_000 + "}\n"),
+    ("python", "# coding: punycode\n" + "a" * 1_000_000),
+    ("xml", "<?xml version='1.0' encoding='punycode'?>" + "a" * 1_000_000),
 ]
 
 
@@ -126,3 +137,80 @@ def test_hostile_texts_are_read_once(kind, text):
     )
     assert done.returncode == 0, done.stderr[-500:]
     assert done.stdout.decode().strip() == kind
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("utf-8", "utf-8"),
+        ("UTF8", "utf-8"),
+        ("latin-1", "iso8859-1"),
+        ("shift_jis", "shift_jis"),
+        ("utf-16", "utf-16"),
+        ("punycode", None),
+        ("IDNA", None),
+        ("unicode_escape", None),
+        ("no-such-encoding", None),
+    ],
+)
+def test_encodings_of_text(name, expected):
+    if expected is None:
+        with pytest.raises(LookupError):
+            text_encoding(name)
+    else:
+        assert text_encoding(name) == expected
+
+
+# Stretches from 0 to 100, 10 to 40, 20 to 30 and 50 to 60: which are around a place, and begin behind another.
+STRETCHES = [Region(0, 100, "a", 1), Region(10, 40, "b", 2), Region(20, 30, "c", 3), Region(50, 60, "d", 4)]
+
+
+@pytest.mark.parametrize(
+    ("outside", "inside", "expected"),
+    [
+        (-1, 0, "a"),
+        (-1, 10, "ab"),
+        (-1, 25, "abc"),
+        (0, 25, "bc"),
+        (10, 25, "c"),
+        (20, 25, ""),
+        (-1, 30, "ab"),
+        (-1, 45, "a"),
+        (5, 55, "d"),
+        (-1, 99, "a"),
+        (-1, 100, ""),
+        (-1, 5_000, ""),
+    ],
+)
+def test_stretches_around_a_place(outside, inside, expected):
+    assert "".join(one.condition for one in Regions(STRETCHES).between(outside, inside)) == expected
+
+
+def test_stretches_are_those_that_a_walk_over_all_finds():
+    chance = random.Random(3)
+    made: list[Region] = []
+
+    def fill(start, end):
+        while end - start > 4 and chance.random() < 0.8:
+            begins = chance.randrange(start, end - 2)
+            ends = chance.randrange(begins + 1, end)
+            made.append(Region(begins, ends, f"{begins}", 1))
+            fill(begins + 1, ends)
+            start = ends
+
+    fill(0, 400)
+    made.sort()
+    regions = Regions(made)
+    for _ in range(2_000):
+        inside, outside = chance.randrange(410), chance.randrange(-1, 410)
+        walked = [one for one in made if one.start <= inside < one.end and one.start > outside]
+        assert regions.between(outside, inside) == walked
+
+
+@pytest.mark.parametrize(("number", "kept"), [(31, True), (32, False)])
+def test_attributes_in_a_row(number, kept):
+    text = "int a; " + "[[x]] " * number + "int b;"
+    source = cleaned(text.encode()).source.decode()
+    assert (source == text) is kept
+    assert len(source) == len(text)
+    assert source.endswith("int b;")

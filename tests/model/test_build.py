@@ -19,6 +19,7 @@ from rosimpact.impact.model.cmake.lists import calculate
 from rosimpact.impact.model.cmake.regex import match
 from rosimpact.impact.model.cmake.standard import flag_standard
 from rosimpact.impact.model.cmake.values import split_list, word
+from rosimpact.impact.model.workspace import _Linker
 
 
 class Tree:
@@ -1023,3 +1024,24 @@ def test_same_messages_as_cmake_traces_over_several_files(tmp_path):
     run.run()
     assert run.said == expected
     assert len(expected) == 8
+
+
+FILES = ["a/CMakeLists.txt", "a/src/x.cpp", "a/src/y.hpp", "a/src/deep/z.cpp", "a/src0/w.cpp", "a/src-b/v.cpp"]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "recurse", "expected"),
+    [
+        ("a/src/*.cpp", False, ["a/src/x.cpp"]),
+        ("a/src/*.cpp", True, ["a/src/deep/z.cpp", "a/src/x.cpp"]),
+        ("a/*.cpp", True, ["a/src-b/v.cpp", "a/src/deep/z.cpp", "a/src/x.cpp", "a/src0/w.cpp"]),
+        ("a/src*/*.cpp", False, ["a/src-b/v.cpp", "a/src/deep/z.cpp", "a/src/x.cpp", "a/src0/w.cpp"]),
+        ("*.cpp", True, ["a/src-b/v.cpp", "a/src/deep/z.cpp", "a/src/x.cpp", "a/src0/w.cpp"]),
+        ("*.cpp", False, []),
+        ("b/*", True, []),
+    ],
+)
+def test_files_that_match_a_pattern(pattern, recurse, expected):
+    find = _Linker.glob(None, None, FILES)  # type: ignore[arg-type]
+    assert find(pattern, recurse) == expected
+    assert find(pattern, recurse) == expected

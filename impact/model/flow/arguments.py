@@ -10,13 +10,13 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from ...facts.flow import Call, Expr
-from .code import Code, Fn, Variable, around, tail
+from .code import Code, Fn, Variable, around, is_number, tail
 
 # Functions that give argv without what is ROS's; those of C++ put it into their third argument or return it.
 _COPIES = frozenset(
     ("myargv", "removeROSArgs", "remove_ros_arguments", "remove_ros_args", "init_and_remove_ros_arguments")
 )
-_COMPARED = re.compile(r"\(?\s*(?:argc|\w*args?\w*\.size\(\))\s*(==|!=|<=|>=|<|>)\s*(\d+)\s*\)?\Z")
+_COMPARED = re.compile(r"\(?\s*(?:argc|\w*args?\w*\.size\(\))\s*(==|!=|<=|>=|<|>)\s*(\d{1,18})\s*\)?\Z")
 _DEEPEST = 5
 
 
@@ -37,10 +37,10 @@ class CommandLine:
         if value.kind == "index" and len(value.parts) == 2 and value.parts[1].kind == "other":
             first, colon, last = value.parts[1].text.partition(":")
             begun = self.start(value.parts[0], fn, depth + 1) if colon and not last.strip() else None
-            return None if begun is None or not (first.strip() or "0").isdigit() else begun + int(first.strip() or 0)
+            return None if begun is None or not is_number(first.strip() or "0") else begun + int(first.strip() or 0)
         if value.kind == "join" and len(value.parts) == 2 and value.parts[1].kind == "number":
             begun = self.start(value.parts[0], fn, depth + 1)
-            return begun + int(value.parts[1].text) if begun is not None and value.parts[1].text.isdigit() else None
+            return begun + int(value.parts[1].text) if begun is not None and is_number(value.parts[1].text) else None
         if value.kind == "call":
             return 0 if tail(value.text) in _COPIES else None
         if value.kind != "name":
@@ -76,13 +76,13 @@ class CommandLine:
         if begun is None:
             return None
         if index.kind == "number":
-            if not index.text.lstrip("-").isdigit() or int(index.text) < 0:
+            if not is_number(index.text):
                 return None
             return range(begun + int(index.text), begun + int(index.text) + 1)
         first = 0
         if index.kind == "name":
             for _, each in self.code.writes(self.code.identity(index.text, fn)):
-                if each.operator == "=" and each.value.kind == "number" and each.value.text.isdigit():
+                if each.operator == "=" and each.value.kind == "number" and is_number(each.value.text):
                     first = int(each.value.text)
                     break
         return range(begun + first, 10_000)

@@ -125,6 +125,11 @@ def _pieces(path: str) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=100_000)
+def is_number(text: str) -> bool:
+    """Whether a text is a whole number that a program could count to."""
+    return len(text) < 19 and text.isdecimal()
+
+
 def tail(name: str) -> str:
     """The last part of a path or qualified name."""
     return parts_of(name)[-1] if name else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
@@ -148,6 +149,26 @@ class Flow:
                     if key not in seen:
                         seen.add(key)
                         yield Pair(self, giver, taker, launch)
+
+
+def uncompared(workspace: Workspace) -> Iterator[tuple[Endpoint, int]]:
+    """Subscribers and clients at names that too many meet under: the first at each, and how many pairs pairs() leaves
+    out there."""
+    seen = set()
+    for _, flow in flows(workspace):
+        in_all = _MOST_PAIRS_IN_ALL
+        for giving, taking in _SIDES:
+            givers = Counter(one.endpoint.topic for one in flow.sure(giving))
+            takers: dict[str, list[Endpoint]] = {}
+            for one in flow.sure(taking):
+                takers.setdefault(one.endpoint.topic, []).append(one.endpoint)
+            for topic, listed in takers.items():
+                number = givers[topic] * len(listed)
+                compared = min(number, _MOST_PAIRS, in_all)
+                in_all -= compared
+                if compared < number and (giving, topic) not in seen:
+                    seen.add((giving, topic))
+                    yield listed[0], number - compared
 
 
 def flows(workspace: Workspace) -> Iterator[tuple[str, Flow]]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import msgspec
 
 from ...facts.store import encodable
-from ..launch import Launched, SettingFile, Started, file_values, follow
+from ..launch import MOST_ACTIONS, Launched, SettingFile, Started, file_values, follow
 from ..names_ros import NameRefused, canonical, ros1_name, ros2_name, ros2_rule
 from ..package import role_of_folder
 from ..workspace import Workspace
@@ -19,6 +19,7 @@ from .started import Instance, InWorkspace, launch_kind
 from .wanted import stamp
 
 _MOST = 300
+_MOST_ACTIONS = 5 * MOST_ACTIONS  # of all launch files together
 
 
 class Renamed(msgspec.Struct, frozen=True):
@@ -118,8 +119,10 @@ def _followed(workspace: Workspace) -> list[tuple[str, Launched, InWorkspace]]:
     sources = InWorkspace(workspace)
     found: list[tuple[str, Launched, InWorkspace]] = []
     included: set[str] = set()
+    left = _MOST_ACTIONS
     for package, path, inner in _files(workspace):
-        launch = follow(package, inner, sources, {}, generation=workspace.ros)
+        launch = follow(package, inner, sources, {}, generation=workspace.ros, most=min(MOST_ACTIONS, left))
+        left = max(1, left - launch.actions)
         found.append((path, launch, sources))
         own, *others = launch.files or (("", ""),)
         included.update(sources.place(*other) for other in others if other != own)

@@ -6,7 +6,7 @@ import re
 
 from ...facts.flow import Expr
 from .calls import Calls, Use
-from .code import Fn, tail
+from .code import Fn, is_number, tail
 from .graph import Qos
 from .values import Values
 
@@ -81,14 +81,14 @@ def _number(value: Expr | None, fn: Fn, values: Values) -> int:
     if value is None:
         return -1
     text = values.of(value, fn)[0].text
-    return int(text) if text and text.isdigit() else -1
+    return int(text) if text and is_number(text) else -1
 
 
 def _of(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos:
     if depth > 6:
         return Qos()
     if value.kind == "number":
-        return Qos("reliable", "volatile", "keep_last", int(value.text)) if value.text.isdigit() else Qos()
+        return Qos("reliable", "volatile", "keep_last", int(value.text)) if is_number(value.text) else Qos()
     if value.kind in ("call", "make"):
         return _built(value, fn, calls, values, depth)
     if value.kind == "name":
@@ -108,7 +108,7 @@ def _of(value: Expr, fn: Fn, calls: Calls, values: Values, depth: int) -> Qos:
         if found:
             return _set_later(_common([qos for qos, _ in found]), value.text, found[0][1], values)
         text = values.of(value, fn)[0].text
-        if text and text.isdigit():
+        if text and is_number(text):
             return Qos("reliable", "volatile", "keep_last", int(text))
     if value.kind == "list" and value.parts:
         return _of(value.parts[0], fn, calls, values, depth + 1)

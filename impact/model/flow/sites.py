@@ -14,7 +14,7 @@ from msgspec import structs
 from ...facts.flow import Expr
 from ..expressions_cpp import split_at_commas
 from .calls import Calls, Use
-from .code import Code, Fn, Variable, around, parameter_of, tail
+from .code import Code, Fn, Variable, around, is_number, parameter_of, tail
 from .defined import Defined
 from .graph import Role
 from .templates import Templates
@@ -105,7 +105,7 @@ def _place_in_row(value: Expr) -> tuple[Expr, int] | None:
     """What is walked through, and the place in each of its rows, of `rows[each][1]`."""
     if value.kind == "index" and len(value.parts) == 2 and value.parts[0].kind == "index":
         walked, place = value.parts[0].parts[:1], value.parts[1]
-        if walked and place.kind == "number" and place.text.isdigit():
+        if walked and place.kind == "number" and is_number(place.text):
             return walked[0], int(place.text)
     return None
 

@@ -31,6 +31,9 @@ def unused_suppression(workspace: Workspace):
 
 def unused(workspace: Workspace, comments: Iterable[tuple[str, int, str]]) -> Iterator[Hit]:
     """Hits for (path, line, rule name) of comments without effect."""
+    last, owner = "", None
     for path, line, name in comments:
-        owner = max((p for p in workspace if path.startswith(p.path)), key=lambda p: len(p.path), default=None)
+        if path != last:
+            last = path
+            owner = max((p for p in workspace if path.startswith(p.path)), key=lambda p: len(p.path), default=None)
         yield Hit(At(path, line), name, f"`allow({name})` silences nothing", "remove it", owner.name if owner else "")

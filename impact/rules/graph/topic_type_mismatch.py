@@ -24,7 +24,7 @@ Not reported
 """
 
 from ...model.build import At
-from ...model.flow.edges import met, said
+from ...model.flow.edges import met, said, uncompared
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 
@@ -33,6 +33,13 @@ _WHAT = {"subscriber": "topic", "client": "service", "action client": "action"}
 
 @rule(severity="warning", preview=True, flow=True)
 def topic_type_mismatch(workspace: Workspace):
+    for taker, number in uncompared(workspace):
+        yield Hit(
+            At(taker.path, taker.line),
+            taker.topic,
+            f"too many meet at the {_WHAT[taker.role]} `{taker.topic}`: {number:,} pairs were not compared",
+            severity="note",
+        )
     for pair in met(workspace):
         giver, taker = pair.giver.endpoint, pair.taker.endpoint
         given, taken = pair.flow.type_of(giver), pair.flow.type_of(taker)

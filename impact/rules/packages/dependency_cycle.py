@@ -40,7 +40,8 @@ def dependency_cycle(view: View):
             if name in view.workspace.packages and name != package.name and kinds - {"test", "doc"}
         }
     edges = sum(map(len, needs.values()))
-    for _ in range(max(1, min(_MOST_CYCLES, _MOST_EDGES // max(1, edges)))):
+    most = max(1, min(_MOST_CYCLES, _MOST_EDGES // max(1, edges)))
+    for number in range(most + 1):
         try:
             TopologicalSorter(needs).prepare()
             return
@@ -51,6 +52,12 @@ def dependency_cycle(view: View):
         names = names[names.index(first) :] + names[: names.index(first)]
         package = view.workspace.packages[first]
         dependency = next(d for d in package.manifest.dependencies if d.name == names[1])
+        if number == most:
+            if view.reports_on(first):
+                at = view.manifest_place(package, dependency)
+                text = f"there are more than {most} dependency cycles; the others are not listed"
+                yield Hit(at, "further cycles", text, "cut those that are listed first", first, severity="note")
+            return
         if view.reports_on(first):
             yield Hit(
                 view.manifest_place(package, dependency),

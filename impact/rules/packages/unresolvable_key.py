@@ -23,6 +23,8 @@ Not reported
 """
 
 import re
+from bisect import bisect_left
+from functools import lru_cache
 
 from ...model.spelling import nearest, one_edit
 from ...model.view import View
@@ -91,8 +93,16 @@ def _parts_of(view: View, name: str) -> list[str]:
     """Released packages that are called after a name, two at least: what the repository of that name holds."""
     if len(name) < 4:
         return []
-    found = sorted(n for n in view.target.released_names() if n.startswith(name + "_") and view.available(n))
+    names, start = _in_order(view.target.released_names()), name + "_"
+    first = bisect_left(names, start)
+    # `_` is followed by a backquote.
+    found = [n for n in names[first : bisect_left(names, name + "`", first)] if view.available(n)]
     return found if len(found) > 1 else []
+
+
+@lru_cache(maxsize=16)
+def _in_order(names: frozenset[str]) -> list[str]:
+    return sorted(names)
 
 
 def _fix(view: View, package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
