@@ -398,7 +398,7 @@ def _in_workers(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list
                     continue
                 parts = [(item, kind) for item in chunk for kind in item[2]]
                 first = results.fresh and results.part == 0
-                if not 0 <= results.part < len(parts) or (results.memory and not first):
+                if not 0 <= results.part < len(parts) or not (results.timed or first):
                     suspects = parts if results.part < 0 else parts[results.part : results.part + 1]
                     if len(parts) == 1 and results.fresh:
                         yield chunk, [_failure(*parts[0], results.why)]

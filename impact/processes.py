@@ -37,12 +37,12 @@ _NOWHERE = -1
 class Died(NamedTuple):
     """What became of a task whose process ended. why: one clause. part: the number that the task last gave to
     begin_part(), -1 without one. fresh: True when the process had done nothing before, so that nothing but this task
-    can be the cause. memory: True when memory ran out, or something outside killed the process."""
+    can be the cause. timed: True when the time for that part ran out, of which nothing else can be the cause."""
 
     why: str
     part: int = _NOWHERE
     fresh: bool = True
-    memory: bool = False
+    timed: bool = False
 
 
 def cores() -> int:
@@ -161,10 +161,10 @@ class Workers:
         status = self._end(worker, kill=False)
         ended_by = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
         if ended_by == signal.SIGPROF:
-            return Died("needed too much time", part, fresh)
+            return Died("needed too much time", part, fresh, timed=True)
         if os.WIFEXITED(status) and os.WEXITSTATUS(status) == _OUT_OF_MEMORY:
-            return Died(f"needed more than {size_text(limits().memory)} of memory", part, fresh, memory=True)
-        return Died("crashed", part, fresh, memory=ended_by in (signal.SIGKILL, signal.SIGABRT))
+            return Died(f"needed more than {size_text(limits().memory)} of memory", part, fresh)
+        return Died("crashed", part, fresh)
 
     def _end(self, worker: _Worker, kill: bool = True) -> int:
         self._workers.remove(worker)
@@ -235,7 +235,7 @@ def forked(
                     return
                 workers.give(again.pop(), fresh=True)
             for thing, result in workers.finished():
-                if isinstance(result, Died) and not result.fresh:
+                if isinstance(result, Died) and not (result.fresh or result.timed):
                     again.append(thing)
                 else:
                     yield thing, result

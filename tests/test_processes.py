@@ -113,7 +113,7 @@ def test_every_result_comes_with_its_task():
 @needs_fork
 def test_a_task_that_ends_its_process_comes_without_result():
     found = dict(processes.forked(_dies, range(8), 2, os.getpid()))
-    assert found.pop(3) == processes.Died("crashed", memory=True)
+    assert found.pop(3) == processes.Died("crashed")
     assert found == {number: number for number in range(8) if number != 3}
 
 
