@@ -159,6 +159,7 @@ class _Digester:
         self.meaning = Meaning(join.code)
         self._fixed: dict[tuple[str, str, str], bool] = {}
         self._calling: dict[int, bool] = {}
+        self._changed: dict[int, frozenset[str]] = {}
         # What a framework subscribes to by itself (a transform listener) makes nothing run.
         self.implied = {
             (site.use.fn.source.path, site.use.call.line)
@@ -296,10 +297,16 @@ class _Digester:
         parameter = any(one.name == name for one in fn.facts.parameters)
         if len(made) > (local and not parameter) or any(row.operator != "=" for row in made):
             return False
-        touched = any(
-            one.kind != "read" and one.path.removeprefix("this.").partition(".")[0] == name for one in fn.facts.accesses
-        )
-        return not touched and (local or not self._calls_own(fn))
+        return name not in self._changes(fn) and (local or not self._calls_own(fn))
+
+    def _changes(self, fn: Fn) -> frozenset[str]:
+        """The variables of which a function changes more than by assigning to them."""
+        known = self._changed.get(id(fn))
+        if known is None:
+            written = (one.path for one in fn.facts.accesses if one.kind != "read")
+            changed = (path.removeprefix("this.").partition(".")[0] for path in written)
+            known = self._changed[id(fn)] = frozenset(changed)
+        return known
 
     def _calls_own(self, fn: Fn) -> bool:
         known = self._calling.get(id(fn))
