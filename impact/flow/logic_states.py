@@ -14,6 +14,7 @@ from ...edges.console import visible
 from ...edges.limits import limits_stamp
 from ..facts.store import pack, unpack
 from .guard_renames import propose_renames
+from .guard_solver import limited_questions
 from .guards import Language
 from .history import File, State
 from .logic_changes import Change, Side, changes, settled
@@ -24,6 +25,7 @@ _LONGEST_TEXT = 500_000
 _decoder = msgspec.msgpack.Decoder(Digest)
 
 
+@limited_questions()
 def compared(
     old: Side, new: Side, renamed: Callable[[], Mapping[str, str]], read: Callable[[File], bytes]
 ) -> list[Change]:

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from rosimpact.impact.flow.guard_solver import limited_questions
 from rosimpact.impact.flow.guards import Reading, compare, compare_ways, explain, explain_ways, impossible
 from rosimpact.impact.model.flow.graph import GuardAt
 
@@ -272,3 +273,10 @@ def test_words_of_long_conditions_show_what_differs():
     most = " || ".join(f"encoding == enc::KIND{number}" for number in range(9))
     clause = explain(cpp(f"if: {most}"), cpp(f"if: {most} || encoding == enc::LAST"))
     assert clause == "`… encoding == enc::KIND8 || encoding == enc::LAST` was `… encoding == enc::KIND8`"
+
+
+def test_only_so_many_questions_are_decided():
+    old, new = (tuple(GuardAt("if", text, "", 1) for text in texts) for texts in (["x > 0"], ["x > 3"]))
+    with limited_questions(1):
+        assert [compare(old, new) for _ in range(3)] == ["tightened", "changed", "changed"]
+    assert compare(old, new) == "tightened"
