@@ -214,32 +214,19 @@ def _read_all(
     wanted: Mapping[bytes, str], sizes: Mapping[str, int], store: Store, jobs: int
 ) -> Iterator[tuple[bytes, bytes]]:
     items = sorted(wanted.items(), key=lambda item: -sizes[item[1]])
-    parts = [items[at :: jobs * _PARTS_PER_JOB] for at in range(jobs * _PARTS_PER_JOB)]
-    parts = [part for part in parts if part]
-    if jobs < 2 or not processes.may_fork() or sum(sizes[path] for _, path in items) < _ALONE_BYTES:
-        for part in parts:
-            yield from _extracted(part)
-        return
+    parts = [part for at in range(jobs * _PARTS_PER_JOB) if (part := items[at :: jobs * _PARTS_PER_JOB])]
+    jobs = 1 if sum(sizes[path] for _, path in items) < _ALONE_BYTES else jobs
     store.close()  # no other process may go on with a connection of this one
-    for place, rows in processes.forked(_of_part, range(len(parts)), jobs, parts):
-        if not isinstance(rows, processes.Died):
-            yield from rows
-            continue
-        # A file on which reading ends its process is left out.
-        singles = [[item] for item in parts[place]]
-        for _, row in processes.forked(_of_part, range(len(singles)), 1, singles):
-            yield from () if isinstance(row, processes.Died) else row
-
-
-def _of_part(parts: list[list[tuple[bytes, str]]], place: int) -> list[tuple[bytes, bytes]]:
-    return _extracted(parts[place])
+    for _, rows in processes.forked_rows(_extracted, parts, jobs):
+        yield from (row for row in rows if row is not None)
 
 
 def _extracted(items: Iterable[tuple[bytes, str]]) -> list[tuple[bytes, bytes]]:
     """(key, packed facts) of files; no facts for one that cannot be read any more."""
     rows = []
-    for key, path in items:
+    for number, (key, path) in enumerate(items):
         try:
+            processes.begin_part(number, os.path.getsize(path))
             with open_library(path) as file:
                 found = elf.read(file)
         except OSError:

@@ -241,6 +241,28 @@ def forked(
                     yield thing, result
 
 
+def forked_rows(
+    task: Callable[..., Sequence[Any]], chunks: Sequence[Sequence[Any]], jobs: int, *what: Any
+) -> Iterator[tuple[Sequence[Any], Sequence[Any]]]:
+    """(chunk, task(*what, chunk)) for each of the chunks as they come to an end, in forked processes where that is
+    safe. The task gives one row for each item of a chunk. Where it ends its process, the items are tried one by one,
+    and None is the row of those that end it again. Chunks and what else is given are inherited, never copied."""
+    if not may_fork():
+        yield from ((chunk, task(*what, chunk)) for chunk in chunks)
+        return
+    for number, rows in forked(_at, range(len(chunks)), jobs, task, chunks, what):
+        chunk = chunks[number]
+        if isinstance(rows, Died):
+            alone = [[item] for item in chunk]
+            found = dict(forked(_at, range(len(alone)), 1, task, alone, what))
+            rows = [None if isinstance(row := found[at], Died) else row[0] for at in range(len(alone))]
+        yield chunk, rows
+
+
+def _at(task: Callable[..., Any], chunks: Sequence[Any], what: Sequence[Any], number: int) -> Any:
+    return task(*what, chunks[number])
+
+
 def _serve(
     task: Callable[..., Any], what: Sequence[Any], tasks: int, results: int, shared: mmap.mmap, parent: int
 ) -> None:

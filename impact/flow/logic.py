@@ -156,7 +156,8 @@ class _Run:
         missing = [state for key, state in wanted.items() if key not in known]
         chunks = _chunked(missing)
         done = 0
-        for chunk, made in self._each(_digest_chunk, chunks, self.history.path, self.store.folder):
+        what = (self.history.path, self.store.folder)
+        for chunk, made in processes.forked_rows(_digest_chunk, chunks, self.jobs, *what):
             self.digests.add([row for row in made if row is not None])
             lost = [state for state, row in zip(chunk, made, strict=True) if row is None]
             self.digests.packed.update(unread_digest(state) for state in lost)
@@ -168,7 +169,7 @@ class _Run:
         done = 0
         compared: list[tuple[_Step, tuple[Change, ...]]] = []
         known = self.digests.packed
-        for chunk, found in self._each(_compare_chunk, chunks, self.history.path, known):
+        for chunk, found in processes.forked_rows(_compare_chunk, chunks, self.jobs, self.history.path, known):
             for step, row in zip(chunk, found, strict=True):
                 if row is None:
                     # Not remembered: the next run tries again.
@@ -218,29 +219,9 @@ class _Run:
                 found.setdefault(inlet.topic, []).append(reached)
         return found
 
-    def _each(
-        self, task: Callable[..., Sequence[Any]], chunks: Sequence[Sequence[Any]], *what: Any
-    ) -> Iterator[tuple[Sequence[Any], Sequence[Any]]]:
-        """Chunks with a row for each of their items, None for an item whose process died."""
-        if not processes.may_fork():
-            yield from ((chunk, task(*what, chunk)) for chunk in chunks)
-            return
-        # Chunks by their numbers: the processes inherit what is in them.
-        for number, rows in processes.forked(_numbered, range(len(chunks)), self.jobs, task, chunks, what):
-            chunk = chunks[number]
-            if isinstance(rows, processes.Died):
-                alone = [[item] for item in chunk]
-                found = dict(processes.forked(_numbered, range(len(alone)), 1, task, alone, what))
-                rows = [None if isinstance(found[at], processes.Died) else found[at][0] for at in range(len(alone))]
-            yield chunk, rows
-
     def _remember(self, rows: Iterable[tuple[str, _Result]]) -> None:
         folder = self.history.folder
         self.store.remember("logic", encodable((_commit_key(commit, folder), row) for commit, row in rows))
-
-
-def _numbered(task: Callable[..., Any], chunks: Sequence[Any], what: Sequence[Any], number: int) -> Any:
-    return task(*what, chunks[number])
 
 
 def _reaching(change: Change, listeners: Mapping[str, list[Reached]]) -> Change:
