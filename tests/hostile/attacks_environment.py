@@ -182,7 +182,7 @@ def rows() -> list[Attack]:
                     folders() | folder_of_bytes(),
                     (*COMMANDS[command], "-f", format),
                     (STATUS[command],),
-                    found="" if command == "why" else None,
+                    found="" if command == "why" or format == "markdown" else None,  # ten lines hold not all
                     environment=environment,
                     encoding=encoding,
                     direct=True,
