@@ -1,0 +1,90 @@
+"""Files are opened and written, documents parsed and text printed through `edges`: whoever goes another way is here."""
+
+import ast
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+ROOMS = ("impact", "corpus", "classifier", "edges")
+BUILDERS = ("impact/targets/build",)
+"""Modules that make the data that is shipped, from material of whoever runs them."""
+
+_SHIPPED = "data that is shipped beside the module"
+DOORS = {
+    "open": {
+        "edges/files.py": "the door",
+        "impact/processes.py": "/proc/self/statm",
+        "impact/targets/loader.py": "a descriptor of open_regular()",
+        "corpus/report.py": "a descriptor of open_regular()",
+        "corpus/sources/ros_answers.py": "a descriptor of open_regular()",
+        "impact/targets/unpacked.py": "a function of that name",
+    },
+    "os.open": {
+        "edges/files.py": "the door",
+        "edges/console.py": "/dev/null",
+        "impact/processes.py": "/dev/null",
+        "impact/facts/store.py": "the cache's folder, for its lock",
+        "corpus/labelling.py": "the journal of labels, which is locked while it is open",
+    },
+    ".read_bytes": {
+        "impact/cache.py": "our own modules",
+        "impact/flow/logic_states.py": "our own modules",
+        "corpus/figures.py": "our own labels, and a picture just drawn",
+        **dict.fromkeys(
+            (f"impact/targets/{name}.py" for name in (
+                "behaviour", "changes", "fields", "includes", "parameters", "providers", "snapshot", "sonames",
+                "standard", "surface_store", "uses", "version_macros",
+            )),
+            _SHIPPED,
+        ),
+    },
+    ".read_text": dict.fromkeys(
+        ("impact/model/flow/frameworks.py", "impact/report/json.py", "impact/report/page.py", "corpus/label_screen.py"),
+        _SHIPPED,
+    ),
+    ".write_text": {},
+    ".write_bytes": {},
+    "os.replace": {
+        "impact/targets/unpacked.py": "the cache",
+        "corpus/polite.py": "a download that goes on where it stopped",
+    },
+    "print": {},
+    "eval": {},
+    "exec": {},
+    "os.system": {},
+    "subprocess.run": {"impact/targets/capture.py": "dpkg-query and the like, without words of a workspace"},
+    "subprocess.Popen": {},
+    "pickle.loads": {"impact/processes.py": "what our own processes send each other"},
+    "marshal.loads": {"classifier/features.py": "a nameless temporary file of one process"},
+    "yaml.load": dict.fromkeys(("impact/targets/providers.py", "impact/targets/snapshot.py"), _SHIPPED),
+    "yaml.safe_load": {"impact/targets/sonames.py": _SHIPPED},
+    "json.loads": {
+        "edges/documents.py": "the door",
+        "impact/report/json.py": "our own schemas",
+        "classifier/model.py": "parts of a model whose size was looked at",
+        "classifier/triage.py": "one line of a limited length",
+        "corpus/figures.py": "settings that `study run` gives",
+    },
+}  # fmt: skip
+
+
+def called(tree: ast.AST):
+    """Every call as `name`, `owner.name` and `.name`."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            yield node.func.id
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            owner = node.func.value.id if isinstance(node.func.value, ast.Name) else ""
+            yield f"{owner}.{node.func.attr}"
+            if owner != "files":  # edges.files has a function of that name
+                yield f".{node.func.attr}"
+
+
+def test_nobody_goes_past_the_doors():
+    found: dict[str, set[str]] = {door: set() for door in DOORS}
+    for room in ROOMS:
+        for module in (ROOT / room).rglob("*.py"):
+            path = module.relative_to(ROOT).as_posix()
+            if not path.startswith(BUILDERS):
+                for name in set(called(ast.parse(module.read_text(encoding="utf-8")))) & DOORS.keys():
+                    found[name].add(path)
+    assert found == {door: set(modules) for door, modules in DOORS.items()}
