@@ -307,21 +307,22 @@ def _cannot_write(file: Path, error: OSError) -> UserError:
 def _place_of(file: Path, path: object) -> tuple[str, str | None]:
     """(path to write to, folder that must hold it without links in between).
 
-    What lies in the workspace, or in the repository around it or around the current folder, was made by whoever made
-    those: a link in them must not say where a report goes. None elsewhere, where folders are the user's own.
+    What lies in the workspace, or in the repository around it, around the current folder or around the file itself, was
+    made by whoever made those: a link in them must not say where a report goes. None elsewhere, where folders are the
+    user's own.
     """
     name = os.fspath(file)
     if not os.path.isabs(name):
         name = os.path.join(os.getcwd(), name)
     folders = [os.fspath(path)] if isinstance(path, str | os.PathLike) and path != "" else []
-    folders += [found for folder in (*folders, ".") if (found := _repository_of(folder))]
+    folders += [found for folder in (*folders, ".") if (found := _repository_of(os.path.realpath(folder)))]
+    folders += [found] if (found := _repository_of(os.path.dirname(os.path.abspath(name)))) else []
     beneath = outermost(name, folders)
     return (name, None) if beneath is None else (os.path.abspath(name), beneath)
 
 
-def _repository_of(folder: str) -> str:
-    """The nearest folder with a `.git` in it, from a folder upwards; empty when there is none."""
-    place = os.path.realpath(folder)
+def _repository_of(place: str) -> str:
+    """The nearest folder with a `.git` in it, from an absolute path upwards; empty when there is none."""
     while not os.path.lexists(os.path.join(place, ".git")):
         place, last = os.path.dirname(place), place
         if place == last:

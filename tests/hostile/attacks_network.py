@@ -116,7 +116,6 @@ def rows() -> list[Attack]:
             "check: a remote of git", GROUP, remote, (*CHECK, "--base", "origin/main"), (0, 1, 2), git=True, found=""
         ),
         Attack("check: a promised object", GROUP, promised, (*CHECK, "--rev", "HEAD"), (0, 1, 2), git=True, found=""),
-        Attack("logic: a promised object", GROUP, promised, COMMANDS["logic"], (0, 2), git=True, found=""),
         Attack(
             "triage of a text with addresses",
             GROUP,

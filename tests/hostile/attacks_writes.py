@@ -261,7 +261,7 @@ def rows() -> list[Attack]:
                     folder_link("{ws}/reports", "{outside}"),
                     asked("{ws}/reports/new"),
                     (2,),
-                    git=git,
+                    git=git or not kind,
                     found="",
                 ),
                 Attack(

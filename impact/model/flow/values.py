@@ -20,6 +20,9 @@ _DEEPEST = 12
 _FAR = 6
 # Expressions looked at for one value, and characters of it: each variable may be written from two others.
 _MOST_STEPS = 5_000
+# Of all values together; navigation2 takes 25,000. A value that comes after them is followed for a few steps only.
+_STEPS_IN_ALL, _STEPS_A_FUNCTION = 150_000, 100
+_FEW_STEPS = 50
 _LONGEST = 10_000
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
@@ -65,6 +68,7 @@ class Values:
         self.calls, self.code = calls, calls.code
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
         self._left = _MOST_STEPS
+        self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
 
     def under(self, settings: Mapping[str, str], arguments: Sequence[str] | None = None) -> Values:
         """The same code where a launch sets parameters and gives arguments."""
@@ -82,12 +86,15 @@ class Values:
         other = Values(self.calls, *given)
         for name in ("filled", "declared", "bases_made", "command_line"):
             other.__dict__[name] = getattr(self, name)
+        other._budget = self._budget
         return other
 
     def of(self, value: Expr | None, fn: Fn, line: int = 0) -> list[Value]:
         """What an expression may be worth, each once; unknown ones last. line: of the statement it stands in."""
-        self._left = _MOST_STEPS
+        most = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
+        self._left = most
         found = list(dict.fromkeys(self._of(value, fn, line, ())))
+        self._budget[0] -= most - max(self._left, 0)
         known = [one for one in found if one.text is not None]
         return known or found[:1] or [Value(None, "unresolved", "no value is given")]
 
