@@ -312,7 +312,9 @@ def _shortage(error: BaseException) -> str:
         return "too many open files; allow more with `ulimit -n 4096`, or use fewer processes with --jobs"
     # What the dynamic loader says when a module is imported.
     unloaded = isinstance(error, ImportError) and ("failed to map" in str(error) or "allocate" in str(error))
-    if isinstance(error, MemoryError) or unloaded or number == errno.ENOMEM:
+    # What Python itself says where it could not make the exception.
+    unmade = isinstance(error, SystemError) and "without exception set" in str(error)
+    if isinstance(error, MemoryError) or unloaded or unmade or number == errno.ENOMEM:
         return "not enough memory; give it more, or use fewer processes with --jobs 1"
     if number == errno.EAGAIN or (isinstance(error, RuntimeError) and "start new thread" in str(error)):
         return "the system allows no more processes or threads; use fewer with --jobs 1, or allow more with `ulimit -u`"

@@ -98,6 +98,8 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
         tables = load_toml(data.decode("utf-8-sig"))
     except (DocumentError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path}: cannot be read: {error}; correct the file or remove it") from None
+    if _has_null(tables):
+        raise ConfigError(f"{path}: holds a null byte, which no name or path can; take it out")
     for key in tables:
         if key not in _TABLES:
             raise ConfigError(
@@ -148,6 +150,12 @@ def _severities(path: Path, name: str, table: dict[str, Any]) -> dict[str, str]:
     if not isinstance(value, dict) or not all(isinstance(each, str) for each in value.values()):
         raise ConfigError(f'{path}: [{name}] `severity` must be a table, such as {{ unused-dependency = "warning" }}')
     return value
+
+
+def _has_null(value: Any) -> bool:
+    if isinstance(value, dict):
+        return any(_has_null(key) or _has_null(item) for key, item in value.items())
+    return "\0" in value if isinstance(value, str) else isinstance(value, list) and any(map(_has_null, value))
 
 
 def _table(path: Path, data: dict[str, Any], name: str) -> dict[str, Any]:

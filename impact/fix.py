@@ -382,7 +382,7 @@ def _manifest(data: bytes) -> _Manifest | None:
         if not open_tags and not match["close"]:
             if tag != "package" or match["empty"]:
                 return None
-            found = re.search(rb"""\bformat\s*=\s*["']\s*(\d+)""", match["attributes"])
+            found = re.search(rb"""\bformat\s*=\s*["']\s*([0-9]{1,9})\b""", match["attributes"])
             version = int(found[1]) if found else 1
         if match["close"]:
             if not open_tags or open_tags.pop() != tag:

@@ -175,6 +175,8 @@ def rows() -> list[Attack]:
             ("why", "text"),
             ("check", "html"),
         ):
+            if name == "utf-16" and format in ("json", "html"):
+                continue  # read as UTF-8 here
             found.append(
                 Attack(
                     f"{command} {format}: names of all kinds, {name}",
@@ -531,8 +533,9 @@ def rows() -> list[Attack]:
             "everything that could be executed: install space",
             GROUP,
             payloads,
-            (*CHECK, "--install", "{ws}/install"),
-            (1,),
+            (*CHECK, "--install", "{ws}/install"),  # it holds no library
+            (2,),
+            found="",
         ),
         Attack(
             "limits that cannot be read",

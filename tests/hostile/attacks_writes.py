@@ -191,7 +191,7 @@ def rows() -> list[Attack]:
             after=whole_source,
             changes=(SOURCE,),
         ),
-        Attack("--diff changes nothing", GROUP, {}, (*CHECK, "--diff"), (1,)),
+        Attack("--diff changes nothing", GROUP, {}, (*CHECK, "--diff"), (1,), found=""),
         Attack("check changes nothing", GROUP, {}, CHECK, (1,), git=True),
         Attack("installed command: --fix through a link", GROUP, linked_source, FIX, (0, 1), direct=True),
         Attack(
