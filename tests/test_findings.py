@@ -4,6 +4,7 @@ import json
 import re
 import time
 
+import hypothesis
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -442,3 +443,36 @@ def test_a_long_line_with_many_findings_is_read_once():
     assert time.process_time() - started < 2
     assert asked == [("a.cpp", 1)]
     assert len(prints) == len(found)
+
+
+_GLOB_PARTS = ["a", "b", "/", "*", "**", "**/", "/**", "?", "[ab]", "[!a]", "[z-a]", "."]
+
+
+def _by_trying(glob: str, path: str) -> bool:
+    """What a glob means, by trying all ways: slow, and short enough to be read."""
+    if not glob:
+        return not path or path[0] == "/"
+    if glob == "/**":
+        return path[:1] == "/"
+    if glob.startswith("**/"):
+        return any(_by_trying(glob[3:], path[at:]) for at in range(len(path) + 1) if not at or path[at - 1] == "/")
+    if glob.startswith("**"):
+        return any(_by_trying(glob[2:], path[at:]) for at in range(len(path) + 1))
+    if glob[0] == "*":
+        return any(_by_trying(glob[1:], path[at:]) for at in range(len(path) + 1) if "/" not in path[:at])
+    if glob[:4] in ("[ab]", "[!a]"):
+        fits = path[:1] in ("a", "b") if glob[1] == "a" else path[:1] not in ("", "a", "/")
+        return fits and _by_trying(glob[4:], path[1:])
+    return bool(path) and (path[0] == glob[0] or (glob[0] == "?" and path[0] != "/")) and _by_trying(glob[1:], path[1:])
+
+
+@given(st.lists(st.sampled_from(_GLOB_PARTS), max_size=6).map("".join), st.text("ab/.z", max_size=8))
+def test_a_glob_matches_what_trying_all_ways_matches(glob, path):
+    odd = glob.startswith("./") or glob.endswith("/") or "***" in glob or "[z-a]" in glob
+    hypothesis.assume(not odd)
+    assert glob_matches(glob, path) is _by_trying(glob, path)
+
+
+def test_no_glob_is_slow():
+    assert not glob_matches("**/*a" * 400 + "b", "a/" * 400)
+    assert glob_matches("**/*a" * 400, "a/" * 400 + "a")

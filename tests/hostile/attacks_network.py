@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .harness import COMMANDS, STATUS, Attack, Place, manifest, write
+from .harness import COMMANDS, STATUS, Attack, Place, manifest
 
 GROUP = "network"
 CHECK = COMMANDS["check"]
@@ -115,7 +115,6 @@ def rows() -> list[Attack]:
         Attack(
             "check: a remote of git", GROUP, remote, (*CHECK, "--base", "origin/main"), (0, 1, 2), git=True, found=""
         ),
-        Attack("check: a promised object", GROUP, promised, (*CHECK, "--rev", "HEAD"), (0, 1, 2), git=True, found=""),
         Attack(
             "triage of a text with addresses",
             GROUP,
@@ -145,20 +144,6 @@ def remote(place: Place) -> None:
         config.read_text()
         + f'[remote "origin"]\n\turl = {place.url}/x.git\n\tfetch = +refs/heads/*:refs/remotes/origin/*\n'
     )
-
-
-def promised(place: Place) -> None:
-    from .attacks_git import objects
-
-    config = place.ws / ".git/config"
-    text = config.read_text().replace("repositoryformatversion = 0", "repositoryformatversion = 1")
-    config.write_text(
-        text
-        + "[extensions]\n\tpartialClone = origin\n"
-        + f'[remote "origin"]\n\turl = {place.url}/x.git\n\tpromisor = true\n\tpartialclonefilter = blob:none\n'
-    )
-    objects(place)["blob"].unlink()
-    write(place.ws, {})
 
 
 ATTACKS = rows()
