@@ -125,3 +125,16 @@ def say(capfd, cache, monkeypatch) -> Callable[..., Said]:
         return Said(code if isinstance(code, int) else 0 if code is None else 1, out, err)
 
     return run
+
+
+_IN_ONE_PROCESS = ("rules", "model", "report", "targets", "facts")
+"""Folders of tests that look at what is found, not at how it is divided among processes; that has tests of its own."""
+
+
+@pytest.fixture(autouse=True)
+def one_process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fork of a process that has grown to a gigabyte of tests takes longer than most of them."""
+    if request.path.relative_to(Path(__file__).parent).parts[0] in _IN_ONE_PROCESS:
+        from rosimpact.impact import processes
+
+        monkeypatch.setattr(processes, "may_fork", lambda: False)
