@@ -335,7 +335,7 @@ class Store:
         self._restarts += 1
         try:
             with self._locked(fcntl.LOCK_EX):
-                if damaged is not None and self._identity() not in (damaged, None):
+                if damaged is not None and self._identity() != damaged:
                     return True  # another process has done it meanwhile
                 for suffix in _FILES:
                     with contextlib.suppress(FileNotFoundError):
