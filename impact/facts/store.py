@@ -337,9 +337,16 @@ class Store:
             with self._locked(fcntl.LOCK_EX):
                 if damaged is not None and self._identity() != damaged:
                     return True  # another process has done it meanwhile
-                for suffix in _FILES:
+                # The new file is there before the old one goes, so that it cannot get its number, by which others tell
+                # them apart.
+                fresh = self.path + ".new"
+                with contextlib.suppress(FileNotFoundError):
+                    os.remove(fresh)
+                os.close(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666))
+                for suffix in _FILES[1:]:
                     with contextlib.suppress(FileNotFoundError):
                         os.remove(self.path + suffix)
+                os.replace(fresh, self.path)
         except OSError:
             return False
         if not isinstance(error, _Older):
