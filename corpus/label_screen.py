@@ -350,7 +350,7 @@ def run(session: Session, suggest: Suggest) -> None:
     from .keyboard import Keyboard
 
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")  # signs that the terminal's encoding has not got; one column each
+        sys.stdout.reconfigure(errors="replace")  # one column for each sign that the terminal's encoding lacks
     console = Console()
     screen = Screen(session, suggest, GUIDE_FILE.read_text(encoding="utf-8"))
     with Keyboard(sys.stdin.fileno(), sys.stdout.fileno()) as keyboard, console.screen() as shown:

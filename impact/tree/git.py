@@ -145,13 +145,8 @@ class GitTree(Walked):
         followed: set[str] = set()
         visited: set[str] = set()
         for link, target, parents in links:
-            if any(within(parent, target) for parent in parents):
-                self.problems.append(PathProblem(link, "the link leads to one of its own parent folders, not followed"))
+            if not self._follows(link, target, parents, followed):
                 continue
-            if target in followed:
-                self.skipped.append(PathProblem(link, "another link to the same folder was followed"))
-                continue
-            followed.add(target)
             in_tree = within(target, root)
             self.aliases[link] = posixpath.relpath(target or ".", root or ".") if in_tree else "/" + target
             stack = [(link, target, self._find(target)[2])]

@@ -181,6 +181,17 @@ class Walked:
     def _walk(self, found: list[Entry]) -> None:
         raise NotImplementedError
 
+    def _follows(self, link: str, target: str, parents: tuple[str, ...], followed: set[str]) -> bool:
+        """Whether a link to a folder is followed: once for each folder, and never into its own parents."""
+        if any(within(parent, target) for parent in parents):
+            self.problems.append(PathProblem(link, "the link leads to one of its own parent folders, not followed"))
+            return False
+        if target in followed:
+            self.skipped.append(PathProblem(link, "another link to the same folder was followed"))
+            return False
+        followed.add(target)
+        return True
+
     def entries(self) -> list[Entry]:
         if self._entries is None:
             found: list[Entry] = []

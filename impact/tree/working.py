@@ -94,13 +94,8 @@ class WorkingTree(Walked):
         links.sort()  # a folder's order on the disk decides nothing
         for link, target, parents in links:  # grows while links lead to further links
             known = len(links)
-            if any(within(parent, target) for parent in parents):
-                self.problems.append(PathProblem(link, "the link leads to one of its own parent folders, not followed"))
+            if not self._follows(link, target, parents, followed):
                 continue
-            if target in followed:
-                self.skipped.append(PathProblem(link, "another link to the same folder was followed"))
-                continue
-            followed.add(target)
             in_tree = within(target, real_root)
             self.aliases[link] = os.path.relpath(target, real_root) if in_tree else target
             stack = [(link, target, enclosing_repository(target))]
