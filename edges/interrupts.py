@@ -7,6 +7,7 @@ once; at any other moment the program ends at once, with one line and the status
 
 from __future__ import annotations
 
+import atexit
 import os
 import signal
 import sys
@@ -42,6 +43,16 @@ def install() -> None:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _handle)
     sys.unraisablehook = _unraisable
+    # What is registered first runs last.
+    atexit.register(_ignore)
+
+
+def _ignore() -> None:
+    """From here on Python puts the system's own handlers back, by which a signal would end a program whose report is
+    written as one that was killed."""
+    if os.getpid() == _State.process:
+        for number in _SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
 
 
 def interruptible(work: Callable[[], int], explain: Callable[[], None]) -> int:

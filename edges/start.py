@@ -34,10 +34,10 @@ def main() -> None:
             raise
         _say(_description(error))
     interrupts.finish(status)
+    _flush()
     if interrupts.was_interrupted() or status == 2:
         # What other processes and threads still do is of no use by now, and where files or processes ran out they may
         # never end.
-        _flush()
         interrupts.exit_now()
     raise SystemExit(status)
 

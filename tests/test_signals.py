@@ -94,6 +94,25 @@ def is_clean(status: int, out: str, err: str) -> None:
 
 
 @pytest.mark.parametrize("signalled", [signal.SIGINT, signal.SIGTERM])
+def test_signal_after_the_interpreter_let_go_of_its_handlers(signalled):
+    """The report is written and the modules are being cleared away."""
+    program = f"""
+import os
+from rosimpact.edges import interrupts
+interrupts.install()
+class Last:
+    def __del__(self, kill=os.kill, me=os.getpid(), write=os.write):
+        write(1, b"last")
+        kill(me, {int(signalled)})
+last = Last()
+interrupts.finish(1)
+raise SystemExit(1)
+"""
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=60)
+    assert (ended.returncode, ended.stdout) == (1, b"last")
+
+
+@pytest.mark.parametrize("signalled", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_at_any_moment(ws, tmp_path, signalled):
     """One process alone and the whole group, from the first import to the report."""
     statuses = set()
