@@ -17,7 +17,7 @@ def main() -> None:
         from .console import hold_streams
 
         hold_streams()
-        from ..impact.cli import main as command_line
+        from ..impact.cli.app import main as command_line
 
         command_line()
         status = 0

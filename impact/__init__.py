@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .check import Options, check, check_workspace
+    from .analysis.check import Options, check, check_workspace
     from .report.report import Report
     from .rules.rule import Finding
 
 __all__ = ["Finding", "Options", "Report", "check", "check_workspace"]
 
 _WHERE = {
-    "check": "check",
-    "check_workspace": "check",
-    "Options": "check",
+    "check": "analysis.check",
+    "check_workspace": "analysis.check",
+    "Options": "analysis.check",
     "Report": "report.report",
     "Finding": "rules.rule",
 }

@@ -276,7 +276,7 @@ def test_what_runs_out_is_no_fault_of_rosimpact(capfd, error, words):
 
 
 def test_a_start_that_fails_is_one_line():
-    code = "import sys; sys.modules['rosimpact.impact.cli'] = None\nfrom rosimpact.edges.start import main; main()"
+    code = "import sys; sys.modules['rosimpact.impact.cli.app'] = None\nfrom rosimpact.edges.start import main; main()"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert run.returncode == 2 and run.stdout == ""
     assert run.stderr.startswith("rosimpact: ") and len(run.stderr.splitlines()) == 1

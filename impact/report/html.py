@@ -59,7 +59,7 @@ def _impact(report: Report) -> dict[str, Any] | None:
     """What the change reaches: a summary, and change, subject, place, why and reached nodes of each; None without."""
     if report.impact is None or not report.impact.effects:
         return None
-    from ..flow.impact_report import names_of, summary
+    from .impact import names_of, summary
 
     names = names_of(report.impact)
     rows = []

@@ -11,7 +11,7 @@ from .report import Report
 from .text import Style, finding_lines, painted
 
 if TYPE_CHECKING:
-    from ..between import Item
+    from ..analysis.target_compare import Item
     from ..rules.rule import Finding
 
 _PLACES = 5

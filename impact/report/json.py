@@ -42,7 +42,7 @@ def render(report: Report) -> str:
         if value:
             data[key] = value
     if report.impact is not None and report.impact.effects:
-        from ..flow.impact_report import compact
+        from .impact import compact
 
         data["impact"] = compact(report.impact)
     return dumped(data)

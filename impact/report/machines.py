@@ -13,8 +13,8 @@ from .report import ReportedTarget, cells
 from .text import Style, described, painted
 
 if TYPE_CHECKING:
-    from ..between import Item
-    from ..machines import Machines, Use
+    from ..analysis.machine_compare import Machines, Use
+    from ..analysis.target_compare import Item
 
 FORMATS = ("text", "json")
 SCHEMA = 1

@@ -27,7 +27,7 @@ def render(report: Report) -> str:
     order = {"error": 0, "warning": 1}
     told = sorted((each for each in findings if each.severity in order), key=lambda each: order[each.severity])
     if report.impact is not None and report.impact.effects:
-        from ..flow.impact_report import summary
+        from .impact import summary
 
         tail.insert(0, f"\nMessage flow: {escaped(summary(report.impact))}")
     room = _LINES - len(head) - len("\n".join(tail).split("\n"))

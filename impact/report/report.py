@@ -11,7 +11,7 @@ from ...edges.console import counted
 from ..rules.rule import Finding, Rule
 
 if TYPE_CHECKING:
-    from ..flow.impact import Impact
+    from ..analysis.downstream import Impact
 
 CONTEXT = 1
 _KEPT_FILES = 32

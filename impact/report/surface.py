@@ -10,8 +10,8 @@ import msgspec
 
 from ...edges.console import json_text, visible
 from ..facts.surface import FUNCTIONS, declared
-from ..targets.surface import Change, Surface
-from ..targets.surface_python import Names, signature
+from ..model.surface.package import Change, Surface
+from ..model.surface.python import Names, signature
 from .columns import Piece, laid_out
 from .markdown import cell, code, escaped
 from .text import Style, painted

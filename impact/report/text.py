@@ -67,7 +67,7 @@ def render(report: Report, style: Style = PLAIN) -> str:
     shown = [finding for finding in fresh(report) if finding.severity in style.severities]
     lines += _packages(report, shown, style)
     if report.impact is not None and report.impact.effects:
-        from ..flow.impact_report import short
+        from .impact import short
 
         lines += [
             "",

@@ -14,9 +14,9 @@ from .report import ReportedTarget, count_by_severity, coverage_text
 from .text import Style, described, heading, painted
 
 if TYPE_CHECKING:
-    from ..between import Item
+    from ..analysis.target_compare import Item
+    from ..analysis.upgrade import Upgrade
     from ..rules.rule import Finding
-    from ..upgrade import Upgrade
 
 FORMATS = ("text", "json", "html")
 SCHEMA = 1

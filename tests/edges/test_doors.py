@@ -5,15 +5,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 ROOMS = ("impact", "corpus", "classifier", "edges")
-BUILDERS = ("impact/targets/build",)
+BUILDERS = ("databuild",)
 """Modules that make the data that is shipped, from material of whoever runs them."""
 
 _SHIPPED = "data that is shipped beside the module"
 DOORS = {
     "open": {
         "edges/files.py": "the door",
-        "impact/processes.py": "/proc/self/statm",
-        "impact/targets/loader.py": "a descriptor of open_regular()",
+        "edges/processes.py": "/proc/self/statm",
+        "impact/targets/machine/loader.py": "a descriptor of open_regular()",
         "corpus/report.py": "a descriptor of open_regular()",
         "corpus/sources/ros_answers.py": "a descriptor of open_regular()",
         "impact/targets/unpacked.py": "a function of that name",
@@ -21,13 +21,13 @@ DOORS = {
     "os.open": {
         "edges/files.py": "the door",
         "edges/console.py": "/dev/null",
-        "impact/processes.py": "/dev/null",
+        "edges/processes.py": "/dev/null",
         "impact/facts/store.py": "the cache's folder, for its lock",
         "corpus/labelling.py": "the journal of labels, which is locked while it is open",
     },
     ".read_bytes": {
         "impact/cache.py": "our own modules",
-        "impact/flow/logic_states.py": "our own modules",
+        "impact/logic/states.py": "our own modules",
         "corpus/figures.py": "our own labels, and a picture just drawn",
         **dict.fromkeys(
             (f"impact/targets/{name}.py" for name in (
@@ -54,10 +54,10 @@ DOORS = {
     "os.system": {},
     "subprocess.run": {"impact/targets/capture.py": "dpkg-query and the like, without words of a workspace"},
     "subprocess.Popen": {},
-    "pickle.loads": {"impact/processes.py": "what our own processes send each other"},
+    "pickle.loads": {"edges/processes.py": "what our own processes send each other"},
     "marshal.loads": {"classifier/features.py": "a nameless temporary file of one process"},
-    "yaml.load": dict.fromkeys(("impact/targets/providers.py", "impact/targets/snapshot.py"), _SHIPPED),
-    "yaml.safe_load": {"impact/targets/sonames.py": _SHIPPED},
+    "yaml.load": dict.fromkeys(("impact/targets/providers/providers.py", "impact/targets/snapshot.py"), _SHIPPED),
+    "yaml.safe_load": {"impact/targets/machine/sonames.py": _SHIPPED},
     "json.loads": {
         "edges/documents.py": "the door",
         "impact/report/json.py": "our own schemas",

@@ -1,7 +1,7 @@
 """What lies downstream in a message-flow graph."""
 
 import pytest
-from rosimpact.impact.flow.reach import Reach
+from rosimpact.impact.analysis.reach import Reach
 from rosimpact.impact.model.flow.graph import Coverage, Endpoint, Graph, Node, Publish, Trigger
 
 

@@ -29,18 +29,24 @@ from rosimpact.corpus.report import CorpusError, read_labels, read_reports
 from rosimpact.corpus.sources import markup, ros_answers, stack_exchange
 from rosimpact.edges import console
 from rosimpact.edges.documents import DocumentError, load_json, load_toml, load_yaml
-from rosimpact.impact import base, config, findings, memo, tree
+from rosimpact.impact import config, tree
+from rosimpact.impact.analysis import findings
+from rosimpact.impact.analysis import result_cache as memo
+from rosimpact.impact.analysis import revision_compare as base
+from rosimpact.impact.conditions import Environment, holds
 from rosimpact.impact.facts import allow, elf, flow_launch, kinds, store
 from rosimpact.impact.facts.cmake import extract as extract_cmake
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.model import discovery, launch, launch_text
-from rosimpact.impact.model.build import extras_of, interpret
+from rosimpact.impact.model import discovery
 from rosimpact.impact.model.cmake import regex
 from rosimpact.impact.model.cmake.interpreter import MAX_STEPS
-from rosimpact.impact.model.conditions import Environment, holds
+from rosimpact.impact.model.cmake.package import extras_of, interpret
+from rosimpact.impact.model.launch import follow as launch
+from rosimpact.impact.model.launch import text as launch_text
 from rosimpact.impact.report import github, markdown
-from rosimpact.impact.targets import capture, resolve, unpacked_deb, version
-from rosimpact.impact.targets.distro import TargetError
+from rosimpact.impact.targets import capture, resolve, version
+from rosimpact.impact.targets.distro.distro import TargetError
+from rosimpact.impact.targets.machine import unpacked_deb
 from rosimpact.impact.tree import Entry, ignore, working
 
 for _module, _, _ in kinds.EXTRACTORS.values():

@@ -26,7 +26,7 @@ from . import outputs
 ENTRY = """try:
     from rosimpact.edges.start import main
 except ImportError:
-    from rosimpact.impact.cli import main
+    from rosimpact.impact.cli.app import main
 import sys
 sys.argv[0] = "rosimpact"
 sys.exit(main())

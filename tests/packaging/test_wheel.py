@@ -138,7 +138,7 @@ def test_the_licence_is_stated_and_shipped(wheel):
         "CONTRIBUTING.md",
         "setup.py",
         ".ci/run",
-        "impact/cli.py",
+        "impact/cli/app.py",
         "examples/ros2_ws/rosimpact.toml",
         "tests/packaging/test_wheel.py",
     ],

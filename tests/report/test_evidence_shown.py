@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from rosimpact.impact.findings import baseline
+from rosimpact.impact.analysis.findings import baseline
 from rosimpact.impact.report import evidence, github, html, markdown, sarif, text
 from rosimpact.impact.report import json as json_report
 from rosimpact.impact.rules.rule import Finding

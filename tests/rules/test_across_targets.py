@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import Options, check
 
 CASES = Path(__file__).parent / "api"
 

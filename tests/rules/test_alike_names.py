@@ -4,7 +4,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import Options, check
 
 CASE = Path(__file__).parent / "api/removed_executable/before"
 

@@ -4,11 +4,10 @@ import textwrap
 
 import pytest
 from rosimpact.impact.facts import kinds
+from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.gather import gather
 from rosimpact.impact.model.package import Watched
-from rosimpact.impact.model.workspace import link
-from rosimpact.impact.targets.surface_python import (
+from rosimpact.impact.model.surface.python import (
     UNKNOWN,
     Names,
     broken_by,
@@ -18,6 +17,7 @@ from rosimpact.impact.targets.surface_python import (
     signature,
     surface_of,
 )
+from rosimpact.impact.model.workspace import link
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.0.0</version><description>d</description>

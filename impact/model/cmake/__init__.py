@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ...facts.cmake import CMakeFile
-from ..build import Build, Declared
 from . import ament, catkin, find, install, language, lists, paths, targets
 from .interpreter import Interpreter
+from .package import Build, Declared
 
 # Importing these registers what their commands mean.
 _FAMILIES = (language, lists, paths, find, targets, install, catkin, ament)

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import posixpath
 
-from ..build import Found, GeneratedInterfaces, Install
 from .blocks import Call
 from .interpreter import Interpreter, handles, stands_in_for
 from .names import name_set
+from .package import Found, GeneratedInterfaces, Install
 from .targets import add_links, add_sources, known
 from .values import Word, sections, split_words, word
 

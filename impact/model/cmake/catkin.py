@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import posixpath
 
-from ..build import At, GeneratedInterfaces, Install
 from .blocks import Call
 from .interpreter import Interpreter, handles
 from .names import name_set
+from .package import At, GeneratedInterfaces, Install
 from .targets import add_links, add_sources
 from .values import Value, Word, sections, split_words, word
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ...facts.condition import Condition
-from ..build import Install
 from .blocks import Call
 from .interpreter import Interpreter, handles
 from .names import name_set
+from .package import Install
 from .values import Word, following, merge, split_words
 
 _ARTIFACTS = name_set(
