@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 import msgspec
 
 from ..impact.facts.surface import CLASSES, FUNCTIONS, Entity
-from ..impact.model.surface.package import Change, State, compare
-from ..impact.model.surface.python import UNKNOWN
 from ..impact.targets.surface.changes import Event, Form, Line, Overload, Told, brief, pack
+from ..impact.targets.surface.compare import Change, State, compare
+from ..impact.targets.surface.python import UNKNOWN
 
 # What other tables tell (messages), and what a package has for itself.
 _UNTOLD = frozenset(("dependency", "system dependency", "package", "standard"))

@@ -19,9 +19,10 @@ from typing import Any, Literal, NamedTuple
 from ..edges.files import check_writable_path
 from ..impact.facts.store import Store
 from ..impact.model.surface.clones import Clone, Clones, Release, Version
-from ..impact.model.surface.package import State, surfaces_of
+from ..impact.model.surface.package import surfaces_of
 from ..impact.targets.distro.distro import DistroTarget, TargetError, known_distros
 from ..impact.targets.snapshot import Snapshot, default
+from ..impact.targets.surface.compare import State
 from ..impact.targets.surface.includes import Including
 from ..impact.targets.surface.store import History, Packed, Packer, Stored, write
 from ..impact.targets.version import parts

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .analysis.check import Options, check, check_workspace
-    from .report.report import Report
+    from .analysis.check import check, check_workspace
+    from .analysis.report import Report
+    from .analysis.session import Options
     from .rules.rule import Finding
 
 __all__ = ["Finding", "Options", "Report", "check", "check_workspace"]
@@ -15,7 +16,7 @@ _WHERE = {
     "check": "analysis.check",
     "check_workspace": "analysis.check",
     "Options": "analysis.check",
-    "Report": "report.report",
+    "Report": "analysis.report",
     "Finding": "rules.rule",
 }
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 import rosimpact.impact
-from rosimpact.impact.analysis.check import CheckError, Options, check, check_workspace, holds, open_workspace
+from rosimpact.impact.analysis.check import check, check_workspace, holds
 from rosimpact.impact.analysis.findings import SettingsError
+from rosimpact.impact.analysis.session import CheckError, Options, open_workspace
 from rosimpact.impact.config import ConfigError, load
 from rosimpact.impact.rules.fix_actions import Declare, Insert, Remove, Replace
 from rosimpact.impact.targets.distro.distro import TargetError

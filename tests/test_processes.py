@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 from rosimpact.edges import processes
 from rosimpact.impact.analysis import run_rules as judge
-from rosimpact.impact.analysis.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.model import workspace
 from rosimpact.impact.rules.rule import all_rules
 from rosimpact.impact.targets.distro.distro import DistroTarget

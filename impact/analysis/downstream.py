@@ -16,10 +16,10 @@ from ..logic.history import File
 from ..logic.states import renamed_words
 from ..logic.two_states import Differing, differing, flow_facts, publishing
 from ..model.flow.callers import Led
+from ..model.flow.connections import Edge, edges
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
 from ..model.flow.select import kind_of
 from ..model.workspace import Workspace
-from ..report.graph.edges import Edge, edges
 from .message_changes import holding, message_changes
 from .reach import EVERYWHERE, Reach, Step
 

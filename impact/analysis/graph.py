@@ -13,7 +13,7 @@ from ..model.flow.started import launched
 from ..model.flow.workspace import graph_of, linked
 from ..model.workspace import Workspace
 from ..tree import Tree, shown
-from .check import CheckError, open_tree
+from .session import CheckError, open_tree
 
 
 class Graphs(NamedTuple):

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from ..facts.store import Store
 from ..model.flow.workspace import linked
 from ..tree import shown
-from .check import CheckError, open_tree
 from .downstream import Impact, impact_of
+from .session import CheckError, open_tree
 
 
 class Reached(NamedTuple):

@@ -10,11 +10,11 @@ from ..config import load
 from ..model.build_order import build_order
 from ..model.view import View
 from ..model.workspace import Package
-from ..report.report import Report, ReportedTarget
 from ..targets.capture import Difference, differences
 from ..targets.resolve import parse_target
-from .check import Options
 from .findings import rank
+from .report import Report, ReportedTarget
+from .session import Options
 from .target_compare import Item, compared, items, sides
 
 _MACHINE = ("distro", "date", "platform")

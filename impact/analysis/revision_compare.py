@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,12 +13,11 @@ from ..facts.extract import gather
 from ..model.flow.file_selection import code_kinds
 from ..model.view import View
 from ..model.workspace import link
-from ..report.report import Report
-from ..tree import GitTree, Tree, TreeError, WorkingTree, at_merge_bases, inside, shown
+from ..tree import GitTree, Tree, TreeError, at_merge_bases, inside, shown
 from . import result_cache as memo
 
 if TYPE_CHECKING:
-    from .check import Opened, Options
+    from .session import Opened
 
 _PINNED = (".repos", ".rosinstall")
 
@@ -116,11 +114,3 @@ def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     views = [View(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
     # What is installed is of no revision.
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())
-
-
-def compare(path: str | os.PathLike[str], base: str | os.PathLike[str], options: Options | None = None) -> Report:
-    """Checks the workspace at path against another folder as its base. For tools that keep both states as folders;
-    `check` with Options(base=...) reads them from git. Raises as check() does."""
-    from .check import Options, check
-
-    return check(path, options or Options(), base_tree=WorkingTree(base))

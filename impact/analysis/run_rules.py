@@ -15,7 +15,7 @@ from . import result_cache as memo
 
 if TYPE_CHECKING:
     from ..model.workspace import Workspace
-    from .check import Opened
+    from .session import Opened
 
 # Starting processes costs about as much as judging this many packages on one target.
 _ALONE = 16

@@ -9,8 +9,9 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 from ..rules.rule import Finding
-from .check import Checked, CheckError, Opened, Options, chosen_rules, judged, open_workspace
+from .check import Checked, judged
 from .findings import rank
+from .session import CheckError, Opened, Options, chosen_rules, open_workspace
 
 
 class Sides(NamedTuple):

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..model.build_order import build_order
-from ..report.report import Report, ReportedPackage, ReportedTarget
 from ..rules.rule import Finding
 from . import fix
-from .check import CheckError, Options, reader
 from .findings import rank
+from .report import Report, ReportedPackage, ReportedTarget
+from .session import CheckError, Options, reader
 from .target_compare import Item, compared, items, sides
 
 

@@ -12,7 +12,7 @@ from ...edges.console import counted, visible
 from ..model.view import View
 from ..targets.distro.distro import DistroTarget
 from ..tree import JoinedTree
-from .check import Options, open_workspace
+from .session import Options, open_workspace
 
 # Files that make a folder a workspace or a package.
 _MARKS = ("package.xml", "rosimpact.toml", "colcon.meta")

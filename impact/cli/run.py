@@ -26,11 +26,12 @@ from ...edges.console import (
 )
 from ...edges.files import check_writable_path, outermost, read_file, write_file
 from ...edges.limits import limits
-from ..analysis.check import Checked, Options
+from ..analysis.check import Checked
 from ..analysis.check import run as run_check
 from ..analysis.findings import SettingsError, fails
-from ..report.report import Coverage, Report
-from ..report.text import PLAIN, Style, style_for
+from ..analysis.report import Coverage, Report
+from ..analysis.session import Options
+from ..report.style import PLAIN, Style, style_for
 from ..tree import WorkingTree, shown
 
 FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
@@ -247,7 +248,7 @@ def render(report: Report, format: str, notes: bool, output: Path | None = None,
 
         severities = ("error", "warning", "note") if notes else ("error", "warning")
         style = (
-            text.PLAIN._replace(severities=severities) if output else text.style_for(sys.stdout, severities=severities)
+            PLAIN._replace(severities=severities) if output else style_for(sys.stdout, severities=severities)
         )
         return text.render(report, style)
     if format == "github":
@@ -533,7 +534,7 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, f
 
     def answer(store) -> str:
         from ..model.surface.clones import Clone
-        from ..model.surface.package import State, compare, compare_states
+        from ..targets.surface.compare import State, compare, compare_states
 
         if os.path.isdir(what) and repos is None:
             clone = Clone(Path(what))
@@ -594,9 +595,9 @@ def _surface(package: str, asked: str, repos: Path | None, store, jobs):
     """Where a version of a package was found, and its state: in clones, else in what is shipped."""
     from ..model.surface.clones import Clones
     from ..model.surface.installed import is_installed, surface_at
+    from ..model.surface.stored_versions import StoredVersions
     from ..report.surface import Source
     from ..targets.surface.store import shipped
-    from ..targets.surface.stored_versions import StoredVersions
 
     if is_installed(asked):
         surface, state = surface_at(package, asked)
@@ -617,9 +618,9 @@ def _hashes(package: str, asked: str, state) -> dict[str, str]:
     """The hashes of a package's interfaces, by `msg/Name`, as far as all that is in them is known: in the state of its
     repository, or of other packages of the distro that was asked for."""
     from ..model.surface.installed import is_installed
+    from ..model.surface.stored_versions import StoredVersions
     from ..targets.hashes import hash_of
     from ..targets.surface.store import shipped
-    from ..targets.surface.stored_versions import StoredVersions
 
     others = None if asked[:1].isdigit() or is_installed(asked) else StoredVersions(shipped())
 

@@ -14,8 +14,8 @@ from ...edges.console import counted, json_text
 from ..analysis.downstream import KINDS, Effect, Hop, Impact
 from .columns import Piece, laid_out
 from .graph.text import WIDE, coverage_lines
-from .markdown import code, escaped
-from .text import Style, painted
+from .markdown_text import code, escaped
+from .style import Style, painted
 
 SCHEMA = 1
 SHOWN = 8

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import json_text
+from ..analysis.report import Coverage, Report
 from ..rules.rule import Finding
 from . import evidence
-from .report import Coverage, Report
 
 SCHEMA = 1
 

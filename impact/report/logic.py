@@ -13,7 +13,7 @@ from ..logic.changes import KINDS, Change
 from ..logic.history import Commit
 from ..logic.repository import Logic
 from .columns import UNBROKEN, Piece, laid_out
-from .text import PLAIN, Style
+from .style import PLAIN, Style
 
 SCHEMA = 1
 _ROLES = {"tightened": "error", "gone": "error", "trigger changed": "warning", "changed": "warning", "widened": "note",

@@ -43,7 +43,7 @@ from rosimpact.impact.model.cmake.interpreter import MAX_STEPS
 from rosimpact.impact.model.cmake.package import extras_of, interpret
 from rosimpact.impact.model.launch import follow as launch
 from rosimpact.impact.model.launch import text as launch_text
-from rosimpact.impact.report import github, markdown
+from rosimpact.impact.report import github, markdown_text
 from rosimpact.impact.targets import capture, resolve, version
 from rosimpact.impact.targets.distro.distro import TargetError
 from rosimpact.impact.targets.machine import unpacked_deb
@@ -475,12 +475,12 @@ def _markdown() -> Any:
 def marked(data: bytes) -> None:
     """A text of a workspace in a table and a paragraph of Markdown."""
     text = data.decode("utf-8", "replace")
-    for shown in (markdown.escaped(text), markdown.code(text)):
+    for shown in (markdown_text.escaped(text), markdown_text.code(text)):
         require("\n" not in shown and not _CONTROL.search(shown), "Markdown of two lines")
         for token in _markdown().parse(f"x {shown} y"):
             for child in token.children or ():
                 require(child.type in ("text", "code_inline"), f"Markdown makes {child.type} of a text")
-        table = _markdown().parse(f"| a | b |\n|---|---|\n| {markdown.cell(shown)} | end |\n")
+        table = _markdown().parse(f"| a | b |\n|---|---|\n| {markdown_text.cell(shown)} | end |\n")
         cells = [token.content for token in table if token.type == "inline"]
         require(len(cells) == 4 and cells[3] == "end", "a text breaks a table")
 

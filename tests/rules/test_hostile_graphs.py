@@ -3,7 +3,8 @@
 import random
 
 import pytest
-from rosimpact.impact.analysis.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.model.flow import edges
 from rosimpact.impact.model.flow.misspelling import NearNames, is_in_namespace, is_slip
 

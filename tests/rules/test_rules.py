@@ -17,9 +17,9 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.analysis.check import Options, check
-from rosimpact.impact.analysis.revision_compare import compare
-from rosimpact.impact.report.report import Report
+from rosimpact.impact.analysis.check import check, compare
+from rosimpact.impact.analysis.report import Report
+from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.rules.rule import all_rules
 from rosimpact.impact.targets.machine.loader import own_machine
 

@@ -3,13 +3,13 @@
 import pytest
 from rosimpact.databuild.surfaces import Packing
 from rosimpact.impact.facts.surface_cpp import extract as header
-from rosimpact.impact.model.surface.build import BuildSurface
 from rosimpact.impact.model.surface.clones import VersionError
-from rosimpact.impact.model.surface.package import State, Surface, compare
-from rosimpact.impact.model.surface.python import PythonSurface
+from rosimpact.impact.model.surface.stored_versions import StoredVersions
 from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.surface.build import BuildSurface
+from rosimpact.impact.targets.surface.compare import State, compare
 from rosimpact.impact.targets.surface.store import Surfaces, write
-from rosimpact.impact.targets.surface.stored_versions import StoredVersions
+from rosimpact.impact.targets.surface.surface import PythonSurface, Surface
 
 HUMBLE, JAZZY = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
 EARLY = DistroTarget("humble", "2024-03-01").version("rclcpp")

@@ -12,9 +12,11 @@ from ....databuild.history import git_directory, plain_url, releases_of, tag_of
 from ....edges.console import UserError
 from ...targets.distro.distro import DistroTarget, TargetError, known_distros
 from ...targets.snapshot import Snapshot, default
+from ...targets.surface.compare import State
+from ...targets.surface.surface import Surface
 from ...targets.version import parts
 from ...tree import GitTree, TreeError
-from .package import State, Surface, of_tree
+from .package import of_tree
 
 if TYPE_CHECKING:
     from ...facts.store import Store

@@ -10,7 +10,7 @@ from msgspec import structs
 
 from ...model.flow.graph import Graph
 from ...model.flow.select import NothingSelected, Selection, selected
-from ..text import Style
+from ..style import Style
 from .text import WIDE
 from .text import render as as_text
 

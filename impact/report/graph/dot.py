@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ....edges.console import visible
+from ...model.flow.connections import Edge, edges, names_of
 from ...model.flow.graph import Graph
 from ...model.flow.select import Selection
-from .edges import Edge, edges, names_of
 
 COLOURS = {"added": "#1a7f37", "removed": "#cf222e", "changed": "#bf8700", "": ""}
 _SHAPES = {"topic": "box", "service": "diamond", "action": "hexagon"}

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from ....edges.console import visible, visible_in_page
+from ...model.flow.connections import edges, names_of
 from ...model.flow.graph import Graph
 from ...model.flow.select import Selection
-from .edges import edges, names_of
 
 
 def render(selection: Selection, base: Graph | None) -> str:
     """A directed graph of nodes and names (http://graphml.graphdrawing.org/), edges with role, place and guards."""
     import networkx
 
-    from .edges import guard_text
+    from ...model.flow.connections import guard_text
 
     graph = selection.graph
     names = (names_of(base) if base is not None else {}) | names_of(graph)

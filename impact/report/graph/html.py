@@ -13,10 +13,10 @@ from typing import Any
 import msgspec
 
 from ....corpus import __version__
+from ...model.flow.connections import Edge, edges, names_of
 from ...model.flow.graph import Endpoint, Graph, GuardAt, ParameterUse, Publish
 from ...model.flow.select import Selection
 from ..page import page
-from .edges import Edge, edges, names_of
 
 _WAYS = 12
 _LONGEST = 2000

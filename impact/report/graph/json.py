@@ -9,9 +9,9 @@ import msgspec
 
 from ....corpus import __version__
 from ....edges.console import json_text
+from ...model.flow.connections import edges
 from ...model.flow.graph import Coverage, Endpoint, Graph, Node, ParameterUse, Publish, Timer
 from ...model.flow.select import Selection, endpoints_of
-from .edges import edges
 
 SCHEMA = 1
 _LISTS = {

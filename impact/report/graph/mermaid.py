@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ....edges.console import visible
+from ...model.flow.connections import Edge, edges, names_of
 from ...model.flow.graph import Graph
 from ...model.flow.select import Selection
 from .dot import COLOURS
-from .edges import Edge, edges, names_of
 
 MOST = 280
 """Edges that Mermaid draws by default are 500 (its maxEdges); beyond a few hundred nobody sees anything."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ....edges.console import counted
+from ...model.flow.connections import Edge, conditions, edges, loops, names_of
 from ...model.flow.graph import Coverage, Endpoint, Graph, GuardAt, Publish, Trigger, Unresolved
 from ...model.flow.select import Selection
 from ..columns import UNBROKEN, Piece, laid_out
-from ..text import PLAIN, Style
-from .edges import Edge, conditions, edges, loops, names_of
+from ..style import PLAIN, Style
 
 _SHOWN = 20
 _HANG, _NODES = 6, 14

@@ -6,9 +6,9 @@ import difflib
 from collections.abc import Callable, Collection, Iterable
 from typing import NamedTuple
 
-from ...model.surface.build import BuildSurface
 from ...model.view import View
 from ...targets.changes import DISTROS
+from ...targets.surface.build import BuildSurface
 from ...targets.surface.offers import Offer, Offered
 
 _THERE: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {

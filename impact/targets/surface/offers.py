@@ -11,9 +11,9 @@ from ...facts.surface import declared
 from .changes import Event, Form, Line, Told
 
 if TYPE_CHECKING:
-    from ...model.surface.build import BuildSurface
-    from ...model.surface.python import Names
     from ..target import Target
+    from .build import BuildSurface
+    from .python import Names
     from .store import Surfaces
 
 
@@ -128,7 +128,7 @@ class Offer:
     @cached_property
     def build(self) -> BuildSurface:
         """What the stored version gives to CMake and at run time."""
-        from ...model.surface.build import BuildSurface
+        from .build import BuildSurface
 
         history = self._offers.surfaces.history(self.package)
         build = history.build(self.stored) if history is not None else None
@@ -210,7 +210,7 @@ def declarations(surfaces: Surfaces, package: str, side: str, name: str, version
         return ()
     if side == "c++":
         return tuple(dict.fromkeys(declared(entity) for entity in history.entities(name, version)))
-    from ...model.surface.python import UNKNOWN, shown
+    from .python import UNKNOWN, shown
 
     names = _names(surfaces, package, version)
     entry = names.find(name) if names is not None else None
@@ -222,7 +222,7 @@ def declarations(surfaces: Surfaces, package: str, side: str, name: str, version
 
 @lru_cache(maxsize=8)
 def _names(surfaces: Surfaces, package: str, version: str) -> Names | None:
-    from ...model.surface.python import Names
+    from .python import Names
 
     history = surfaces.history(package)
     python = history.python(version) if history is not None else None

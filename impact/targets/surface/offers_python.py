@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from ...facts.python_objects import Given, PythonUse
 from ...facts.surface_python import Parameter, parameters_of
-from ...model.surface.python import UNKNOWN, Entry, Names, signature, wrapped
 from .offers import Offer, Offers
+from .python import UNKNOWN, Entry, Names, signature, wrapped
 
 
 class Lost(NamedTuple):

@@ -33,9 +33,8 @@ from .changes import PARAMETER, Line, brief, unpack
 from .includes import Included, spans_of, there
 
 if TYPE_CHECKING:
-    from ...model.surface.build import BuildSurface
-    from ...model.surface.package import Surface
-    from ...model.surface.python import PythonSurface
+    from .build import BuildSurface
+    from .surface import PythonSurface, Surface
 
 _SCHEMA = """
 CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL)
@@ -105,7 +104,7 @@ class History:
         if build is None or python is None:
             return None
         # What only changed is asked far more often than a whole version is.
-        from ...model.surface.package import Surface
+        from .surface import Surface
 
         guessed, runs_with = next((value for _, value in self._values("surface", version)), (False, ()))
         return Surface(
@@ -128,7 +127,7 @@ class History:
         """What a version gives to CMake and at run time; None for one that is not stored."""
         if version not in self.versions:
             return None
-        from ...model.surface.build import BuildSurface
+        from .build import BuildSurface
 
         build: dict[str, list[Any]] = {}
         for scope, value in self._values("build", version):
@@ -145,7 +144,7 @@ class History:
         """The Python of a version; None for one that is not stored."""
         if version not in self.versions:
             return None
-        from ...model.surface.python import Module, PythonSurface
+        from .surface import Module, PythonSurface
 
         bound, taken = self._inside("bound", version, Bound), self._inside("taken", version, Taken)
         told = self._inside("python", version, str)
@@ -345,7 +344,7 @@ _encoder = msgspec.msgpack.Encoder()
 
 def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
     """What a surface consists of: kind, name, value. Each gives rows of its own."""
-    from ...model.surface.build import BuildSurface
+    from .build import BuildSurface
 
     yield from (("header", path, header) for path, header in surface.headers)
     yield from (("module", module.name, module) for module in surface.python.modules)

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ...facts.interface import Interface
-from ...model.surface.clones import VersionError, newest_with, release_of
-from ...model.surface.package import State
-from ..distro.distro import DistroTarget
-from ..snapshot import Snapshot, default
-from .store import Surfaces
+from ...targets.distro.distro import DistroTarget
+from ...targets.snapshot import Snapshot, default
+from ...targets.surface.compare import State
+from ...targets.surface.store import Surfaces
+from .clones import VersionError, newest_with, release_of
 
 
 class StoredVersion(NamedTuple):

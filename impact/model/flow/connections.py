@@ -8,8 +8,8 @@ from typing import Literal, NamedTuple
 
 from msgspec import structs
 
-from ...model.flow.graph import Endpoint, Graph, GuardAt, Publish, Qos
-from ...model.flow.select import kind_of
+from .graph import Endpoint, Graph, GuardAt, Publish, Qos
+from .select import kind_of
 
 Mark = Literal["", "added", "removed", "changed"]
 _CHOICE = re.compile(r"\|\||\?|\b(?:or|if|lambda)\b")

@@ -11,7 +11,7 @@ from ...edges.console import counted
 from ..rules.rule import Finding, Rule
 
 if TYPE_CHECKING:
-    from ..analysis.downstream import Impact
+    from .downstream import Impact
 
 CONTEXT = 1
 _KEPT_FILES = 32
