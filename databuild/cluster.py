@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..edges.console import UserError
 from ..impact.cache import code_digest
 from ..impact.model.surface.clones import Clone
+from ..impact.model.surface.releases import git_directory
 from ..impact.tree import TreeError
-from .history import git_directory
 
 if TYPE_CHECKING:
     from .surfaces import Job, Result
@@ -43,7 +43,7 @@ class Code(NamedTuple):
 
     @classmethod
     def here(cls) -> Code:
-        from ..corpus import __version__
+        from ..edges.version import __version__
 
         return cls(__version__, "{}.{}".format(*sys.version_info), code_digest())
 

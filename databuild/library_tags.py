@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..impact.facts import surface_cpp
 from ..impact.facts.surface import HeaderSurface
+from ..impact.model.surface.releases import git_directory
 from ..impact.targets.version import at_least, parts
-from .history import _tree, git_directory
+from .history import _tree
 from .includes import AV_HEADERS
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from rosimpact.corpus import __version__
+from rosimpact.edges.version import __version__
 from rosimpact.impact.rules.rule import all_rules
 
 ROOT = Path(__file__).parents[1]
@@ -181,7 +181,7 @@ def test_nothing_analysed_leaves_the_baseline_alone(say, tmp_path):
 @pytest.fixture
 def curable(ws, monkeypatch):
     """A rule whose finding is cured by declaring a dependency."""
-    from rosimpact.impact.model.cmake.package import At
+    from rosimpact.impact.model.cmake.build import At
     from rosimpact.impact.rules import rule as registry
     from rosimpact.impact.rules.fix_actions import Declare
     from rosimpact.impact.rules.rule import Hit

@@ -28,7 +28,7 @@ from rosimpact.impact.analysis.findings import (
 )
 from rosimpact.impact.config import PathSetting
 from rosimpact.impact.facts.place import Allow
-from rosimpact.impact.model.cmake.package import At
+from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Edit, Finding, Hit, Rule
 from rosimpact.impact.targets.evidence import Evidence
 

@@ -8,8 +8,8 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...corpus import __version__
 from ...edges.console import unforeseen
+from ...edges.version import __version__
 from ..config import Config, PathSetting
 from ..facts.extract import Gathered
 from ..model.view import View

@@ -15,7 +15,7 @@ from msgspec import structs
 from ..cache import code_stamp
 from ..facts.store import Store, encodable
 from ..model import tracked_names as watch
-from ..model.cmake.package import At
+from ..model.cmake.build import At
 from ..model.flow.file_selection import stamp
 from ..model.package import Watched
 from ..model.view import View

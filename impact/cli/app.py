@@ -488,7 +488,7 @@ def data_update() -> None:
 
 def _version(value: bool) -> None:
     if value:
-        from ...corpus import __version__
+        from ...edges.version import __version__
 
         write(f"rosimpact {__version__}")
         raise typer.Exit()

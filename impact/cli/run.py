@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from ...corpus import __version__
 from ...edges.console import (
     UserError,
     counted,
@@ -26,6 +25,7 @@ from ...edges.console import (
 )
 from ...edges.files import check_writable_path, outermost, read_file, write_file
 from ...edges.limits import limits
+from ...edges.version import __version__
 from ..analysis.check import Checked
 from ..analysis.check import run as run_check
 from ..analysis.findings import SettingsError, fails

@@ -25,7 +25,7 @@ from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, first_places, initialises, names_a_variable, place_in, places_of_use, python_text
 from ..targets.providers.message_headers import type_in
 from ..targets.surface.fields import Fields
-from .cmake.package import At, Build
+from .cmake.build import At, Build
 from .macros import Macros
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.

@@ -28,7 +28,7 @@ from ..targets.surface.offers import Offers
 from ..targets.surface.offers_python import PythonOffers
 from ..targets.target import Change, Provider, Target
 from ..targets.version import at_least
-from .cmake.package import At, Found, for_tests
+from .cmake.build import At, Found, for_tests
 from .misspelling import Names
 from .package import MemberUse, role_of_folder
 from .python.api import python_packages

@@ -23,7 +23,8 @@ from ..facts.extract import Gathered
 from ..facts.kinds import EXTRACTORS
 from ..facts.manifest import Manifest
 from ..targets.surface.fields import snake
-from .cmake.package import Build, extras_of, interpret
+from .cmake.build import Build
+from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
 from .package import Digest, Watched, build_type_of, digest_of
 

@@ -39,8 +39,8 @@ from rosimpact.impact.facts.cmake import extract as extract_cmake
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.model import discovery
 from rosimpact.impact.model.cmake import regex
+from rosimpact.impact.model.cmake.interpret import extras_of, interpret
 from rosimpact.impact.model.cmake.interpreter import MAX_STEPS
-from rosimpact.impact.model.cmake.package import extras_of, interpret
 from rosimpact.impact.model.launch import follow as launch
 from rosimpact.impact.model.launch import text as launch_text
 from rosimpact.impact.report import github, markdown_text

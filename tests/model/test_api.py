@@ -6,10 +6,9 @@ from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.api_cpp import ApiUses, parameter_type, shown_as
 from rosimpact.impact.model.expressions_cpp import regions
-from rosimpact.impact.targets.surface.build import BuildSurface, Header
 from rosimpact.impact.targets.surface.changes import unpack
 from rosimpact.impact.targets.surface.compare import State
-from rosimpact.impact.targets.surface.surface import PythonSurface, Surface
+from rosimpact.impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
 
 # `went` and `Old` are in the first version alone; `f` takes one argument, then two; `tick` is virtual and changes.
 ARM = (

@@ -4,7 +4,8 @@ import pytest
 from rosimpact.impact.conditions import Environment, all_hold
 from rosimpact.impact.facts.cmake import extract
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.model.cmake.package import Defined, interpret
+from rosimpact.impact.model.cmake.build import Defined
+from rosimpact.impact.model.cmake.interpret import interpret
 from rosimpact.impact.model.macros import Macros
 
 

@@ -6,7 +6,7 @@ import sys
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
-from rosimpact.corpus import __version__
+from rosimpact.edges.version import __version__
 
 if sys.version_info >= (3, 11):
     import tomllib

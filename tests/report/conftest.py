@@ -3,7 +3,7 @@
 import pytest
 from rosimpact.impact.analysis.findings import merge
 from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
-from rosimpact.impact.model.cmake.package import At
+from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Edit, Hit, Rule
 
 FILES = {

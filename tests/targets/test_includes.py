@@ -8,11 +8,10 @@ from rosimpact.databuild.includes import beside, defined, direct, included, onto
 from rosimpact.databuild.surfaces import Packing
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.providers.includes import Includes, Machine, Table, default, machine_of, offered
-from rosimpact.impact.targets.surface.build import BuildSurface
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.includes import compiled
 from rosimpact.impact.targets.surface.store import Surfaces, write
-from rosimpact.impact.targets.surface.surface import PythonSurface, Surface
+from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,11 @@ import pytest
 from rosimpact.databuild.surfaces import Packing
 from rosimpact.impact.facts.python_objects import Given, PythonUse
 from rosimpact.impact.facts.surface_python import extract
-from rosimpact.impact.targets.surface.build import BuildSurface
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_python import PythonOffers, read_parameters, refused, unlike
 from rosimpact.impact.targets.surface.store import Surfaces, write
-from rosimpact.impact.targets.surface.surface import Module, PythonSurface, Surface
+from rosimpact.impact.targets.surface.surface import BuildSurface, Module, PythonSurface, Surface
 
 
 @pytest.fixture

@@ -6,10 +6,9 @@ from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.model.surface.clones import VersionError
 from rosimpact.impact.model.surface.stored_versions import StoredVersions
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.surface.build import BuildSurface
 from rosimpact.impact.targets.surface.compare import State, compare
 from rosimpact.impact.targets.surface.store import Surfaces, write
-from rosimpact.impact.targets.surface.surface import PythonSurface, Surface
+from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 
 HUMBLE, JAZZY = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
 EARLY = DistroTarget("humble", "2024-03-01").version("rclcpp")

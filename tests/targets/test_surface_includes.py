@@ -7,11 +7,10 @@ from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.providers.includes import Includes, Machine, Table
-from rosimpact.impact.targets.surface.build import BuildSurface
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.includes import Including, compiled, unpack
 from rosimpact.impact.targets.surface.store import Surfaces, write
-from rosimpact.impact.targets.surface.surface import PythonSurface, Surface
+from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 
 
 @pytest.mark.parametrize(

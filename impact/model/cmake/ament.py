@@ -8,9 +8,9 @@ from __future__ import annotations
 import posixpath
 
 from .blocks import Call
+from .build import Found, GeneratedInterfaces, Install
 from .interpreter import Interpreter, handles, stands_in_for
 from .names import name_set
-from .package import Found, GeneratedInterfaces, Install
 from .targets import add_links, add_sources, known
 from .values import Word, sections, split_words, word
 

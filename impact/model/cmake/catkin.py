@@ -8,9 +8,9 @@ from __future__ import annotations
 import posixpath
 
 from .blocks import Call
+from .build import At, GeneratedInterfaces, Install
 from .interpreter import Interpreter, handles
 from .names import name_set
-from .package import At, GeneratedInterfaces, Install
 from .targets import add_links, add_sources
 from .values import Value, Word, sections, split_words, word
 

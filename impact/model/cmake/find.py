@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 
 from .blocks import Call
+from .build import At, Found
 from .interpreter import Interpreter, handles
 from .language import add_module
 from .names import name_set, names
-from .package import At, Found
 from .values import REFERENCE, Value, Word, merge, sections, split_words, word
 
 _VERSION = re.compile(r"\d[\d.]*(?:\.\.\.<?\d[\d.]*)?\Z")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from ...facts.condition import Condition
 from .blocks import Call
+from .build import Install
 from .interpreter import Interpreter, handles
 from .names import name_set
-from .package import Install
 from .values import Word, following, merge, split_words
 
 _ARTIFACTS = name_set(

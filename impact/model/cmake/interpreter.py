@@ -16,9 +16,9 @@ from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
 from . import conditions as tests
 from .blocks import Block, Call, blocks
+from .build import At, Build, Declared, Defined, Exported, Found, GeneratedInterfaces, Install, Use
 from .drafts import TargetDraft, Targets
 from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES
-from .package import At, Build, Declared, Defined, Exported, Found, GeneratedInterfaces, Install, Use
 from .values import (
     LITERAL,
     MAX_TEXT,

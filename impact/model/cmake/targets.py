@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 
 from .blocks import Call
+from .build import GeneratedInterfaces, Link
 from .drafts import TargetDraft
 from .genex import reduced, rejoin
 from .interpreter import Interpreter, handles
 from .macros import note_flag, note_macro
-from .package import GeneratedInterfaces, Link
 from .standard import feature_standard, flag_standard, note_options
 from .values import Value, Word, following, position, split_words, word
 

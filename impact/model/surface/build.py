@@ -19,9 +19,9 @@ from ...facts import flow_launch
 from ...facts.cmake import CMakeFile
 from ...facts.flow_launch import Action, plain
 from ...facts.kinds import kind_of as kind_by_name
-from ...targets.surface.build import BuildSurface, ExportedTarget, Header, LaunchFile, Plugin, Program
 from ...targets.surface.fields import snake
-from ..cmake.package import Install, for_tests
+from ...targets.surface.surface import BuildSurface, ExportedTarget, Header, LaunchFile, Plugin, Program
+from ..cmake.build import Install, for_tests
 from ..flow.started import launch_kind
 from ..package import role_of_folder
 

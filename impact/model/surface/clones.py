@@ -8,7 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ....databuild.history import git_directory, plain_url, releases_of, tag_of
 from ....edges.console import UserError
 from ...targets.distro.distro import DistroTarget, TargetError, known_distros
 from ...targets.snapshot import Snapshot, default
@@ -17,6 +16,7 @@ from ...targets.surface.surface import Surface
 from ...targets.version import parts
 from ...tree import GitTree, TreeError
 from .package import of_tree
+from .releases import git_directory, plain_url, releases_of, tag_of
 
 if TYPE_CHECKING:
     from ...facts.store import Store
@@ -67,9 +67,12 @@ class Clone:
 
     @cached_property
     def _repository(self) -> Any:
-        from ....databuild.git import open_repository
+        import pygit2
 
-        return open_repository(self.place)
+        try:
+            return pygit2.Repository(str(self.place))
+        except (pygit2.GitError, KeyError):
+            raise VersionError(f"{self.place} is no git repository; give a clone with its tags") from None
 
     def tag(self, version: str, package: str = "", distro: str = "") -> str | None:
         """The ref of the tag of a version: as developers name them, else as bloom does in release repositories. Of the

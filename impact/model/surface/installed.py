@@ -21,11 +21,19 @@ from ...facts import manifest as manifests
 from ...facts.interface import Field, Interface, Section
 from ...facts.surface import HeaderSurface
 from ...targets.machine.unpacked_deb import DebError, Member, members
-from ...targets.surface.build import BuildSurface, ExportedTarget, Header, LaunchFile, Program
 from ...targets.surface.compare import State
 from ...targets.surface.fields import ROS1_SUFFIXES
 from ...targets.surface.includes import compiled
-from ...targets.surface.surface import Module, PythonSurface, Surface
+from ...targets.surface.surface import (
+    BuildSurface,
+    ExportedTarget,
+    Header,
+    LaunchFile,
+    Module,
+    Program,
+    PythonSurface,
+    Surface,
+)
 from .build import launch_arguments, launch_kind
 from .clones import VersionError
 

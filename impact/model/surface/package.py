@@ -18,9 +18,8 @@ from ...facts import kinds
 from ...facts.interface import Field, Interface, Section
 from ...facts.parameters import last_part
 from ...facts.store import encodable
-from ...targets.surface.build import BuildSurface
 from ...targets.surface.includes import compiled
-from ...targets.surface.surface import Surface
+from ...targets.surface.surface import BuildSurface, Surface
 from ..package import role_of_folder
 from . import build as surface_build
 from . import python as surface_python

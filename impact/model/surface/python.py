@@ -17,7 +17,7 @@ from ...facts.surface_python import ModuleSurface
 from ...targets.surface.surface import Module, PythonSurface
 
 if TYPE_CHECKING:
-    from ..cmake.package import Install
+    from ..cmake.build import Install
     from ..workspace import Package
 
 

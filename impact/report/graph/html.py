@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from ....corpus import __version__
+from ....edges.version import __version__
 from ...model.flow.connections import Edge, edges, names_of
 from ...model.flow.graph import Endpoint, Graph, GuardAt, ParameterUse, Publish
 from ...model.flow.select import Selection

@@ -7,8 +7,8 @@ from typing import Any
 
 import msgspec
 
-from ....corpus import __version__
 from ....edges.console import json_text
+from ....edges.version import __version__
 from ...model.flow.connections import edges
 from ...model.flow.graph import Coverage, Endpoint, Graph, Node, ParameterUse, Publish, Timer
 from ...model.flow.select import Selection, endpoints_of

@@ -31,7 +31,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.cmake.package import At
+from ...model.cmake.build import At
 from ...model.package import CppApiUse, NameUse
 from ...model.view import View
 from ...model.workspace import Package

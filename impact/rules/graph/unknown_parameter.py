@@ -23,7 +23,7 @@ Not reported
     outside of the workspace; values in a file's `/**`, which is for every node.
 """
 
-from ...model.cmake.package import At
+from ...model.cmake.build import At
 from ...model.flow.launches import Start
 from ...model.flow.misspelling import is_slip
 from ...model.workspace import Workspace

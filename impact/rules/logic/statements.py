@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from ...analysis.reach import EVERYWHERE
 from ...logic.changes import Change
 from ...logic.two_states import publishing
-from ...model.cmake.package import At
+from ...model.cmake.build import At
 from ...model.flow.edges import said
 from ...model.flow.graph import Endpoint, Graph
 from ...model.workspace import Workspace

@@ -19,7 +19,7 @@ Use instead
 
 import re
 
-from ...model.cmake.package import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..fix_actions import Replace
 from ..rule import Hit, rule

@@ -103,7 +103,7 @@ def _field_packages(view: View, package):
 
 
 def _at(interface, field):
-    from ...model.cmake.package import At
+    from ...model.cmake.build import At
 
     return At(interface.path, field.line, field.column)
 

@@ -36,7 +36,7 @@ Not reported
 import posixpath
 import re
 
-from ...model.cmake.package import At
+from ...model.cmake.build import At
 from ...model.misspelling import folded, one_edit
 from ...model.view import Need, View, weight
 from ..evidence import circular, name_to_declare, present

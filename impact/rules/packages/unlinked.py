@@ -7,7 +7,7 @@ by the build of those in the workspace, and by the stored surfaces of those that
 import re
 from collections.abc import Iterable, Iterator
 
-from ...model.cmake.package import BuildTarget, for_tests
+from ...model.cmake.build import BuildTarget, for_tests
 from ...model.package import IncludeUse
 from ...model.view import View
 from ...targets.providers.library import OPENCV_FUNCTIONS

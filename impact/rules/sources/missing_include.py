@@ -34,7 +34,7 @@ Not reported
 import re
 from typing import NamedTuple
 
-from ...model.cmake.package import for_tests
+from ...model.cmake.build import for_tests
 from ...model.package import NeededHeader
 from ...model.view import View
 from ...targets.providers.includes import Machine, announced, offered

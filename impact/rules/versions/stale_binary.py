@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ....edges.console import counted
 from ...model.build_order import build_order
-from ...model.cmake.package import At
+from ...model.cmake.build import At
 from ...model.view import View
 from ..rule import Hit, rule
 

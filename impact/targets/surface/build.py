@@ -4,90 +4,9 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING
-
-import msgspec
 
 from .python import Change
-
-if TYPE_CHECKING:
-    pass
-
-
-class ExportedTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A CMake target that dependants can link. name: with its namespace. kind: as of BuildTarget. standard: the C++
-    standard that it asks for, 0 for none. sure: False where a condition decides whether it is there."""
-
-    name: str
-    kind: str
-    standard: int = 0
-    sure: bool = True
-
-
-class Header(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A header that is installed. include: what dependants write. installed: its path in the prefix. source: its path
-    in the package, empty for one that is generated. sure: as of ExportedTarget."""
-
-    include: str
-    installed: str
-    source: str = ""
-    sure: bool = True
-
-
-class Program(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """An executable. place: the folder in the prefix. how: `binary`, `script`, `component` or `entry point`."""
-
-    name: str
-    place: str
-    how: str
-    sure: bool = True
-
-
-class Plugin(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A plugin: lookup name, type, base class. A component has the base `rclcpp_components`."""
-
-    name: str
-    type: str
-    base: str
-    sure: bool = True
-
-
-class LaunchFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """An installed launch file. path: in the package's share folder. arguments: name and default, None where it must be
-    given, `?` where the default is no plain text."""
-
-    path: str
-    arguments: tuple[tuple[str, str | None], ...] = ()
-
-
-class BuildSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What one version of a package offers to CMake and at run time.
-
-    cmake_names: what find_package() takes. libraries: what is in `<package>_LIBRARIES`. include_dirs: exported folders
-    of the prefix. dependencies: packages that it brings along (what dependants may include and link through it);
-    system: what it brings by DEPENDS of catkin_package().
-    commands: functions and macros; variables: besides those that every package has.
-    standard: the C++ standard that its users need, 0 where nothing says. unknown: (part, why) of what cannot be told,
-    part being `targets`, `libraries`, `headers`, `commands`, `programs`, `launches` or `system`.
-    """
-
-    package: str
-    version: str = ""
-    build_type: str = ""
-    cmake_names: tuple[str, ...] = ()
-    targets: tuple[ExportedTarget, ...] = ()
-    libraries: tuple[str, ...] = ()
-    include_dirs: tuple[str, ...] = ()
-    dependencies: tuple[str, ...] = ()
-    system: tuple[str, ...] = ()
-    commands: tuple[str, ...] = ()
-    variables: tuple[str, ...] = ()
-    standard: int = 0
-    programs: tuple[Program, ...] = ()
-    plugins: tuple[Plugin, ...] = ()
-    launches: tuple[LaunchFile, ...] = ()
-    headers: tuple[Header, ...] = ()
-    unknown: tuple[tuple[str, str], ...] = ()
+from .surface import BuildSurface
 
 
 def compare(old: BuildSurface, new: BuildSurface) -> tuple[Change, ...]:

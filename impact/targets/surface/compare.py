@@ -16,11 +16,11 @@ from ...facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared
 from . import build as surface_build
 from . import diff as surface_diff
 from . import python as surface_python
-from .build import BuildSurface
 from .changes import PARAMETER
 from .fields import snake
 from .python import UNKNOWN, Names
-from .surface import PythonSurface, Surface
+from .surface import BuildSurface, PythonSurface, Surface
+
 
 class Place(NamedTuple):
     """Where an entity stands."""

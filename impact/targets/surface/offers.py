@@ -12,9 +12,9 @@ from .changes import Event, Form, Line, Told
 
 if TYPE_CHECKING:
     from ..target import Target
-    from .build import BuildSurface
     from .python import Names
     from .store import Surfaces
+    from .surface import BuildSurface
 
 
 # Sides whose names many packages have alike (`launch/demo.launch`), so that another package's is no successor.
@@ -128,7 +128,7 @@ class Offer:
     @cached_property
     def build(self) -> BuildSurface:
         """What the stored version gives to CMake and at run time."""
-        from .build import BuildSurface
+        from .surface import BuildSurface
 
         history = self._offers.surfaces.history(self.package)
         build = history.build(self.stored) if history is not None else None

@@ -6,15 +6,12 @@ import builtins
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import msgspec
 
 from ...facts.surface_python import LATE, Bound, Parameter, Taken, is_private
 from .surface import Module, PythonSurface
-
-if TYPE_CHECKING:
-    pass
 
 
 class Entry(NamedTuple):

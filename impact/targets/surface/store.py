@@ -33,8 +33,7 @@ from .changes import PARAMETER, Line, brief, unpack
 from .includes import Included, spans_of, there
 
 if TYPE_CHECKING:
-    from .build import BuildSurface
-    from .surface import PythonSurface, Surface
+    from .surface import BuildSurface, PythonSurface, Surface
 
 _SCHEMA = """
 CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL)
@@ -127,7 +126,7 @@ class History:
         """What a version gives to CMake and at run time; None for one that is not stored."""
         if version not in self.versions:
             return None
-        from .build import BuildSurface
+        from .surface import BuildSurface
 
         build: dict[str, list[Any]] = {}
         for scope, value in self._values("build", version):
@@ -344,7 +343,7 @@ _encoder = msgspec.msgpack.Encoder()
 
 def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
     """What a surface consists of: kind, name, value. Each gives rows of its own."""
-    from .build import BuildSurface
+    from .surface import BuildSurface
 
     yield from (("header", path, header) for path, header in surface.headers)
     yield from (("module", module.name, module) for module in surface.python.modules)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-from . import interrupts
+from ...edges import interrupts
 
 
 def main() -> None:
@@ -14,10 +14,10 @@ def main() -> None:
     interrupts.install()
     status = 2
     try:
-        from .console import hold_streams
+        from ...edges.console import hold_streams
 
         hold_streams()
-        from ..impact.cli.app import main as command_line
+        from .app import main as command_line
 
         command_line()
         status = 0
@@ -44,7 +44,7 @@ def main() -> None:
 
 def _description(error: Exception) -> str:
     try:
-        from .console import describe
+        from ...edges.console import describe
 
         return describe(error, "rosimpact")
     except Exception:
@@ -53,7 +53,7 @@ def _description(error: Exception) -> str:
 
 def _say(text: str) -> None:
     try:
-        from .console import say
+        from ...edges.console import say
 
         say(f"rosimpact: {text}")
     except Exception:
