@@ -18,10 +18,10 @@ from ..logic.two_states import Differing, differing, flow_facts, publishing
 from ..model.flow.callers import Led
 from ..model.flow.connections import Edge, edges
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
+from ..model.flow.reach import EVERYWHERE, Reach, Step
 from ..model.flow.select import kind_of
 from ..model.workspace import Workspace
 from .message_changes import holding, message_changes
-from .reach import EVERYWHERE, Reach, Step
 
 Kind = Literal["message", "topic", "condition", "trigger", "callback"]
 KINDS: tuple[Kind, ...] = ("message", "condition", "trigger", "topic", "callback")

@@ -122,7 +122,7 @@ def stamp(*folders: str) -> bytes:
     root = FilePath(__file__).parent.parent
     hashed = hashlib.sha1(limits_stamp().encode())
     files = [path for folder in folders for path in (root / folder).glob("*.*") if path.suffix in (".py", ".toml")]
-    files += [root / "flow" / name for name in ("statements.py", "history.py", "logic_meaning.py")]
+    files += [root / "logic" / name for name in ("statements.py", "history.py", "meaning.py")]
     for path in sorted(set(files)):
         hashed.update(path.name.encode() + path.read_bytes())
     return hashed.digest()[:8]

@@ -14,7 +14,7 @@ else:
     import tomli as tomllib
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("impact", "corpus", "classifier", "edges")
+ROOMS = ("impact", "corpus", "classifier", "databuild", "edges")
 # Never imported by name: the kernel that notebooks run in.
 UNNAMED = {"ipykernel"}
 

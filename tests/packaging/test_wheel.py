@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("impact", "corpus", "classifier", "edges")
+ROOMS = ("impact", "corpus", "classifier", "databuild", "edges")
 LIMIT = 20_000_000  # bytes
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from ...analysis.reach import EVERYWHERE
 from ...logic.changes import Change
 from ...logic.two_states import publishing
 from ...model.cmake.build import At
 from ...model.flow.edges import said
 from ...model.flow.graph import Endpoint, Graph
+from ...model.flow.reach import EVERYWHERE
 from ...model.workspace import Workspace
 from ..rule import Hit
 

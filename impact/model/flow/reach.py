@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from ..model.flow.graph import Endpoint, Graph, Publish
+from .graph import Endpoint, Graph, Publish
 
 # Topics through which everything would reach everything.
 EVERYWHERE = frozenset(("/rosout", "/parameter_events", "/diagnostics", "/clock"))
