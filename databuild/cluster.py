@@ -1,4 +1,4 @@
-"""The jobs of build_surfaces.py on the workers of a Dask cluster that is there already.
+"""The jobs of surfaces.py on the workers of a Dask cluster that is there already.
 
 Futures of `distributed`, not joblib's dask backend: joblib ends a whole run when one job ends its workers, and cannot
 say which. A job of a worker that died is done again by another (the scheduler's part); each result is fetched as soon
@@ -23,7 +23,7 @@ from ..impact.model.surface.releases import git_directory
 from ..impact.tree import TreeError
 
 if TYPE_CHECKING:
-    from .surfaces import Job, Result
+    from .jobs import Job, Result
 
 # Seconds to wait for the scheduler and for its first worker, and for another when the last one is gone.
 _REACH = 5
@@ -119,7 +119,7 @@ def _unfit(code: Code, places: Sequence[str]) -> str:
 
 def _work(code: Code, job: Job) -> Result | str:
     """Does a job on a worker; says why it cannot be done there. Workers come later too, and clones are fetched."""
-    from .surfaces import run
+    from .jobs import run
 
     places = sorted({state.place for state in job.states})
     why = _unfit(code, places)
@@ -154,7 +154,7 @@ def _result(future: Any, address: str, job: Job) -> Result:
 
     from distributed import KilledWorker
 
-    from .surfaces import Result
+    from .jobs import Result
 
     try:
         result = future.result()

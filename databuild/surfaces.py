@@ -7,7 +7,6 @@ job is done anew when its tags, the packages asked for or the code have changed.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import sqlite3
 from collections import Counter
@@ -17,54 +16,15 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from ..edges.files import check_writable_path
-from ..impact.facts.store import Store
 from ..impact.model.surface.clones import Clone, Clones, Release, Version
-from ..impact.model.surface.package import surfaces_of
 from ..impact.targets.distro.distro import DistroTarget, TargetError, known_distros
 from ..impact.targets.snapshot import Snapshot, default
-from ..impact.targets.surface.compare import State
-from ..impact.targets.surface.includes import Including
-from ..impact.targets.surface.store import History, Packed, Packer, Stored, write
+from ..impact.targets.surface.store import History, Packed, write
 from ..impact.targets.version import parts
-from ..impact.tree import TreeError
-from .surface_changes import Lines
+from .jobs import Job, Result, Wanted, run
 
 Versions = Literal["newest", "all"]
 """Which versions are read: those that distros have, or all that they ever had."""
-
-
-class Wanted(NamedTuple):
-    """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it there."""
-
-    version: str
-    place: str
-    clone: str
-    revision: str
-    approximate: bool
-    packages: tuple[str, ...]
-    generations: tuple[int, ...]
-
-
-class Job(NamedTuple):
-    """What one worker does: all states of some packages, oldest version first, and no other job's packages. Everything
-    in it can be sent to another machine that sees the same clones. name: of the clone that most of them are in."""
-
-    name: str
-    states: tuple[Wanted, ...]
-    trees: tuple[str, ...]
-
-    def key(self) -> str:
-        """Changes with all that the result depends on."""
-        from ..impact.cache import code_stamp
-
-        return hashlib.sha1(repr((self.name, self.states, self.trees, code_stamp())).encode()).hexdigest()
-
-
-class Result(NamedTuple):
-    """packages: packed versions by package. failed: what could not be read, a line each."""
-
-    packages: dict[str, Packed]
-    failed: tuple[str, ...]
 
 
 class Built(NamedTuple):
@@ -179,56 +139,6 @@ def _jobs(found: Mapping[tuple[str, str], Version], generations: Mapping[tuple[s
         name = Counter(state.clone for state in order).most_common(1)[0][0]
         jobs.append(Job(name, order, tuple(clones[state.clone].folder_id(state.revision) for state in order)))
     return sorted(jobs)
-
-
-class Packing:
-    """Packs the versions of packages as they come, oldest first."""
-
-    def __init__(self) -> None:
-        self._packers: dict[str, Packer] = {}
-        self._including: dict[str, Including] = {}
-        self._lines = Lines()
-
-    def add(
-        self, package: str, version: str, generations: Sequence[int], state: State, approximate: bool = False
-    ) -> None:
-        """The next version of a package, and the state that it belongs to. generations: of ROS that have it, 1, 2 or
-        both. approximate: a branch stands for it."""
-        surface = state.surfaces[package]
-        self._packers.setdefault(package, Packer()).add(Stored(version, approximate, surface))
-        self._including.setdefault(package, Including()).add(version, surface.headers, generations, approximate)
-        self._lines.add(package, version, generations, state, approximate)
-
-    def packed(self) -> dict[str, Packed]:
-        """The packages as they are stored."""
-        changes = self._lines.packed()
-        return {
-            package: Packed(packer.packed(), changes[package], self._including[package].packed())
-            for package, packer in self._packers.items()
-        }
-
-
-def run(job: Job) -> Result:
-    """Does a job, in whatever process: reads each state once and packs the versions of each package."""
-    clones = {state.clone: Clone(Path(state.place), state.clone) for state in job.states}
-    packing = Packing()
-    failed: list[str] = []
-    read: dict[str, State] = {}
-    with Store() as store:
-        for state, tree in zip(job.states, job.trees, strict=True):
-            if tree not in read:
-                read.clear()  # one state at a time is enough
-                try:
-                    read[tree] = State(surfaces_of(clones[state.clone].tree(state.revision), store, 1))
-                except (TreeError, OSError) as error:
-                    failed.append(f"{state.clone} {state.version}: {error}")
-                    continue
-            for package in state.packages:
-                if package in read[tree].surfaces:
-                    packing.add(package, state.version, state.generations, read[tree], state.approximate)
-                elif not state.approximate:
-                    failed.append(f"{package} {state.version}: not in {state.clone} at its tag")
-    return Result(packing.packed(), tuple(failed))
 
 
 def build(

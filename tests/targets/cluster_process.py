@@ -9,8 +9,7 @@ from contextlib import closing
 
 import dask
 import distributed
-from rosimpact.databuild import cluster
-from rosimpact.databuild import surfaces as build_surfaces
+from rosimpact.databuild import cluster, jobs
 
 QUIET = {"host": "127.0.0.1", "dashboard_address": ":0"}
 
@@ -34,7 +33,7 @@ def worker(pipe, address, name, folder, hold, digest):
     _end_with(pipe)
     os.environ["ROSIMPACT_CACHE"] = str(folder / "cache")
     begun = 0
-    real = build_surfaces.run
+    real = jobs.run
 
     def write(what, job):
         with (folder / "journal").open("a") as journal:
@@ -56,7 +55,7 @@ def worker(pipe, address, name, folder, hold, digest):
         async with distributed.Worker(address, name=name, nthreads=1, local_directory=folder, **QUIET) as it:
             await it.finished()
 
-    build_surfaces.run = run
+    jobs.run = run
     if digest:
         cluster.code_digest = lambda: digest
     asyncio.run(work())

@@ -5,7 +5,8 @@ import subprocess
 
 import pytest
 from rosimpact.databuild import surfaces as build_surfaces
-from rosimpact.databuild.surfaces import Job, all_distros, build, plan, run
+from rosimpact.databuild.jobs import Job, run
+from rosimpact.databuild.surfaces import all_distros, build, plan
 from rosimpact.impact.model.surface.clones import Clones
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
 from rosimpact.impact.targets.surface.changes import unpack

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rosimpact.databuild.includes import Header as Read
 from rosimpact.databuild.includes import beside, defined, direct, included, onto, table_of
-from rosimpact.databuild.surfaces import Packing
+from rosimpact.databuild.jobs import Packing
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.targets.providers.includes import Includes, Machine, Table, default, machine_of, offered
 from rosimpact.impact.targets.surface.compare import State

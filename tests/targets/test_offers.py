@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from rosimpact.databuild.surfaces import Packing
+from rosimpact.databuild.jobs import Packing
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.facts.surface_python import extract as module
 from rosimpact.impact.targets.surface.compare import State

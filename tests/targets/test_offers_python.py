@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from rosimpact.databuild.surfaces import Packing
+from rosimpact.databuild.jobs import Packing
 from rosimpact.impact.facts.python_objects import Given, PythonUse
 from rosimpact.impact.facts.surface_python import extract
 from rosimpact.impact.targets.surface.compare import State

@@ -1,7 +1,7 @@
 """Which version in a file of surfaces stands for what is asked for, when there are no clones."""
 
 import pytest
-from rosimpact.databuild.surfaces import Packing
+from rosimpact.databuild.jobs import Packing
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.model.surface.clones import VersionError
 from rosimpact.impact.model.surface.stored_versions import StoredVersions

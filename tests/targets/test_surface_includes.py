@@ -1,7 +1,7 @@
 """What headers of stored versions include, and what they bring along on a target across packages."""
 
 import pytest
-from rosimpact.databuild.surfaces import Packing
+from rosimpact.databuild.jobs import Packing
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.interface import extract as interface

@@ -3,7 +3,7 @@
 import msgspec
 import pytest
 import zstandard
-from rosimpact.databuild.surfaces import Packing
+from rosimpact.databuild.jobs import Packing
 from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.surface_cpp import extract as header

@@ -1,0 +1,101 @@
+"""One job of building surfaces: the clones that have versions of the same packages, and what reading them gives."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from ..impact.facts.store import Store
+from ..impact.model.surface.clones import Clone
+from ..impact.model.surface.package import surfaces_of
+from ..impact.targets.surface.compare import State
+from ..impact.targets.surface.includes import Including
+from ..impact.targets.surface.store import Packed, Packer, Stored
+from ..impact.tree import TreeError
+from .surface_changes import Lines
+
+
+class Job(NamedTuple):
+    """What one worker does: all states of some packages, oldest version first, and no other job's packages. Everything
+    in it can be sent to another machine that sees the same clones. name: of the clone that most of them are in."""
+
+    name: str
+    states: tuple[Wanted, ...]
+    trees: tuple[str, ...]
+
+    def key(self) -> str:
+        """Changes with all that the result depends on."""
+        from ..impact.cache import code_stamp
+
+        return hashlib.sha1(repr((self.name, self.states, self.trees, code_stamp())).encode()).hexdigest()
+
+
+class Result(NamedTuple):
+    """packages: packed versions by package. failed: what could not be read, a line each."""
+
+    packages: dict[str, Packed]
+    failed: tuple[str, ...]
+
+
+class Packing:
+    """Packs the versions of packages as they come, oldest first."""
+
+    def __init__(self) -> None:
+        self._packers: dict[str, Packer] = {}
+        self._including: dict[str, Including] = {}
+        self._lines = Lines()
+
+    def add(
+        self, package: str, version: str, generations: Sequence[int], state: State, approximate: bool = False
+    ) -> None:
+        """The next version of a package, and the state that it belongs to. generations: of ROS that have it, 1, 2 or
+        both. approximate: a branch stands for it."""
+        surface = state.surfaces[package]
+        self._packers.setdefault(package, Packer()).add(Stored(version, approximate, surface))
+        self._including.setdefault(package, Including()).add(version, surface.headers, generations, approximate)
+        self._lines.add(package, version, generations, state, approximate)
+
+    def packed(self) -> dict[str, Packed]:
+        """The packages as they are stored."""
+        changes = self._lines.packed()
+        return {
+            package: Packed(packer.packed(), changes[package], self._including[package].packed())
+            for package, packer in self._packers.items()
+        }
+
+
+def run(job: Job) -> Result:
+    """Does a job, in whatever process: reads each state once and packs the versions of each package."""
+    clones = {state.clone: Clone(Path(state.place), state.clone) for state in job.states}
+    packing = Packing()
+    failed: list[str] = []
+    read: dict[str, State] = {}
+    with Store() as store:
+        for state, tree in zip(job.states, job.trees, strict=True):
+            if tree not in read:
+                read.clear()  # one state at a time is enough
+                try:
+                    read[tree] = State(surfaces_of(clones[state.clone].tree(state.revision), store, 1))
+                except (TreeError, OSError) as error:
+                    failed.append(f"{state.clone} {state.version}: {error}")
+                    continue
+            for package in state.packages:
+                if package in read[tree].surfaces:
+                    packing.add(package, state.version, state.generations, read[tree], state.approximate)
+                elif not state.approximate:
+                    failed.append(f"{package} {state.version}: not in {state.clone} at its tag")
+    return Result(packing.packed(), tuple(failed))
+
+
+class Wanted(NamedTuple):
+    """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it there."""
+
+    version: str
+    place: str
+    clone: str
+    revision: str
+    approximate: bool
+    packages: tuple[str, ...]
+    generations: tuple[int, ...]
