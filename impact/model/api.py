@@ -1,6 +1,6 @@
 """The C++ names of other packages that a package can mean and that only some stored versions have, or have so.
 
-What the files themselves say is read in api_cpp.py.
+What the files themselves say is read in cpp/uses.py.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Found(NamedTuple):
 
     package, name, offset: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments:
     how many a call gives, or an override takes; -1: not to be told. given: of a call, what each argument shows itself
-    to be (see api_cpp.shown_as); of an override, the types of its parameters, then `const` and `override` where they
+    to be (see ApiUses.shown); of an override, the types of its parameters, then `const` and `override` where they
     stand. templated: template arguments are written. sure: the name is written with its scopes, or the type of the
     object shows. through: packages of classes between the object's and the one that has the name.
     """
@@ -247,6 +247,15 @@ class Vocabulary:
                 between.append(self.classes.get(one, ""))
             self._members[key] = found
         return self._members[key]
+
+    def alias(self, full: str) -> str | None:
+        """What a name of another package stands for, None where it is no alias that is known."""
+        return None
+
+    def result(self, full: str, member: str) -> tuple[str, tuple[str, ...]] | None:
+        """The type of a member of a class of another package, or what it gives back, with the names of the class's
+        template parameters that it may be written with."""
+        return None
 
     def constructors(self, word: str) -> tuple[str, ...]:
         """Changing constructors of classes whose name ends so."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ..facts.condition import Condition
-from ..facts.cpp import CppFile, Include, Scan, scan
+from ..facts.cpp import CppFile, Include
 from ..facts.interface import Interface
 from ..facts.launch import PluginClass
 from ..facts.manifest import Manifest
@@ -32,6 +32,7 @@ from .macros import Macros
 if TYPE_CHECKING:
     from .api import Changes
     from .api_python import Changing
+    from .cpp.resolver import Known
     from .members import Interface as Meant
     from .settings import Setting
 
@@ -345,7 +346,7 @@ class _Join:
         self.cpp: dict[str, CppFile] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
-        self._scanned: dict[str, Scan] = {}
+        self._known: dict[str, Known] = {}
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
         self.macros = Macros((), ())
 
@@ -647,8 +648,9 @@ class _Join:
 
     def members(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
+        from .cpp.resolver import Resolver
+        from .cpp.uses import MemberUses
         from .members import Scope, interface_named, interfaces_included
-        from .members_cpp import CppUses, mentions
 
         table = self.watched.fields
         if table is None:
@@ -679,30 +681,27 @@ class _Join:
                 scope = scopes[key] = Scope(key, table)
             if not scope.changing & spoken:
                 continue
-            # Most files are told from their bytes, comments included, without a closer look.
-            if not mentions(self.read(path).decode("utf-8", "replace"), scope):
+            words = [word for word in sorted(scope.changing & spoken) if self.known(path).code.may_have_member(word)]
+            if not words:
                 continue
-            scanned = self.scanned(path)
-            if not mentions(scanned.visible, scope):
-                continue
-            headers = [self.scanned(to).visible for to in sorted(self.reached_files(path))]
-            uses = CppUses(scanned.visible, headers, scope)
+            headers = [self.known(to) for to in sorted(self.reached_files(path))]
+            code = self.known(path).code
             seen = set()
-            for found in (*uses.found(), *(() if unknown else uses.untold())):
-                line, column = scanned.place(found.offset)
-                around = self.macros.asked(scanned.under(found.offset) or (), targets)
+            for found in MemberUses(Resolver(self.known(path), headers, None, scope)).found(words, not unknown):
+                around = self.macros.asked(code.conditions(found.offset) or (), targets)
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
                     yield MemberUse(found.interface.package, found.interface.ros, found.interface.name, found.section,
-                                    found.member, At(path, line, column), role, "cpp", found.sure,
+                                    found.member, At(path, *code.place(found.offset)), role, "cpp", found.sure,
                                     conditions + around)  # fmt: skip
 
     def cpp_api(self, roles) -> Iterator[CppApiUse]:
         """Uses of C++ names of packages outside of the workspace that are not the same in all versions, in files that
         are compiled."""
         from .api import ASSIGNING, Vocabulary
-        from .api_cpp import ApiUses
+        from .cpp.resolver import Resolver
+        from .cpp.uses import ApiUses
 
         if self.watched.changing_cpp is None:
             return
@@ -722,23 +721,27 @@ class _Join:
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
             if not words:
                 continue
-            scanned = self.scanned(path)
+            code = self.known(path).code
             seen = set()
-            headers = (self.scanned(to).visible for to in reached)
+            resolver = Resolver(self.known(path), [self.known(to) for to in reached], vocabulary, None)
             heads = {include.partition("/")[0] for include in self.reach(path)}
-            for found in ApiUses(scanned.visible, headers, vocabulary, heads).found(words):
-                around = scanned.under(found.offset)
+            for found in ApiUses(resolver, heads).found(words):
+                around = code.conditions(found.offset)
                 key = (*found._replace(offset=0), around)
                 if around is not None and key not in seen:
                     seen.add(key)
                     yield CppApiUse(found.package, found.name, found.how, found.arguments, found.given,
-                                 At(path, *scanned.place(found.offset)), role, found.sure, found.through,
-                                 found.templated, conditions + around, targets)  # fmt: skip
+                                    At(path, *code.place(found.offset)), role, found.sure, found.through,
+                                    found.templated, conditions + around, targets)  # fmt: skip
 
-    def scanned(self, path: str) -> Scan:
-        known = self._scanned.get(path)
+    def known(self, path: str) -> Known:
+        """What a file declares and uses."""
+        known = self._known.get(path)
         if known is None:
-            known = self._scanned[path] = scan(self.read(path))
+            from ..facts.cpp.code import Code
+            from .cpp.resolver import Known
+
+            known = self._known[path] = Known(Code(self.read(path)))
         return known
 
     def reached_files(self, path: str) -> set[str]:
