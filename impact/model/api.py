@@ -248,6 +248,18 @@ class Vocabulary:
             self._members[key] = found
         return self._members[key]
 
+    def speakers_of(self, word: str) -> frozenset[str]:
+        """Last parts of the classes that have a changing member of this name, and of those derived from them."""
+        return frozenset().union(*(self.speakers(name.rpartition("::")[0]) for name in self.by_last(word)))
+
+    def has_space(self, head: str) -> bool:
+        """Whether names of a known package begin so."""
+        return head in self._spaces
+
+    @cached_property
+    def _spaces(self) -> frozenset[str]:
+        return frozenset(full.partition("::")[0] for full in self.classes if "::" in full)
+
     def alias(self, full: str) -> str | None:
         """What a name of another package stands for, None where it is no alias that is known."""
         return None

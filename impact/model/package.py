@@ -741,7 +741,8 @@ class _Join:
             from ..facts.cpp.code import Code
             from .cpp.resolver import Known
 
-            known = self._known[path] = Known(Code(self.read(path)))
+            words = _spoken(self.cpp[path]) if path in self.cpp else frozenset()
+            known = self._known[path] = Known(Code(self.read(path)), words)
         return known
 
     def reached_files(self, path: str) -> set[str]:

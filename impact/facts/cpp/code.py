@@ -7,7 +7,7 @@ means inside a function is found here; all that crosses files is the resolver's.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property, lru_cache
 
@@ -51,7 +51,7 @@ from ..flow_cpp_grammar import (
     kind,
     listed_in,
 )
-from .lexical import Scan, scan, standing
+from .lexical import Scan, scan, standing, text_of
 from .names import without_templates
 from .schema import Class, Declared, Expr, File, Local, Parameter, Place, Use
 
@@ -128,6 +128,14 @@ _TYPES = frozenset(
                  "placeholder_type_specifier", "decltype", "dependent_type")
 )  # fmt: skip
 _TRAITS = frozenset(("virtual", "override", "final", "const", "static", "friend"))
+# What these find in comments too does no harm: it is one more name that nobody asks for.
+_LIKE_USING = re.compile(r"^[ \t]*using\s+(?:typename\s+)?(?:::\s*)?([A-Za-z_]\w*(?:\s*::\s*\w+)+)\s*;", re.MULTILINE)
+_LIKE_OPENED = re.compile(r"^[ \t]*using\s+namespace\s+(?:::\s*)?([A-Za-z_][\w:]*)\s*;", re.MULTILINE)
+_LIKE_ALIAS = re.compile(r"\busing\s+(\w+)[^=;]{0,200}=|\btypedef\b[^;]{0,1000}?(\w+)\s*;")
+_LIKE_CLASS = re.compile(r"\b(?:class|struct|union)\b((?:[^;{}<>=:]|::)*)")
+_IDENTIFIERS = re.compile(r"[A-Za-z_]\w*")
+_LIKE_DERIVED = re.compile(rb"\b(?:class|struct)\s[^;{}()]{0,400}[^:]:(?!:)[^;{}()]")
+_LIKE_SPACE = re.compile(r"^[ \t]*namespace\s+(\w+)\s*=\s*(?:::\s*)?([\w:]+)\s*;", re.MULTILINE)
 _DEEPEST = 60
 
 
@@ -136,6 +144,7 @@ class Code:
 
     def __init__(self, data: bytes):
         self._data = data
+        self._mentioned: dict[str, bool] = {}
         self._blocks: dict[int, list[tuple[int, str, Node, str]]] = {}
 
     # -- syntax --------------------------------------------------------------------------------------------------------
@@ -194,21 +203,75 @@ class Code:
 
     def mentions(self, word: str) -> bool:
         """Whether a word may stand in the file, in comments too."""
-        return word.encode() in self._data
+        known = self._mentioned.get(word)
+        if known is None:
+            known = self._mentioned[word] = word.encode() in self._data
+        return known
+
+    @cached_property
+    def text(self) -> str:
+        """The text of the file, comments and literals included."""
+        return text_of(self._data)
+
+    @cached_property
+    def using(self) -> dict[str, str]:
+        """Names that `using a::b;` makes known outside of functions or in them, in full, without parsing the file."""
+        found = {}
+        for match in _LIKE_USING.finditer(self.text):
+            full = "".join(match.group(1).split())
+            outer, _, last = full.rpartition("::")
+            if outer and outer.rpartition("::")[2] != last:  # not the constructors of a base class
+                found[last] = full
+        return found
+
+    @cached_property
+    def opened(self) -> tuple[str, ...]:
+        """Namespaces that `using namespace` opens, without parsing the file."""
+        return tuple(dict.fromkeys("".join(match.group(1).split()) for match in _LIKE_OPENED.finditer(self.text)))
+
+    @cached_property
+    def spaces(self) -> dict[str, str]:
+        """Other names of namespaces, without parsing the file."""
+        return {m.group(1): "".join(m.group(2).split()) for m in _LIKE_SPACE.finditer(self.text)}
+
+    @cached_property
+    def like_aliases(self) -> frozenset[str]:
+        """Names that may be given to types."""
+        return frozenset(m.group(1) or m.group(2) for m in _LIKE_ALIAS.finditer(self.text))
+
+    @cached_property
+    def like_classes(self) -> frozenset[str]:
+        """Names that may be those of classes which are defined."""
+        found: set[str] = set()
+        for match in _LIKE_CLASS.finditer(self.text):
+            found.update(_IDENTIFIERS.findall(match.group(1)))
+        return frozenset(found)
+
+    @cached_property
+    def may_derive(self) -> bool:
+        """Whether something like `class A : public B` may stand in the file."""
+        return _LIKE_DERIVED.search(self._data) is not None
+
+    def may_declare(self, word: str) -> bool:
+        """Whether a word may stand before a parenthesis."""
+        return self.mentions(word) and _called_pattern(word).search(self._data) is not None
 
     def may_have_member(self, word: str) -> bool:
         """Whether a word may stand behind `.`, `->` or `::` and not be called; comments count too."""
         return self.mentions(word) and _member_pattern(word).search(self._data) is not None
 
-    def uses(self, words: Iterable[str]) -> Iterator[Use]:
-        """The places where these words are used; of `operator+=` and its like, where the operator is."""
+    def uses(self, words: Iterable[str], wanted: Callable[[str, int], bool] | None = None) -> Iterator[Use]:
+        """The places where these words are used; of `operator+=` and its like, where the operator is. wanted: whether a
+        word may be of interest at an offset of the text, asked before the file is parsed."""
         for word in words:
             if word.startswith("operator"):
-                yield from self._assignments(word)
+                yield from self._assignments(word, wanted)
                 continue
             if not self.mentions(word):
                 continue
-            for at in standing(word, self._text):
+            for at in standing(word, self.text):
+                if wanted is not None and not wanted(word, at):
+                    continue
                 path = self._path(at)
                 leaf = path[-1]
                 if leaf.kind_id in _LEAVES and leaf.start_byte == at and leaf.end_byte == at + len(word):
@@ -216,17 +279,18 @@ class Code:
                     if use is not None:
                         yield use
 
-    def _assignments(self, word: str) -> Iterator[Use]:
+    def _assignments(self, word: str, wanted: Callable[[str, int], bool] | None) -> Iterator[Use]:
         sign = word.removeprefix("operator")
-        at = self._text.find(sign)
+        at = self.text.find(sign)
         while at >= 0:
-            path = self._path(at)
-            node = path[-2] if len(path) > 1 else path[-1]
-            if path[-1].start_byte == at and node.kind_id == _ASSIGNMENT:
-                left = node.child_by_field_name("left")
-                if left is not None:
-                    yield Use(word, at, "assigned", word, self._place(path), self._expression(left, path[:-1]))
-            at = self._text.find(sign, at + len(sign))
+            if wanted is None or wanted(word, at):
+                path = self._path(at)
+                node = path[-2] if len(path) > 1 else path[-1]
+                if path[-1].start_byte == at and node.kind_id == _ASSIGNMENT:
+                    left = node.child_by_field_name("left")
+                    if left is not None:
+                        yield Use(word, at, "assigned", word, self._place(path), self._expression(left, path[:-1]))
+            at = self.text.find(sign, at + len(sign))
 
     def _use(self, word: str, at: int, path: list[Node]) -> Use | None:
         level = len(path) - 1
@@ -379,8 +443,11 @@ class Code:
                 if number in _CLASSES:
                     owner = "::".join(scope)
             elif number == _FUNCTION:
-                name, *_ = self._declarator(node.child_by_field_name("declarator"))
-                if name is not None and name.kind_id == QUALIFIED:
+                name, _, declarator, _ = self._declarator(node.child_by_field_name("declarator"))
+                if name is not None and declarator is not None and self._of(name) in _FIXTURES:
+                    listed = declarator.child_by_field_name("parameters")
+                    owner = self._of(listed.named_children[0]) if listed is not None and listed.named_children else ""
+                elif name is not None and name.kind_id == QUALIFIED:
                     written = without_templates(self._of(name)).rpartition("::")[0]
                     owner = written.removeprefix("::")
             elif number in (COMPOUND, LAMBDA, _INITIALIZERS):
@@ -711,8 +778,15 @@ class Code:
         return Expr("pack" if number == _PACK else "other", "", at)
 
 
+# Macros of gtest that open the body of a method of a class that is derived from what they are given first.
+_FIXTURES = frozenset(("TEST_F", "TEST_P", "TYPED_TEST", "TYPED_TEST_P"))
 _MAKERS = frozenset(("make_shared", "make_unique"))
 _SCOPED = frozenset((LAMBDA, _FUNCTION, _CATCH, _EACH, _FOR, _TEMPLATE)) | _STATEMENTS_WITH_HEAD
+
+
+@lru_cache(maxsize=4096)
+def _called_pattern(word: str) -> re.Pattern[bytes]:
+    return re.compile(rb"\b" + re.escape(word.encode()) + rb"\s*\(")
 
 
 @lru_cache(maxsize=4096)

@@ -96,14 +96,15 @@ def parse_type(text: str) -> Written:
 
 
 class Known:
-    """What one file declares, by the last parts of the names. Kept with the file, for all that include it."""
+    """What one file declares, by the last parts of the names. Kept with the file, for all that include it. words: all
+    of four letters or more that stand in it, where that is known."""
 
-    def __init__(self, code: Code):
-        self.code = code
+    def __init__(self, code: Code, words: frozenset[str] = frozenset()):
+        self.code, self.words = code, words
 
     def mentions(self, word: str) -> bool:
         """Whether the word may stand in it."""
-        return self.code.mentions(word)
+        return word in self.words if self.words and len(word) > 3 else self.code.mentions(word)
 
     @cached_property
     def classes(self) -> dict[str, list[Class]]:
@@ -128,31 +129,16 @@ class Known:
         """Names that it declares in any way, outside of functions."""
         return frozenset((*self.classes, *self.names, *self.members, *self.code.file.macros))
 
-    @cached_property
-    def using(self) -> dict[str, str]:
-        """Names that `using a::b` makes known, in full."""
-        if not self.mentions("using"):
-            return {}
-        return {full.rpartition("::")[2]: full for _, full in self.code.file.using}
-
-    @cached_property
-    def opened(self) -> tuple[str, ...]:
-        """Namespaces that `using namespace` opens."""
-        if not self.mentions("using"):
-            return ()
-        return tuple(dict.fromkeys(space for _, space in self.code.file.opened))
-
-    @cached_property
-    def spaces(self) -> dict[str, str]:
-        """Other names of namespaces."""
-        if not self.mentions("namespace"):
-            return {}
-        return {name: meant for _, name, meant in self.code.file.spaces}
-
     def aliases(self, name: str) -> Iterator[Declared]:
         """What a name stands for, outside of classes."""
-        if self.mentions(name):
+        if self.mentions(name) and name in self.code.like_aliases:
             yield from (one for one in self.names.get(name, ()) if one.kind == "alias")
+
+    def classes_named(self, last: str) -> list[Class]:
+        """Its classes of a name."""
+        if self.mentions(last) and last in self.code.like_classes:
+            return self.classes.get(last, [])
+        return []
 
 
 def _by_last(classes: Iterable[Class]) -> dict[str, list[Class]]:
@@ -173,7 +159,9 @@ class Resolver:
         self._types: dict[tuple[str, str, str], Type | None] = {}
         self._named: dict[tuple[str, str, str], Type | None] = {}
         self._homes: dict[str, list[Class]] = {}
-        self._busy: set[object] = set()
+        self._lines: dict[str, tuple[Class, ...]] = {}
+        self._opened: tuple[str, ...] | None = None
+        self._renamed: dict[str, tuple[str, ...]] = {}
 
     # -- names ---------------------------------------------------------------------------------------------------------
 
@@ -189,23 +177,32 @@ class Resolver:
         for full in place.used:
             if full.rpartition("::")[2] == head:
                 yield full + rest
-        for file in self.files:
-            if file.mentions(head):
-                meant = file.spaces.get(head) or file.using.get(head)
-                if meant and meant != head:
-                    yield meant + rest
-                    deeper, more, tail = meant.partition("::")
-                    for other in self.files:
-                        if deeper in other.spaces:
-                            yield other.spaces[deeper] + more + tail + rest
+        for meant in self._meant(head):
+            yield meant + rest
         for space in self.opened(place):
             yield f"{space}::{name}"
 
-    def opened(self, place: Place) -> Iterator[str]:
+    def _meant(self, head: str) -> tuple[str, ...]:
+        """What the head of a name stands for by `using a::head` or `namespace head = a`."""
+        known = self._renamed.get(head)
+        if known is None:
+            found: list[str] = []
+            for file in self.files:
+                meant = (file.code.spaces.get(head) or file.code.using.get(head)) if file.mentions(head) else None
+                if meant and meant != head:
+                    found.append(meant)
+                    deeper, more, tail = meant.partition("::")
+                    found += [
+                        other.code.spaces[deeper] + more + tail for other in self.files if deeper in other.code.spaces
+                    ]
+            known = self._renamed[head] = tuple(dict.fromkeys(found))
+        return known
+
+    def opened(self, place: Place) -> tuple[str, ...]:
         """Namespaces whose names can be written without them."""
-        yield from place.opened
-        for file in self.files:
-            yield from file.opened
+        if self._opened is None:
+            self._opened = tuple(dict.fromkeys(space for file in self.files for space in file.code.opened))
+        return (*place.opened, *self._opened)
 
     def declares(self, word: str) -> bool:
         """Whether the file or a header of the package declares a name itself, outside of functions."""
@@ -216,7 +213,7 @@ class Resolver:
         known = self._homes.get(class_)
         if known is None:
             last = class_.rpartition("::")[2]
-            found = [one for file in self.files if file.mentions(last) for one in file.classes.get(last, ())]
+            found = [one for file in self.files for one in file.classes_named(last)]
             exact = [one for one in found if one.name == class_]
             ending = f"::{class_}"
             known = exact or [one for one in found if f"::{one.name}".endswith(ending)]
@@ -318,8 +315,19 @@ class Resolver:
             inner = self.named(shorter, place, depth + 1)
             return inner._replace(pointer=True) if inner is not None and not inner.own else None
         if self.scope is not None and "::" not in name:
-            return self._interface(name)
-        return None
+            told = self._interface(name)
+            if told is not None:
+                return told
+        # An alias of some class, where nothing else is so called.
+        found = {
+            self._nested(self.type_of(member.type, _inside(one), depth + 1), rest, place, depth)
+            for file in self.files
+            if file.mentions(head) and head in file.code.like_aliases
+            for one in file.code.file.classes
+            for member in one.members.get(head, ())
+            if member.kind == "alias"
+        }
+        return next(iter(found)) if len(found) == 1 else None
 
     def _nested(self, type_: Type | None, rest: str, place: Place, depth: int) -> Type | None:
         """What `alias::rest` is."""
@@ -331,10 +339,10 @@ class Resolver:
 
     def _own_class(self, name: str, place: Place) -> Type | None:
         last = name.rpartition("::")[2]
-        if not any(file.mentions(last) and last in file.classes for file in self.files):
+        names = {one.name for one in self.homes(last)}
+        if not names:
             return None
         around = place.scope
-        names = {one.name for one in self.homes(last)}
         while True:
             full = f"{around}::{name}" if around else name
             if full in names:
@@ -390,22 +398,26 @@ class Resolver:
 
     # -- classes of the package ----------------------------------------------------------------------------------------
 
-    def _line_of_own(self, class_: str, depth: int = 0) -> Iterator[Class]:
-        """A class of the package and those of the package that it is derived from."""
+    def _line_of_own(self, class_: str) -> tuple[Class, ...]:
+        """A class of the package and those of the package that it is derived from, with the arguments of templates
+        written where their parameters stood."""
+        known = self._lines.get(class_)
+        if known is None:
+            self._lines[class_] = ()
+            known = self._lines[class_] = tuple(self._find_line(class_, (), 0))
+        return known
+
+    def _find_line(self, class_: str, arguments: tuple[str, ...], depth: int) -> Iterator[Class]:
         homes = self.homes(class_)
         if len(homes) != 1 or depth > _DEEPEST:
             return
-        yield homes[0]
-        for base in homes[0].bases:
-            if ("base", class_, base) in self._busy:
-                continue
-            self._busy.add(("base", class_, base))
-            try:
-                own = self._own_class(parse_type(base).outer, _around(homes[0]))
-            finally:
-                self._busy.discard(("base", class_, base))
-            if own is not None and own.name != class_:
-                yield from self._line_of_own(own.name, depth + 1)
+        one = _filled(homes[0], arguments) if homes[0].template and arguments else homes[0]
+        yield one
+        for base in one.bases:
+            parts = parse_type(base)
+            own = self._own_class(parts.outer, _around(one))
+            if own is not None and own.name != one.name:
+                yield from self._find_line(own.name, parts.arguments or (), depth + 1)
 
     def bases(self, class_: Class) -> list[tuple[str, Type | None]]:
         """The bases of a class of the package, with what they are."""
@@ -559,13 +571,7 @@ class Resolver:
 
     def _substituted(self, written: set[str], parameters: tuple[str, ...], arguments: tuple[str, ...], place: Place):
         """A type that is written with the parameters of a template."""
-        if len(written) != 1:
-            return None
-        text = written.pop()
-        for name, given in zip(parameters, arguments, strict=False):
-            if name:
-                text = re.sub(rf"\b{re.escape(name)}\b", lambda _, given=given: given, text)
-        return self.type_of(text, place)
+        return self.type_of(_filled_text(written.pop(), parameters, arguments), place) if len(written) == 1 else None
 
     def _released(self, type_: Type, name: str) -> Type | None:
         """What a member of a class of another package is."""
@@ -647,6 +653,24 @@ class Resolver:
 
 
 _NOWHERE = Place("", "", False)
+
+
+def _filled_text(text: str, parameters: Iterable[str], arguments: Iterable[str]) -> str:
+    """A type with the arguments of a template in the places of its parameters."""
+    for name, given in zip(parameters, arguments, strict=False):
+        if name and name in text:
+            text = re.sub(rf"\b{re.escape(name)}\b", lambda _, given=given: given, text)
+    return text
+
+
+def _filled(class_: Class, arguments: tuple[str, ...]) -> Class:
+    """A class with the arguments of its template in the places of the parameters."""
+    members = {
+        name: [one._replace(type=_filled_text(one.type, class_.template, arguments)) for one in those]
+        for name, those in class_.members.items()
+    }
+    bases = tuple(_filled_text(base, class_.template, arguments) for base in class_.bases)
+    return class_._replace(members=members, bases=bases)
 
 
 def _inside(class_: Class) -> Place:

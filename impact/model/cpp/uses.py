@@ -7,10 +7,19 @@ from collections.abc import Collection, Iterable, Iterator
 
 from ...facts.cpp.schema import Class, Expr, Parameter, Place
 from ...facts.cpp.schema import Use as Written
-from ..api import CALLED, CLASSES, Found
+from ..api import ASSIGNING, CALLED, CLASSES, Found, Name
 from ..members import Found as FoundMember
 from .resolver import Known, Resolver, Type
 
+_LAST_WORD = re.compile(r"[A-Za-z_]\w*\Z")
+_SCOPES = re.compile(r"(?<![\w>:])(?:[A-Za-z_]\w*\s*::\s*)+\Z")
+_CALLED = re.compile(r"\s*[<({]")
+# Arguments of which a look tells how many they are, and that they show no type.
+_NAME = r"[A-Za-z_][\w.]*(?:\(\))?"
+_SIMPLE = re.compile(rf"\s*\(\s*((?:{_NAME}(?:\s*,\s*{_NAME})*)?)\s*\)")
+_SHOWN = re.compile(r"\b(?:true|false|this|NULL|nullptr|rmw_qos_profile_\w+)\b")
+_INTERFACES = ("::msg", "::srv", "::action")
+_CONSTRUCTED = re.compile(r"\s*(?:[<({]|>\s*\(|[A-Za-z_]\w*\s*[({])")
 _TYPES = CLASSES | {"alias", "enum"}
 
 
@@ -27,11 +36,51 @@ class ApiUses:
         """Every use of a name that is looked for and whose last part is among the words."""
         words = list(words)
         home = self.vocabulary.home
-        for use in self.resolver.known.code.uses(words):
+        for use in self.resolver.known.code.uses(words, self._may_matter):
             for found in (self._use(use), self._construction(use)):
                 if found is not None and found.package not in home and self._differs(found):
                     yield found
         yield from (found for found in self._overrides(frozenset(words)) if found.package not in home)
+
+    def _may_matter(self, word: str, at: int) -> bool:
+        """Whether a word may be such a use, as far as the text around it shows."""
+        text, vocabulary = self.resolver.known.code.text, self.vocabulary
+        before = at
+        while before and text[before - 1] in " \t\n":
+            before -= 1
+        if word in ASSIGNING:
+            root = _LAST_WORD.search(text, max(0, before - 80), before)
+            if root is None:
+                return text[before - 1 : before] == "]"
+            speakers = vocabulary.speakers_of(word)
+            return root.group().endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
+        if text[before - 1 : before] == ".":
+            return vocabulary.of_classes(word)
+        sign = text[before - 2 : before]
+        if sign == "->":
+            return vocabulary.of_classes(word)
+        if sign != "::":
+            return True
+        scopes = _SCOPES.search(text, max(0, before - 160), before)
+        if scopes is None:
+            return True  # behind template arguments, or of the global namespace
+        scope = "".join(scopes.group().split()).removesuffix("::")
+        head = scope.partition("::")[0]
+        if head == "std":
+            return False
+        full = f"{scope}::{word}"
+        known = vocabulary.names.get(full)
+        end = at + len(word)
+        if known is not None and (known.there or (known.what in CALLED and _may_differ(known, text, end))):
+            return True
+        if f"{full}::{word}" in vocabulary.constructors(word):
+            constructed = _CONSTRUCTED.match(text, end)
+            return constructed is not None and _may_differ(
+                vocabulary.names[f"{full}::{word}"], text, constructed.end() - 1
+            )
+        if known is not None or scope.endswith(_INTERFACES):
+            return False
+        return scope in vocabulary.classes or not vocabulary.has_space(head)
 
     def _differs(self, found: Found) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given)
@@ -124,7 +173,7 @@ class ApiUses:
                 return full
         return next(
             (full for file in self.resolver.files
-             if file.mentions(use.word) and (full := file.using.get(use.word)) is not None), None
+             if (full := file.code.using.get(use.word)) is not None), None
         )  # fmt: skip
 
     def _is_bare_type(self, use: Written, package: str) -> bool:
@@ -137,7 +186,9 @@ class ApiUses:
             and not place.function
             and (not place.owner or place.scope != place.owner)
             and not self.vocabulary.knows(place.scope.partition("::")[0])
-            and not any(file.opened or any(file.aliases(word)) or word in file.using for file in self.resolver.files)
+            and not any(
+                file.code.opened or word in file.code.using or any(file.aliases(word)) for file in self.resolver.files
+            )
             and not self.resolver.declares(word)
         )
 
@@ -214,11 +265,14 @@ class ApiUses:
     def _overrides(self, words: frozenset[str]) -> Iterator[Found]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
-        virtual = {word for word in words if any(names[name].virtual for name in self.vocabulary.by_last(word))}
-        known = self.resolver.known
-        if not virtual or not (known.mentions("class") or known.mentions("struct")):
+        code = self.resolver.known.code
+        if not code.may_derive:
             return
-        for class_ in known.code.file.classes:
+        virtual = {
+            word for word in words
+            if any(names[name].virtual for name in self.vocabulary.by_last(word)) and code.may_declare(word)
+        }  # fmt: skip
+        for class_ in code.file.classes if virtual else ():
             if not class_.bases:
                 continue
             declared = sorted(virtual.intersection(class_.members))
@@ -240,6 +294,15 @@ class ApiUses:
 
     def _first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
         return next((found for one in classes if (found := self.vocabulary.member(one, word)) is not None), None)
+
+
+def _may_differ(known: Name, text: str, at: int) -> bool:
+    """Whether what follows a name may call it in a way that not all versions take."""
+    simple = _SIMPLE.match(text, at)
+    if simple is None or _SHOWN.search(simple.group(1)):
+        return _CALLED.match(text, at) is not None
+    given = simple.group(1)
+    return known.differs("call", given.count(",") + 1 if given.strip() else 0, ())
 
 
 def around_(class_: Class) -> Place:
