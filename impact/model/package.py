@@ -152,8 +152,8 @@ class CppApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A use of a C++ name of a package outside of the workspace that only some stored versions of it have, or have in
     this form.
 
-    package, name: as in the surfaces. how: `name`, `call` or `override`. arguments, given, templated, sure, through: as
-    in api.Found. role and conditions as in NameUse."""
+    package, name: as in the surfaces. how: `name`, `call`, `override` or `implement` (of a class that does not).
+    arguments, given, templated, sure, through: as in api.Found. role and conditions as in NameUse."""
 
     package: str
     name: str
@@ -712,20 +712,24 @@ class _Join:
         ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp, ros, self.home)
         assigning = vocabulary.words & ASSIGNING.keys()
+        exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
+        exported_words = {name.rpartition("::")[2] for name in exported}
         for path, (role, _, targets, conditions) in roles.items():
-            words = vocabulary.words & spoken[path] | assigning if path in spoken else None
-            if not words:
+            words = vocabulary.words & spoken[path] | assigning if path in spoken else set()
+            has_exported = not exported_words.isdisjoint(spoken.get(path, ()))
+            if not words and not has_exported:
                 continue
             reached = sorted(to for to in self.reached_files(path) if to in spoken)
             near = [spoken[path], *(spoken[to] for to in reached)]
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
-            if not words:
+            if not words and not has_exported:
                 continue
             code = self.known(path).code
             seen = set()
             resolver = Resolver(self.known(path), [self.known(to) for to in reached], vocabulary, None)
             heads = {include.partition("/")[0] for include in self.reach(path)}
-            for found in ApiUses(resolver, heads).found(words):
+            uses = ApiUses(resolver, heads)
+            for found in (*uses.found(words), *(uses.unimplemented(exported) if has_exported else ())):
                 around = code.conditions(found.offset)
                 key = (*found._replace(offset=0), around)
                 if around is not None and key not in seen:

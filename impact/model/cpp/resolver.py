@@ -275,7 +275,7 @@ class Resolver:
         head, _, rest = name.partition("::")
         # What the class around declares comes first.
         if place.owner:
-            for one in self._line_of_own(place.owner):
+            for one in self.line_of_own(place.owner):
                 for member in one.members.get(head, ()):
                     if member.kind == "alias":
                         return self._nested(self.type_of(member.type, _inside(one), depth + 1), rest, place, depth)
@@ -398,7 +398,7 @@ class Resolver:
 
     # -- classes of the package ----------------------------------------------------------------------------------------
 
-    def _line_of_own(self, class_: str) -> tuple[Class, ...]:
+    def line_of_own(self, class_: str) -> tuple[Class, ...]:
         """A class of the package and those of the package that it is derived from, with the arguments of templates
         written where their parameters stood."""
         known = self._lines.get(class_)
@@ -511,7 +511,7 @@ class Resolver:
     def _variable(self, name: str, place: Place) -> Type | None:
         """What a name is that no function declares: a member of the class around, or a variable outside of all."""
         if place.owner:
-            for one in self._line_of_own(place.owner):
+            for one in self.line_of_own(place.owner):
                 if name in one.members:
                     return self._declared_type(one.members[name], _inside(one), "variable")
         found = [
@@ -553,7 +553,7 @@ class Resolver:
                                                    section=found.section)  # fmt: skip
         if not type_.own:
             return self._released(type_, name)
-        for one in self._line_of_own(type_.name):
+        for one in self.line_of_own(type_.name):
             if name in one.members:
                 kind = "function" if called else "variable"
                 found = self._declared_type(one.members[name], _inside(one), kind)
@@ -561,7 +561,7 @@ class Resolver:
                     written = {each.type for each in one.members[name] if each.kind == kind}
                     found = self._substituted(written, one.template, type_.arguments, place)
                 return found
-        for one in self._line_of_own(type_.name):
+        for one in self.line_of_own(type_.name):
             for _, base in self.bases(one):
                 if base is not None and not base.own and base.name:
                     found = self._released(base, name)
@@ -620,10 +620,10 @@ class Resolver:
     def _result(self, name: str, place: Place) -> Type | None:
         """What a function gives back."""
         if "::" not in name and place.owner:
-            for one in self._line_of_own(place.owner):
+            for one in self.line_of_own(place.owner):
                 if name in one.members:
                     return self._declared_type(one.members[name], _inside(one), "function")
-            for one in self._line_of_own(place.owner):
+            for one in self.line_of_own(place.owner):
                 for _, base in self.bases(one):
                     if base is not None and not base.own and base.name:
                         found = self._released(base, name)

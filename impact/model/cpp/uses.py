@@ -83,7 +83,7 @@ class ApiUses:
         return scope in vocabulary.classes or not vocabulary.has_space(head)
 
     def _differs(self, found: Found) -> bool:
-        return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given)
+        return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
 
     # -- one place -----------------------------------------------------------------------------------------------------
 
@@ -292,6 +292,29 @@ class ApiUses:
                         yield Found(names[member[0]].package, member[0], method.offset, "override", len(types),
                                     (*types, *marks), False, True, member[1])  # fmt: skip
 
+    def unimplemented(self, exported: Collection[str]) -> Iterator[Found]:
+        """Methods that a base class in another package makes others implement in some version, and that an exported
+        class of the file does not have. exported: full names of classes that others make objects of."""
+        code = self.resolver.known.code
+        if not code.may_derive:
+            return
+        for class_ in code.file.classes:
+            if class_.open or class_.template or not _is_among(class_.name, exported):
+                continue
+            own = self.resolver.line_of_own(class_.name)
+            if any(one.open for one in own):
+                continue
+            have = {name for one in own for name in one.members}
+            for one in own:
+                for base in one.bases:
+                    type_ = self.resolver.type_of(base, around_(one))
+                    if type_ is None or type_.own or not type_.name:
+                        continue
+                    for name in self.vocabulary.pure(type_.name):
+                        package = self.vocabulary.names[name].package
+                        if name.rpartition("::")[2] not in have and package not in self.vocabulary.home:
+                            yield Found(package, name, class_.offset, "implement", -1, (), False, True, ())
+
     def _first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
         return next((found for one in classes if (found := self.vocabulary.member(one, word)) is not None), None)
 
@@ -303,6 +326,11 @@ def _may_differ(known: Name, text: str, at: int) -> bool:
         return _CALLED.match(text, at) is not None
     given = simple.group(1)
     return known.differs("call", given.count(",") + 1 if given.strip() else 0, ())
+
+
+def _is_among(class_: str, names: Collection[str]) -> bool:
+    """Whether a class is one of those that are named, in full or without the namespaces around."""
+    return any(f"::{class_}".endswith(f"::{name}") for name in names)
 
 
 def around_(class_: Class) -> Place:

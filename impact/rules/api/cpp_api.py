@@ -36,7 +36,7 @@ def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
             continue  # a name of that package, which this one took over for a while
         if use.name.rpartition("::")[2] in calls or not reviewed.isdisjoint(_tails(use.name)):
             continue
-        found = judged(view.offers, use.package, use.name, use.how, use.arguments, use.given)
+        found = judged(view.offers, use.package, use.name, use.how, use.arguments, use.given, use.templated)
         if found is not None:
             yield use, found
 
