@@ -37,21 +37,26 @@ LEG = ("namespace leg { class Leg : public arm::Arm { public: void old(); }; }",
        "namespace leg { class Leg : public arm::Arm { public: }; }")  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def changes() -> Changes:
+def changes_of(packages: dict[str, tuple[str, str]]) -> Changes:
+    """What changed from the first to the second version of packages, given the code of their headers."""
     lines = Lines()
     for number, version in enumerate(("1.0.0", "2.0.0")):
         surfaces = {}
-        for package, code in (("arm", ARM[number]), ("leg", LEG[number])):
+        for package, codes in packages.items():
             path = f"{package}/a.hpp"
             build = BuildSurface(package, version, headers=(Header(path, f"include/{path}", path),))
             surfaces[package] = Surface(package, version, build, PythonSurface(package),
-                                        ((path, header(code.encode())),))  # fmt: skip
+                                        ((path, header(codes[number].encode())),))  # fmt: skip
         state = State(surfaces)
         for package in surfaces:
             lines.add(package, version, (2,), state)
     packed = lines.packed()
     return Changes(lambda package: unpack(packed[package]) if package in packed else {})
+
+
+@pytest.fixture(scope="module")
+def changes() -> Changes:
+    return changes_of({"arm": ARM, "leg": LEG})
 
 
 def resolver(text: str, vocabulary: Vocabulary, *headers: str) -> Resolver:
@@ -155,6 +160,31 @@ def test_what_is_found(text, found, changes):
 )  # fmt: skip
 def test_what_headers_tell(text, headers, found, changes):
     assert uses(text, changes, *headers) == found
+
+
+# `stop` is pure in the second version alone, `go` in both.
+PART = (
+    "namespace part { class Base { public: virtual void go() = 0; virtual void stop(); }; }",
+    "namespace part { class Base { public: virtual void go() = 0; virtual void stop() = 0; }; }",
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "headers", "found"),
+    [
+        ("namespace n { class M : public part::Base { void go() override; }; }", (), ["part::Base::stop"]),
+        ("namespace n { class M : public part::Base { void go(); void stop(); }; }", (), []),
+        ("namespace n { class O : public part::Base { void go(); }; }", (), []),  # nobody exports it
+        ("namespace n { class M : public Own { void go(); }; }", ("class Own : public part::Base {};",),
+         ["part::Base::stop"]),
+        ("namespace n { class M : public Own { void go(); }; }", ("class Own : public part::Base { void stop(); };",),
+         []),
+        ("namespace n { template<class T> class M : public part::Base { void go(); }; }", (), []),
+    ],
+)  # fmt: skip
+def test_what_an_exported_class_does_not_implement(text, headers, found):
+    vocabulary = Vocabulary(["part"], "mine", changes_of({"part": PART}))
+    assert [use.name for use in ApiUses(resolver(text, vocabulary, *headers)).unimplemented({"n::M"})] == found
 
 
 def test_a_name_is_looked_for_where_its_class_can_be_meant(changes):
