@@ -716,7 +716,9 @@ class _Join:
         exported_words = {name.rpartition("::")[2] for name in exported}
         for path, (role, _, targets, conditions) in roles.items():
             words = vocabulary.words & spoken[path] | assigning if path in spoken else set()
-            has_exported = not exported_words.isdisjoint(spoken.get(path, ()))
+            has_exported = not exported_words.isdisjoint(spoken.get(path, ())) and not exported_words.isdisjoint(
+                self.known(path).code.like_classes
+            )
             if not words and not has_exported:
                 continue
             reached = sorted(to for to in self.reached_files(path) if to in spoken)

@@ -253,7 +253,7 @@ class Code:
         return _LIKE_DERIVED.search(self._data) is not None
 
     def may_declare(self, word: str) -> bool:
-        """Whether a word may stand before a parenthesis."""
+        """Whether a word may stand behind a type and before a parenthesis."""
         return self.mentions(word) and _called_pattern(word).search(self._data) is not None
 
     def may_have_member(self, word: str) -> bool:
@@ -786,7 +786,8 @@ _SCOPED = frozenset((LAMBDA, _FUNCTION, _CATCH, _EACH, _FOR, _TEMPLATE)) | _STAT
 
 @lru_cache(maxsize=4096)
 def _called_pattern(word: str) -> re.Pattern[bytes]:
-    return re.compile(rb"\b" + re.escape(word.encode()) + rb"\s*\(")
+    name = re.escape(word.encode())
+    return re.compile(rb"(?:[\w&*>\]]\s+|[*&])" + name + rb"\s*\(")
 
 
 @lru_cache(maxsize=4096)

@@ -14,10 +14,10 @@ from .resolver import Known, Resolver, Type
 _LAST_WORD = re.compile(r"[A-Za-z_]\w*\Z")
 _SCOPES = re.compile(r"(?<![\w>:])(?:[A-Za-z_]\w*\s*::\s*)+\Z")
 _CALLED = re.compile(r"\s*[<({]")
-# Arguments of which a look tells how many they are, and that they show no type.
-_NAME = r"[A-Za-z_][\w.]*(?:\(\))?"
-_SIMPLE = re.compile(rf"\s*\(\s*((?:{_NAME}(?:\s*,\s*{_NAME})*)?)\s*\)")
-_SHOWN = re.compile(r"\b(?:true|false|this|NULL|nullptr|rmw_qos_profile_\w+)\b")
+# What an argument may show itself to be of.
+_SHOWN = re.compile(r"[\"\[{]|\b(?:true|false|this|NULL|nullptr|new|bind|\d[\w.]*|\w*[qQ]o[sS]\w*)\b")
+_BRACKETS = re.compile(r"[()\[\]{},<>\"'/]|\.\.\.")
+_MOST_NEAR = 600
 _INTERFACES = ("::msg", "::srv", "::action")
 _CONSTRUCTED = re.compile(r"\s*(?:[<({]|>\s*\(|[A-Za-z_]\w*\s*[({])")
 _TYPES = CLASSES | {"alias", "enum"}
@@ -54,13 +54,11 @@ class ApiUses:
                 return text[before - 1 : before] == "]"
             speakers = vocabulary.speakers_of(word)
             return root.group().endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
-        if text[before - 1 : before] == ".":
-            return vocabulary.of_classes(word)
         sign = text[before - 2 : before]
-        if sign == "->":
-            return vocabulary.of_classes(word)
+        if sign == "->" or sign.endswith("."):
+            return vocabulary.of_classes(word) and self._may_be_any(word, text, at + len(word))
         if sign != "::":
-            return True
+            return self._may_be_any(word, text, at + len(word))
         scopes = _SCOPES.search(text, max(0, before - 160), before)
         if scopes is None:
             return True  # behind template arguments, or of the global namespace
@@ -81,6 +79,17 @@ class ApiUses:
         if known is not None or scope.endswith(_INTERFACES):
             return False
         return scope in vocabulary.classes or not vocabulary.has_space(head)
+
+    def _may_be_any(self, word: str, text: str, end: int) -> bool:
+        """Whether any of the names that end so may be used in a way that differs between versions."""
+        names = self.vocabulary.names
+        for name in self.vocabulary.by_last(word):
+            known = names[name]
+            if known.there or (known.what in CALLED and _may_differ(known, text, end)):
+                return True
+            if known.what == "constructor" and _CONSTRUCTED.match(text, end) is not None:
+                return True
+        return False
 
     def _differs(self, found: Found) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
@@ -321,11 +330,40 @@ class ApiUses:
 
 def _may_differ(known: Name, text: str, at: int) -> bool:
     """Whether what follows a name may call it in a way that not all versions take."""
-    simple = _SIMPLE.match(text, at)
-    if simple is None or _SHOWN.search(simple.group(1)):
-        return _CALLED.match(text, at) is not None
-    given = simple.group(1)
-    return known.differs("call", given.count(",") + 1 if given.strip() else 0, ())
+    opened = _CALLED.match(text, at)
+    if opened is None:
+        return False
+    found = _count_near(text, opened.end() - 1)
+    if found is None:
+        return True
+    count, given = found
+    return (known.typed and _SHOWN.search(given) is not None) or known.differs("call", count, ())
+
+
+def _count_near(text: str, at: int) -> tuple[int, str] | None:
+    """How many arguments a bracket gives that opens at an offset, and their text; None where that takes a parser."""
+    if text[at] != "(":
+        return None
+    depth, commas, quoted = 0, 0, ""
+    for match in _BRACKETS.finditer(text, at, at + _MOST_NEAR):
+        sign, place = match.group(), match.start()
+        if quoted:
+            if sign == quoted and text[place - 1] != "\\":
+                quoted = ""
+        elif sign in "\"'":
+            quoted = sign
+        elif sign in "([{":
+            depth += 1
+        elif sign in ")]}":
+            depth -= 1
+            if depth == 0:
+                given = text[at + 1 : place]
+                return (commas + 1 if given.strip() else 0), given
+        elif sign == "," and depth == 1:
+            commas += 1
+        elif sign == "<" or (sign == ">" and text[place - 1] != "-") or sign in ("/", "..."):
+            return None  # template arguments, a comparison or a comment
+    return None
 
 
 def _is_among(class_: str, names: Collection[str]) -> bool:
