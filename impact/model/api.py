@@ -1,6 +1,6 @@
 """The C++ names of other packages that a package can mean and that only some stored versions have, or have so.
 
-What the files themselves say is read in api_cpp.py.
+What the files themselves say is read in cpp/uses.py.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Found(NamedTuple):
 
     package, name, offset: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments:
     how many a call gives, or an override takes; -1: not to be told. given: of a call, what each argument shows itself
-    to be (see api_cpp.shown_as); of an override, the types of its parameters, then `const` and `override` where they
+    to be (see ApiUses.shown); of an override, the types of its parameters, then `const` and `override` where they
     stand. templated: template arguments are written. sure: the name is written with its scopes, or the type of the
     object shows. through: packages of classes between the object's and the one that has the name.
     """
@@ -62,6 +62,15 @@ class Name:
         return self.what == "method" and any("virtual" in one.traits for form in self.forms for one in form)
 
     @cached_property
+    def pure(self) -> bool:
+        """Whether it is a method that some version makes others implement, and some does not."""
+        if self.what != "method":
+            return False
+        pure = {any("pure" in one.traits for one in form.overloads) if form is not None else False
+                for event in self.events for form in (event.had, event.has)}  # fmt: skip
+        return len(pure) == 2
+
+    @cached_property
     def typed(self) -> bool:
         """Whether parameters whose types show in a call are of other types in some version."""
         types = [{one.types for one in form} for form in self.forms]
@@ -83,9 +92,9 @@ class Name:
         """Whether it does not take equally many arguments in all versions."""
         return len({frozenset((one.fewest, one.most) for one in form) for form in self.forms}) > 1
 
-    def differs(self, how: str, arguments: int, given: tuple[str, ...]) -> bool:
+    def differs(self, how: str, arguments: int, given: tuple[str, ...], templated: bool = False) -> bool:
         """Whether a use of it is not the same to all versions."""
-        if self.there or how == "override":
+        if self.there or how in ("override", "implement"):
             return True
         if how != "call":
             return False
@@ -95,14 +104,23 @@ class Name:
             return False
         if self.defaults and any(one.fewest <= arguments < one.most for form in self.forms for one in form):
             return True
-        return any(not any(one.accepts(arguments) for one in form) for form in self.forms)
+        if any(not any(one.accepts(arguments) for one in form) for form in self.forms):
+            return True
+        # An argument of a template may have to be written.
+        return not templated and any(one.most == arguments for one in self._passing)
 
+    @cached_property
+    def _passing(self) -> tuple[Overload, ...]:
+        """Overloads that not all versions have."""
+        kept = set(self.forms[0]).intersection(*self.forms) if self.forms else set()
+        return tuple({one for form in self.forms for one in form} - kept)
 
 class Known(NamedTuple):
     """What is asked of one package again and again. names: changing names of C++. by_last: those of which a
     use can matter, by their last part.
     bases: classes with the full names of their bases. classes: every class that shows. derived: last parts of classes
-    by the last part of a base. heads: first parts of bases, packages that may have them."""
+    by the last part of a base. heads: first parts of bases, packages that may have them. pure: classes with
+    their methods that only some versions make others implement."""
 
     names: dict[str, Name]
     by_last: dict[str, tuple[str, ...]]
@@ -110,6 +128,7 @@ class Known(NamedTuple):
     classes: dict[str, str]
     derived: dict[str, tuple[str, ...]]
     heads: tuple[str, ...]
+    pure: dict[str, tuple[str, ...]]
 
 
 class Changes:
@@ -160,6 +179,10 @@ def _known(package: str, lines: Iterable[Line]) -> Known:
             by_last.setdefault(full.rpartition("::")[2], {})[full] = None
     derived: dict[str, dict[str, None]] = {}
     heads: dict[str, None] = {}
+    pure: dict[str, list[str]] = {}
+    for full, name in names.items():
+        if name.pure:
+            pure.setdefault(full.rpartition("::")[0], []).append(full)
     for full, those in bases.items():
         for base in those:
             derived.setdefault(base.rpartition("::")[2], {})[full.rpartition("::")[2]] = None
@@ -172,11 +195,14 @@ def _known(package: str, lines: Iterable[Line]) -> Known:
         dict.fromkeys(classes, package),
         {base: tuple(those) for base, those in derived.items()},
         tuple(heads),
+        {owner: tuple(those) for owner, those in pure.items()},
     )
 
 
 _COMES_OR_GOES = frozenset(("removed", "added", "moved", "deprecated", "access", "deleted"))
-_SHOWING = re.compile(r"rmw_qos_profile_t|QoS|\bNode\b|Node\*|string|\bchar\*|double|float|bool")
+_SHOWING = re.compile(
+    r"rmw_qos_profile_t|QoS|\bNode\b|Node\*|string|\bchar\*|double|float|bool|(?:shared|unique)_ptr<|Ptr\b"
+)
 
 
 class Vocabulary:
@@ -247,6 +273,31 @@ class Vocabulary:
                 between.append(self.classes.get(one, ""))
             self._members[key] = found
         return self._members[key]
+
+    def speakers_of(self, word: str) -> frozenset[str]:
+        """Last parts of the classes that have a changing member of this name, and of those derived from them."""
+        return frozenset().union(*(self.speakers(name.rpartition("::")[0]) for name in self.by_last(word)))
+
+    def has_space(self, head: str) -> bool:
+        """Whether names of a known package begin so."""
+        return head in self._spaces
+
+    @cached_property
+    def _spaces(self) -> frozenset[str]:
+        return frozenset(full.partition("::")[0] for full in self.classes if "::" in full)
+
+    def alias(self, full: str) -> str | None:
+        """What a name of another package stands for, None where it is no alias that is known."""
+        return None
+
+    def result(self, full: str, member: str) -> tuple[str, tuple[str, ...]] | None:
+        """The type of a member of a class of another package, or what it gives back, with the names of the class's
+        template parameters that it may be written with."""
+        return None
+
+    def pure(self, full: str) -> tuple[str, ...]:
+        """The methods of a class that only some versions make others implement."""
+        return self._known[self.classes[full]].pure.get(full, ()) if full in self.classes else ()
 
     def constructors(self, word: str) -> tuple[str, ...]:
         """Changing constructors of classes whose name ends so."""

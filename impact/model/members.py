@@ -1,6 +1,6 @@
 """The interfaces of other packages that a source file can mean, and which of their members only some versions have.
 
-What the files themselves say is read in members_cpp.py and members_python.py.
+What the files themselves say is read in cpp/uses.py and members_python.py.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ..facts.condition import Condition
-from ..facts.cpp import CppFile, Include, Scan, scan
+from ..facts.cpp import CppFile, Include
 from ..facts.interface import Interface
 from ..facts.launch import PluginClass
 from ..facts.manifest import Manifest
@@ -31,6 +31,7 @@ from .macros import Macros
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
     from .api import Changes
+    from .cpp.resolver import Known
     from .members import Interface as Meant
     from .python.api import Changing
     from .settings import Setting
@@ -151,8 +152,8 @@ class CppApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A use of a C++ name of a package outside of the workspace that only some stored versions of it have, or have in
     this form.
 
-    package, name: as in the surfaces. how: `name`, `call` or `override`. arguments, given, templated, sure, through: as
-    in api.Found. role and conditions as in NameUse."""
+    package, name: as in the surfaces. how: `name`, `call`, `override` or `implement` (of a class that does not).
+    arguments, given, templated, sure, through: as in api.Found. role and conditions as in NameUse."""
 
     package: str
     name: str
@@ -345,7 +346,7 @@ class _Join:
         self.cpp: dict[str, CppFile] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
-        self._scanned: dict[str, Scan] = {}
+        self._known: dict[str, Known] = {}
         self._covered: tuple[set[str], tuple[str, ...]] | None = None
         self.macros = Macros((), ())
 
@@ -647,8 +648,9 @@ class _Join:
 
     def members(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
+        from .cpp.resolver import Resolver
+        from .cpp.uses import MemberUses
         from .members import Scope, interface_named, interfaces_included
-        from .members_cpp import CppUses, mentions
 
         table = self.watched.fields
         if table is None:
@@ -679,30 +681,27 @@ class _Join:
                 scope = scopes[key] = Scope(key, table)
             if not scope.changing & spoken:
                 continue
-            # Most files are told from their bytes, comments included, without a closer look.
-            if not mentions(self.read(path).decode("utf-8", "replace"), scope):
+            words = [word for word in sorted(scope.changing & spoken) if self.known(path).code.may_have_member(word)]
+            if not words:
                 continue
-            scanned = self.scanned(path)
-            if not mentions(scanned.visible, scope):
-                continue
-            headers = [self.scanned(to).visible for to in sorted(self.reached_files(path))]
-            uses = CppUses(scanned.visible, headers, scope)
+            headers = [self.known(to) for to in sorted(self.reached_files(path))]
+            code = self.known(path).code
             seen = set()
-            for found in (*uses.found(), *(() if unknown else uses.untold())):
-                line, column = scanned.place(found.offset)
-                around = self.macros.asked(scanned.under(found.offset) or (), targets)
+            for found in MemberUses(Resolver(self.known(path), headers, None, scope)).found(words, not unknown):
+                around = self.macros.asked(code.conditions(found.offset) or (), targets)
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
                     yield MemberUse(found.interface.package, found.interface.ros, found.interface.name, found.section,
-                                    found.member, At(path, line, column), role, "cpp", found.sure,
+                                    found.member, At(path, *code.place(found.offset)), role, "cpp", found.sure,
                                     conditions + around)  # fmt: skip
 
     def cpp_api(self, roles) -> Iterator[CppApiUse]:
         """Uses of C++ names of packages outside of the workspace that are not the same in all versions, in files that
         are compiled."""
         from .api import ASSIGNING, Vocabulary
-        from .api_cpp import ApiUses
+        from .cpp.resolver import Resolver
+        from .cpp.uses import ApiUses
 
         if self.watched.changing_cpp is None:
             return
@@ -713,32 +712,43 @@ class _Join:
         ros = 2 if self.build_type.startswith("ament") else 1 if self.build_type == "catkin" else 0
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.watched.changing_cpp, ros, self.home)
         assigning = vocabulary.words & ASSIGNING.keys()
+        exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
+        exported_words = {name.rpartition("::")[2] for name in exported}
         for path, (role, _, targets, conditions) in roles.items():
-            words = vocabulary.words & spoken[path] | assigning if path in spoken else None
-            if not words:
+            words = vocabulary.words & spoken[path] | assigning if path in spoken else set()
+            has_exported = not exported_words.isdisjoint(spoken.get(path, ())) and not exported_words.isdisjoint(
+                self.known(path).code.like_classes
+            )
+            if not words and not has_exported:
                 continue
             reached = sorted(to for to in self.reached_files(path) if to in spoken)
             near = [spoken[path], *(spoken[to] for to in reached)]
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
-            if not words:
+            if not words and not has_exported:
                 continue
-            scanned = self.scanned(path)
+            code = self.known(path).code
             seen = set()
-            headers = (self.scanned(to).visible for to in reached)
+            resolver = Resolver(self.known(path), [self.known(to) for to in reached], vocabulary, None)
             heads = {include.partition("/")[0] for include in self.reach(path)}
-            for found in ApiUses(scanned.visible, headers, vocabulary, heads).found(words):
-                around = scanned.under(found.offset)
+            uses = ApiUses(resolver, heads)
+            for found in (*uses.found(words), *(uses.unimplemented(exported) if has_exported else ())):
+                around = code.conditions(found.offset)
                 key = (*found._replace(offset=0), around)
                 if around is not None and key not in seen:
                     seen.add(key)
                     yield CppApiUse(found.package, found.name, found.how, found.arguments, found.given,
-                                 At(path, *scanned.place(found.offset)), role, found.sure, found.through,
-                                 found.templated, conditions + around, targets)  # fmt: skip
+                                    At(path, *code.place(found.offset)), role, found.sure, found.through,
+                                    found.templated, conditions + around, targets)  # fmt: skip
 
-    def scanned(self, path: str) -> Scan:
-        known = self._scanned.get(path)
+    def known(self, path: str) -> Known:
+        """What a file declares and uses."""
+        known = self._known.get(path)
         if known is None:
-            known = self._scanned[path] = scan(self.read(path))
+            from ..facts.cpp.code import Code
+            from .cpp.resolver import Known
+
+            words = _spoken(self.cpp[path]) if path in self.cpp else frozenset()
+            known = self._known[path] = Known(Code(self.read(path)), words)
         return known
 
     def reached_files(self, path: str) -> set[str]:

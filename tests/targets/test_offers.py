@@ -217,3 +217,40 @@ def test_a_call_of_what_a_base_has_is_judged_by_the_base(store):
     assert (call("2.0.0").kind, call("2.0.0").offered.name) == ("arguments", "arm::Arm::move")
     assert call("4.0.0") is None
     assert (call("5.0.0").kind, call("5.0.0").offered.name) == ("arguments", "arm::Part::move")
+
+
+@pytest.mark.parametrize(
+    ("codes", "how", "arguments", "given", "kinds"),
+    [
+        # an exported class does not have a method that its base made pure
+        (("virtual void stop();", "virtual void stop() = 0;"), "implement", -1, (), (None, "pure")),
+        (("", "virtual void stop() = 0;"), "implement", -1, (), (None, "pure")),
+        (("virtual void stop(int) = 0;", "virtual void stop(char) = 0;"), "implement", -1, (), (None, None)),
+        (("virtual void stop() = 0;", ""), "implement", -1, (), ("pure", None)),
+        # a template argument that nothing tells any more
+        (("void stop(int); template<class T> void stop(int, T = {});", "template<class T> void stop(int, T t);"
+          "template<class T> void stop(int, bool b = true);"), "call", 1, ("integer",), (None, "template")),
+        (("void stop(int); void stop(bool);", "template<class T> void stop(T);"), "call", 1, ("integer",),
+         (None, None)),
+        (("void stop(int); void stop(bool);", "template<class T = int> void stop(bool);"), "call", 1, ("integer",),
+         (None, None)),
+        # a raw pointer where a smart one is wanted
+        (("void stop(Part * p);", "void stop(std::shared_ptr<Part> p);"), "call", 1, ("new",), (None, "types")),
+        (("void stop(Part * p);", "void stop(std::shared_ptr<Part> p);"), "call", 1, ("",), (None, None)),
+        # an override that differs by a reference, or by the sort of a pointer
+        (("virtual void stop(int a, const A & b);", "virtual void stop(int a, A b);"), "override", 2,
+         ("int", "const A&"), (None, "override")),
+        (("virtual void stop(int a, A::SharedPtr b);", "virtual void stop(int a, A::WeakPtr b);"), "override", 2,
+         ("int", "A::SharedPtr"), (None, "override")),
+        (("virtual void stop(int a, A b);", "virtual void stop(int a, C b);"), "override", 2, ("int", "A"),
+         (None, None)),
+    ],
+)  # fmt: skip
+def test_what_is_made_of_a_use(codes, how, arguments, given, kinds, store):
+    code = "namespace arm {{ class Arm {{ public: {} }}; }}"
+    surfaces = store(*(surface("arm", f"{n}.0.0", code.format(each)) for n, each in enumerate(codes, 1)))
+    found = (
+        judged(Offers(target(arm=version), surfaces), "arm", "arm::Arm::stop", how, arguments, given)
+        for version in ("1.0.0", "2.0.0")
+    )
+    assert tuple(one.kind if one is not None else None for one in found) == kinds

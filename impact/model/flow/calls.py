@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
+from ...facts.cpp.names import split_at_commas
 from ...facts.flow import Call, Expr
-from ..expressions_cpp import split_at_commas
 from .code import Code, Fn, Variable, around, parts_of, tail
 from .frameworks import Frameworks, Row, Spot
 from .types import Type, parsed

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from msgspec import structs
 
+from ...facts.cpp.names import split_at_commas
 from ...facts.flow import Expr
-from ..expressions_cpp import split_at_commas
 from .calls import Calls, Use
 from .code import Code, Fn, Variable, around, is_number, parameter_of, tail
 from .defined import Defined

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
-from ..expressions_cpp import split_at_commas
+from ...facts.cpp.names import split_at_commas
 from .code import Cls, Code, Fn, Source, made_in, tail
 from .types import parsed
 

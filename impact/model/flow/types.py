@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from ..expressions_cpp import split_at_commas
+from ...facts.cpp.names import split_at_commas
 
 _QUALIFIERS = re.compile(
     r"\b(?:const|constexpr|static|mutable|volatile|inline|extern|typename|struct|class|explicit|virtual|thread_local)\b"

@@ -4,9 +4,10 @@ What it does
     Reports calls with arguments, template arguments, or in a form that the known-changes table says the target's
     version of a package or library takes no longer, or not yet; calls of C++ functions with so many arguments as no
     overload of the target's stored version takes and another version's does, or with arguments that show themselves to
-    be of another type; methods that override none of their base's there and did, or do, in another version; what the
-    C++ standard that the package is compiled with refuses or lacks; and what libraries of the newest distro take no
-    longer.
+    be of another type; methods that override none of their base's there and did, or do, in another version; exported
+    classes that lack a method which their base made pure virtual; calls that leave out a template argument that nothing
+    else tells; what the C++ standard that the package is compiled with refuses or lacks; and what libraries of the
+    newest distro take no longer.
 
 Why it breaks
     The compiler finds no matching function, or Python raises a TypeError or an AttributeError: the name is there, but
@@ -48,6 +49,9 @@ from .cpp_api import line_of, severity_of, uses_judged, when
 _COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
 
 
+_KINDS = frozenset({"arguments", "types", "template", "override", "pure"})
+
+
 @rule(severity="error")
 def changed_signature(view: View):
     told = set()
@@ -56,7 +60,7 @@ def changed_signature(view: View):
         yield hit
     for package in view:
         for use, found in uses_judged(view, package):
-            if found.kind not in ("arguments", "types", "override") or (use.at.path, use.at.line) in told:
+            if found.kind not in _KINDS or (use.at.path, use.at.line) in told:
                 continue
             severity = severity_of(view, use, found)
             if found.kind == "override" and severity == "error" and "override" not in use.given:
@@ -77,6 +81,10 @@ def _what(use: CppApiUse, found: Judged) -> str:
     time = "no longer" if found.earlier else "not yet"
     if found.kind == "override":
         return f"this {time} overrides `{use.name}`" if found.earlier else f"this does not yet override `{use.name}`"
+    if found.kind == "pure":
+        return f"this class does not implement `{use.name}`, which is pure virtual"
+    if found.kind == "template":
+        return f"`{use.name}` cannot deduce its template argument from this call"
     if found.kind == "types":
         return f"`{use.name}` {'no longer takes' if found.earlier else 'does not yet take'} such arguments"
     many = "one argument" if use.arguments == 1 else f"{use.arguments or 'no'} arguments"

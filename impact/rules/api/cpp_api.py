@@ -26,7 +26,11 @@ def uses_judged(view: View, package: Package) -> list[tuple[CppApiUse, Judged]]:
 def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
     reviewed = {change.old for change in view.changes(*_REVIEWED)}
     reviewed.update(change.new for change in view.changes(*_REVIEWED) if change.state == "absent")
-    calls = {function_of(change.old) for change in view.changes("call-changed")}
+    calls = {
+        function_of(change.old)
+        for change in view.changes("call-changed")
+        if view.offers.package(change.package) is None  # else its surfaces know more
+    }
     near = view.closure(package)
     for use in package.digest.cpp_api:
         if use.package not in near or not view.active(use.conditions):
@@ -36,7 +40,7 @@ def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
             continue  # a name of that package, which this one took over for a while
         if use.name.rpartition("::")[2] in calls or not reviewed.isdisjoint(_tails(use.name)):
             continue
-        found = judged(view.offers, use.package, use.name, use.how, use.arguments, use.given)
+        found = judged(view.offers, use.package, use.name, use.how, use.arguments, use.given, use.templated)
         if found is not None:
             yield use, found
 

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from ...facts.surface import Entity
 from ...facts.usage import arguments_at
 from ..version import at_least
 from .changes import Form, Overload
@@ -16,9 +17,9 @@ from .offers import Offer, Offered, Offers, declarations
 class Judged(NamedTuple):
     """What is wrong with a use on a target.
 
-    kind: `removed`, `absent`, `arguments`, `types`, `override`, `deprecated` or `default`. earlier: a version before
-    the target's took it; else a later one does. version: the first that is so, or, of what is not yet there, the first
-    that takes it; gone_in: of what is deprecated, the first without it. sure: nothing about it is guessed."""
+    kind: `removed`, `absent`, `arguments`, `types`, `template` (nothing tells a template argument), `override`, `pure`,
+    `deprecated` or `default`. earlier: a version before the target's took it; else a later one does. sure: nothing
+    about it is guessed."""
 
     kind: str
     offered: Offered
@@ -26,7 +27,15 @@ class Judged(NamedTuple):
     sure: bool
 
 
-def judged(offers: Offers, package: str, name: str, how: str, arguments: int, given: tuple[str, ...]) -> Judged | None:
+def judged(
+    offers: Offers,
+    package: str,
+    name: str,
+    how: str,
+    arguments: int,
+    given: tuple[str, ...],
+    templated: bool = False,
+) -> Judged | None:
     """What is wrong with a use of a package's name; None for nothing, or where it cannot be told. The use is described
     as in model.package.CppApiUse."""
     offer = offers.package(package)
@@ -35,24 +44,28 @@ def judged(offers: Offers, package: str, name: str, how: str, arguments: int, gi
         return None
     if offered.here is None and offered.state in ("removed", "absent"):
         return _lacking(offers, offered, how)
-    found = _of_what_is_there(offers, offered, how, arguments, given)
+    found = _of_what_is_there(offers, offered, how, arguments, given, templated)
     if found is None or offers.there("c++", name, package):
         return found
     return _inherited(offers, offer, name, how, arguments, given)
 
 
 def _of_what_is_there(
-    offers: Offers, offered: Offered, how: str, arguments: int, given: tuple[str, ...]
+    offers: Offers, offered: Offered, how: str, arguments: int, given: tuple[str, ...], templated: bool
 ) -> Judged | None:
     """The same of a name that the target's version has."""
     package, name = offered.package, offered.name
-    if offered.here is None or (how != "override" and _is_alias(offers, package, name)):
+    if offered.here is None or (how not in ("override", "implement") and _is_alias(offers, package, name)):
         return None
     if how == "override":
         return _override(offered, given)
+    if how == "implement":
+        return _unmade(offered)
     if offered.state == "deprecated":
         return Judged("deprecated", offered, True, offered.sure)
-    return _call(offered, arguments, given) if how == "call" and arguments >= 0 else None
+    if how != "call" or arguments < 0:
+        return None
+    return _call(offered, arguments, given) or (None if templated else _untold(offers, offered, arguments))
 
 
 def _inherited(
@@ -86,6 +99,8 @@ def _lacking(offers: Offers, offered: Offered, how: str) -> Judged | None:
     if not offered.sure or _by_macro(offers, offered):
         return None  # headers that are made or brought while building may have it
     if any(other != offered.package and offers.there("c++", name, other) for other in offers.surfaces.elsewhere(name)):
+        return None
+    if how == "implement":
         return None
     if how == "override":
         form = offered.before if offered.state == "removed" else None
@@ -166,6 +181,10 @@ def _takes(overload: Overload, given: Iterable[str]) -> bool:
     return not any(_clash(shown, type_) for shown, type_ in zip(given, overload.types, strict=False))
 
 
+# What takes a raw pointer only where it is asked to.
+_OWNING = re.compile(r"(?:const )?(?:(?:std|boost)::(?:shared|unique)_ptr<|[\w:]+::(?:Const)?(?:Shared|Unique)Ptr\b)")
+
+
 def _clash(shown: str, type_: str) -> bool:
     if shown == "profile":
         return bool(re.search(r"\brclcpp::(?:\w*QoS)\b", type_))
@@ -173,6 +192,8 @@ def _clash(shown: str, type_: str) -> bool:
         return "rmw_qos_profile_t" in type_
     if shown == "this":
         return "NodeInterfaces<" in type_ or type_.removesuffix("&").endswith("RequiredInterfaces")
+    if shown == "new":
+        return bool(_OWNING.match(type_))
     if shown == "text":
         return type_ in ("rmw_qos_profile_t", "const rmw_qos_profile_t&")
     return False
@@ -212,6 +233,49 @@ def _meaning(default: str) -> str:
     return {"NULL": "nullptr", "0": "nullptr", "string()": '""', "{}": "", '""': '""'}.get(text, text.rstrip("."))
 
 
+def _untold(offers: Offers, offered: Offered, arguments: int) -> Judged | None:
+    """Whether every overload that takes so many arguments has a template parameter that none of them tells, where an
+    earlier version had one without."""
+    if not offered.first or offered.before is None or offered.here is None:
+        return None
+    lost = set(_callable(offered.before)) - set(_callable(offered.here))
+    if not any(one.accepts(arguments) for one in lost):
+        return None
+    here = _accepting(offers, offered.package, offered.name, offered.version, arguments)
+    before = _accepting(offers, offered.package, offered.name, offered.last, arguments)
+    if not here or any(_is_told(one, arguments) for one in here):
+        return None
+    if not any(_is_told(one, arguments) for one in before):
+        return None
+    return Judged("template", offered, True, offered.sure)
+
+
+def _accepting(offers: Offers, package: str, name: str, version: str, arguments: int) -> list[Entity]:
+    """The overloads of a function in a version that take so many arguments."""
+    history = offers.surfaces.history(package)
+    offer = offers.package(package)
+    place = offer.line.place(version) if offer is not None else None
+    if history is None or offer is None or place is None:
+        return []
+    found = []
+    for one in history.entities(name, offer.line.versions[place]):
+        parameters = one.parameters or ()
+        most = len(parameters) if "variadic" not in one.traits and not any(p.pack for p in parameters) else arguments
+        if sum(p.default is None and not p.pack for p in parameters) <= arguments <= most and one.access != "private":
+            found.append(one)
+    return found
+
+
+def _is_told(one: Entity, arguments: int) -> bool:
+    """Whether the arguments of a call tell all parameters of a function's template."""
+    given = " ".join(parameter.type for parameter in (one.parameters or ())[:arguments])
+    return all(
+        parameter.default is not None or parameter.pack or not parameter.name
+        or re.search(rf"\b{re.escape(parameter.name)}\b", given)
+        for parameter in one.template or ()
+    )  # fmt: skip
+
+
 # -- overrides ---------------------------------------------------------------------------------------------------------
 
 
@@ -220,12 +284,45 @@ def _override(offered: Offered, given: tuple[str, ...]) -> Judged | None:
     const = "const" in given
     types = tuple(one for one in given if one not in ("const", "override"))
     here = _virtual(offered.here)
-    if any(_same(one, types, const) is not False for one in here):
+    if not all(_surely_differs(one, types, const) for one in here):
         return None
     for form, earlier in ((offered.before, True), (offered.after, False)):
         # A method that is not to override anything need not do so yet.
         if any(_same(one, types, const) for one in _virtual(form)) and (earlier or "override" in given):
             return Judged("override", offered, earlier, offered.sure)
+    return None
+
+
+def _surely_differs(overload: Overload, types: tuple[str, ...], const: bool) -> bool:
+    """Whether a method with these parameters surely does not override another, however the types are spelt."""
+    if _same(overload, types, const) is False:
+        return True
+    return any(_unlike(one, other) for one, other in zip(types, overload.types, strict=True))
+
+
+_SHAPE = re.compile(r"(?:\b|::)(Const)?(Shared|Weak|Unique)Ptr\b|\b(shared|weak|unique)_ptr<")
+
+
+def _unlike(one: str, other: str) -> bool:
+    """Whether two types differ in more than what an alias can stand for: a reference against a value, or one sort of
+    smart pointer against another."""
+    if one.endswith("&") != other.endswith("&"):
+        return True
+    sorts = [
+        [(match.group(2) or match.group(3)).lower() for match in _SHAPE.finditer(text)] for text in (one, other)
+    ]
+    return bool(sorts[0]) and bool(sorts[1]) and sorts[0] != sorts[1]
+
+
+def _unmade(offered: Offered) -> Judged | None:
+    """Whether a method that a class does not implement is pure in its base, and was not or will not be."""
+    here = _virtual(offered.here)
+    if not here or not all("pure" in one.traits for one in here):
+        return None
+    for form, earlier in ((offered.before, True), (offered.after, False)):
+        place = offered.first if earlier else offered.coming
+        if place and (form is None or not any("pure" in one.traits for one in form.overloads)):
+            return Judged("pure", offered, earlier, offered.sure)
     return None
 
 

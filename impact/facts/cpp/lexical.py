@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import msgspec
 
-from .condition import Condition
-from .place import Problem, Reference
+from ..condition import Condition
+from ..place import Problem, Reference
 
 
 class Include(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -1,0 +1,33 @@
+"""C++: the first look at a file (lexical.py), and a closer one at its syntax where somebody asks (code.py)."""
+
+from .lexical import (
+    KEYWORDS,
+    CppFile,
+    Include,
+    Name,
+    Scan,
+    Use,
+    exports_of,
+    extract,
+    includes_of,
+    places_of,
+    scan,
+    standing,
+    text_of,
+)
+
+__all__ = [
+    "KEYWORDS",
+    "CppFile",
+    "Include",
+    "Name",
+    "Scan",
+    "Use",
+    "exports_of",
+    "extract",
+    "includes_of",
+    "places_of",
+    "scan",
+    "standing",
+    "text_of",
+]

@@ -1,0 +1,1023 @@
+"""A closer look at one C++ file, by its syntax: what it declares, and what stands where certain words are used.
+
+The file is parsed when the first question comes, and only as much of it is walked as the question needs. What a name
+means inside a function is found here; all that crosses files is the resolver's.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from functools import cached_property, lru_cache
+
+from tree_sitter import Node, Parser
+
+from ..condition import Condition
+from ..flow_cpp_clean import cleaned, cleaned_further
+from ..flow_cpp_grammar import (
+    ARGUMENTS,
+    BRACES,
+    CALL,
+    CAST,
+    COMPOUND,
+    CONDITION,
+    DECLARATION,
+    DEPENDENT,
+    ERROR,
+    FIELD,
+    FIELD_IDENTIFIER,
+    FUNCTION_DECLARATOR,
+    IDENTIFIER,
+    INIT_DECLARATOR,
+    LAMBDA,
+    LANGUAGE,
+    LISTS,
+    OPTIONAL_PARAMETER,
+    PARAMETER,
+    PARENTHESIZED,
+    POINTER,
+    POINTER_DECLARATOR,
+    QUALIFIED,
+    RAW_STRING,
+    REFERENCE,
+    STRING,
+    SUBSCRIPT,
+    TEMPLATE_FUNCTION,
+    TEMPLATE_METHOD,
+    TEMPLATE_TYPE,
+    THIS,
+    VARIADIC_PARAMETER,
+    kind,
+    listed_in,
+)
+from .lexical import Scan, scan, standing, text_of
+from .names import without_templates
+from .schema import Class, Declared, Expr, File, Local, Parameter, Place, Use
+
+_PARSER = Parser(LANGUAGE)
+_TYPE_IDENTIFIER = kind("type_identifier")
+_NAMESPACE_IDENTIFIER = kind("namespace_identifier")
+_LEAVES = frozenset((IDENTIFIER, FIELD_IDENTIFIER, _TYPE_IDENTIFIER, _NAMESPACE_IDENTIFIER))
+_TEMPLATES = frozenset((TEMPLATE_FUNCTION, TEMPLATE_METHOD, TEMPLATE_TYPE))
+_CLASSES = frozenset((kind("class_specifier"), kind("struct_specifier"), kind("union_specifier")))
+_ENUM = kind("enum_specifier")
+_NAMESPACE = kind("namespace_definition")
+_FUNCTION = kind("function_definition")
+_FIELD_DECLARATION = kind("field_declaration")
+_TEMPLATE = kind("template_declaration")
+_ALIAS = kind("alias_declaration")
+_TYPEDEF = kind("type_definition")
+_USING = kind("using_declaration")
+_SPACE_ALIAS = kind("namespace_alias_definition")
+_LINKAGE = kind("linkage_specification")
+_DECLARATIONS = kind("declaration_list")
+_FIELDS = kind("field_declaration_list")
+_UNIT = kind("translation_unit")
+_PREPROCESSOR = frozenset(
+    kind(name) for name in ("preproc_if", "preproc_ifdef", "preproc_else", "preproc_elif", "preproc_elifdef")
+)
+_DEFINES = frozenset((kind("preproc_def"), kind("preproc_function_def")))
+_BASES = kind("base_class_clause")
+_ACCESS = kind("access_specifier")
+_FRIEND = kind("friend_declaration")
+_STORAGE = kind("storage_class_specifier")
+_TRAIT_NODES = frozenset((kind("virtual_specifier"), kind("type_qualifier"), kind("virtual", False), _STORAGE))
+_TRAILING = kind("trailing_return_type")
+_INITIALIZER = kind("field_initializer")
+_INITIALIZERS = kind("field_initializer_list")
+_NEW = kind("new_expression")
+_LITERAL = kind("compound_literal_expression")
+_EACH = kind("for_range_loop")
+_CATCH = kind("catch_clause")
+_CASE = kind("case_statement")
+_BINDING = kind("structured_binding_declarator")
+_ASSIGNMENT = kind("assignment_expression")
+_DESCRIPTOR = kind("type_descriptor")
+_TEMPLATE_ARGUMENTS = kind("template_argument_list")
+_COMMENT = kind("comment")
+_NUMBER = kind("number_literal")
+_BOOLEANS = frozenset((kind("true"), kind("false")))
+_NULL = kind("null")
+_STRINGS = frozenset((STRING, RAW_STRING, kind("concatenated_string")))
+_BINARY = kind("binary_expression")
+_UNARY = kind("unary_expression")
+_CONDITIONAL = kind("conditional_expression")
+_PACK = kind("parameter_pack_expansion")
+_PARAMETERS = frozenset((PARAMETER, OPTIONAL_PARAMETER, VARIADIC_PARAMETER))
+_TYPE_PARAMETERS = frozenset(
+    kind(name)
+    for name in (
+        "type_parameter_declaration", "variadic_type_parameter_declaration", "optional_type_parameter_declaration",
+        "template_template_parameter_declaration",
+    )
+)  # fmt: skip
+_BLOCKS = frozenset((COMPOUND, _CASE, _UNIT, _DECLARATIONS))
+_STATEMENTS_WITH_HEAD = frozenset(kind(name) for name in ("if_statement", "while_statement", "switch_statement"))
+_FOR = kind("for_statement")
+_NAMES = frozenset((IDENTIFIER, FIELD_IDENTIFIER, _TYPE_IDENTIFIER, QUALIFIED, kind("destructor_name"),
+                    kind("operator_name"), kind("operator_cast"), TEMPLATE_FUNCTION))  # fmt: skip
+_WRAPPED = frozenset(
+    kind(name) for name in ("parenthesized_declarator", "array_declarator", "attributed_declarator",
+                            "variadic_declarator")
+)  # fmt: skip
+_MARKS = {POINTER_DECLARATOR: "*", REFERENCE: "&"}
+_TYPES = frozenset(
+    kind(name)
+    for name in ("type_identifier", "primitive_type", "sized_type_specifier", "qualified_identifier", "template_type",
+                 "placeholder_type_specifier", "decltype", "dependent_type")
+)  # fmt: skip
+_TRAITS = frozenset(("virtual", "override", "final", "const", "static", "friend"))
+# What these find in comments too does no harm: it is one more name that nobody asks for.
+_LIKE_USING = re.compile(r"^[ \t]*using\s+(?:typename\s+)?(?:::\s*)?([A-Za-z_]\w*(?:\s*::\s*\w+)+)\s*;", re.MULTILINE)
+_LIKE_OPENED = re.compile(r"^[ \t]*using\s+namespace\s+(?:::\s*)?([A-Za-z_][\w:]*)\s*;", re.MULTILINE)
+_LIKE_ALIAS = re.compile(r"\busing\s+(\w+)[^=;]{0,200}=|\btypedef\b[^;]{0,1000}?(\w+)\s*;")
+_LIKE_CLASS = re.compile(r"\b(?:class|struct|union)\b((?:[^;{}<>=:]|::)*)")
+_IDENTIFIERS = re.compile(r"[A-Za-z_]\w*")
+_LIKE_DERIVED = re.compile(rb"\b(?:class|struct)\s[^;{}()]{0,400}[^:]:(?!:)[^;{}()]")
+_LIKE_SPACE = re.compile(r"^[ \t]*namespace\s+(\w+)\s*=\s*(?:::\s*)?([\w:]+)\s*;", re.MULTILINE)
+_DEEPEST = 60
+
+
+class Code:
+    """One file. data: its bytes."""
+
+    def __init__(self, data: bytes):
+        self._data = data
+        self._mentioned: dict[str, bool] = {}
+        self._blocks: dict[int, list[tuple[int, str, Node, str]]] = {}
+
+    # -- syntax --------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _parsed(self) -> tuple[str, str, Node]:
+        """The text, what was parsed, and its tree."""
+        source = cleaned(self._data)
+        root = _PARSER.parse(source.source).root_node
+        if root.has_error:
+            further = cleaned_further(self._data, source)
+            if further.source != source.source:
+                again = _PARSER.parse(further.source).root_node
+                if _errors(again) < _errors(root):
+                    source, root = further, again
+        return source.text, source.source.decode(), root
+
+    @property
+    def _text(self) -> str:
+        return self._parsed[1]
+
+    def _of(self, node: Node) -> str:
+        """The text of a node."""
+        return " ".join(self._text[node.start_byte : node.end_byte].split())
+
+    def _path(self, offset: int) -> list[Node]:
+        """The nodes around an offset, the outermost first; the last is a leaf."""
+        cursor = self._parsed[2].walk()
+        path: list[Node] = []
+        node = cursor.node
+        while node is not None and node.start_byte <= offset:
+            path.append(node)
+            node = cursor.node if cursor.goto_first_child_for_byte(offset) is not None else None
+        return path
+
+    @cached_property
+    def _scanned(self) -> Scan:
+        return scan(self._data)
+
+    def place(self, offset: int) -> tuple[int, int]:
+        """Line and column of an offset, from 1."""
+        return self._scanned.place(offset)
+
+    def conditions(self, offset: int) -> tuple[Condition, ...] | None:
+        """The preprocessor conditions around an offset; None in a directive."""
+        return self._scanned.under(offset)
+
+    # -- declarations --------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def file(self) -> File:
+        """What the file declares outside of functions."""
+        return _Declarations(self).read(self._parsed[2])
+
+    # -- uses ----------------------------------------------------------------------------------------------------------
+
+    def mentions(self, word: str) -> bool:
+        """Whether a word may stand in the file, in comments too."""
+        known = self._mentioned.get(word)
+        if known is None:
+            known = self._mentioned[word] = word.encode() in self._data
+        return known
+
+    @cached_property
+    def text(self) -> str:
+        """The text of the file, comments and literals included."""
+        return text_of(self._data)
+
+    @cached_property
+    def using(self) -> dict[str, str]:
+        """Names that `using a::b;` makes known outside of functions or in them, in full, without parsing the file."""
+        found = {}
+        for match in _LIKE_USING.finditer(self.text):
+            full = "".join(match.group(1).split())
+            outer, _, last = full.rpartition("::")
+            if outer and outer.rpartition("::")[2] != last:  # not the constructors of a base class
+                found[last] = full
+        return found
+
+    @cached_property
+    def opened(self) -> tuple[str, ...]:
+        """Namespaces that `using namespace` opens, without parsing the file."""
+        return tuple(dict.fromkeys("".join(match.group(1).split()) for match in _LIKE_OPENED.finditer(self.text)))
+
+    @cached_property
+    def spaces(self) -> dict[str, str]:
+        """Other names of namespaces, without parsing the file."""
+        return {m.group(1): "".join(m.group(2).split()) for m in _LIKE_SPACE.finditer(self.text)}
+
+    @cached_property
+    def like_aliases(self) -> frozenset[str]:
+        """Names that may be given to types."""
+        return frozenset(m.group(1) or m.group(2) for m in _LIKE_ALIAS.finditer(self.text))
+
+    @cached_property
+    def like_classes(self) -> frozenset[str]:
+        """Names that may be those of classes which are defined."""
+        found: set[str] = set()
+        for match in _LIKE_CLASS.finditer(self.text):
+            found.update(_IDENTIFIERS.findall(match.group(1)))
+        return frozenset(found)
+
+    @cached_property
+    def may_derive(self) -> bool:
+        """Whether something like `class A : public B` may stand in the file."""
+        return _LIKE_DERIVED.search(self._data) is not None
+
+    def may_declare(self, word: str) -> bool:
+        """Whether a word may stand behind a type and before a parenthesis."""
+        return self.mentions(word) and _called_pattern(word).search(self._data) is not None
+
+    def may_have_member(self, word: str) -> bool:
+        """Whether a word may stand behind `.`, `->` or `::` and not be called; comments count too."""
+        return self.mentions(word) and _member_pattern(word).search(self._data) is not None
+
+    def uses(self, words: Iterable[str], wanted: Callable[[str, int], bool] | None = None) -> Iterator[Use]:
+        """The places where these words are used; of `operator+=` and its like, where the operator is. wanted: whether a
+        word may be of interest at an offset of the text, asked before the file is parsed."""
+        for word in words:
+            if word.startswith("operator"):
+                yield from self._assignments(word, wanted)
+                continue
+            if not self.mentions(word):
+                continue
+            for at in standing(word, self.text):
+                if wanted is not None and not wanted(word, at):
+                    continue
+                path = self._path(at)
+                leaf = path[-1]
+                if leaf.kind_id in _LEAVES and leaf.start_byte == at and leaf.end_byte == at + len(word):
+                    use = self._use(word, at, path)
+                    if use is not None:
+                        yield use
+
+    def _assignments(self, word: str, wanted: Callable[[str, int], bool] | None) -> Iterator[Use]:
+        sign = word.removeprefix("operator")
+        at = self.text.find(sign)
+        while at >= 0:
+            if wanted is None or wanted(word, at):
+                path = self._path(at)
+                node = path[-2] if len(path) > 1 else path[-1]
+                if path[-1].start_byte == at and node.kind_id == _ASSIGNMENT:
+                    left = node.child_by_field_name("left")
+                    if left is not None:
+                        yield Use(word, at, "assigned", word, self._place(path), self._expression(left, path[:-1]))
+            at = self.text.find(sign, at + len(sign))
+
+    def _use(self, word: str, at: int, path: list[Node]) -> Use | None:
+        level = len(path) - 1
+        node = path[level]
+        template = None
+        last = True
+        first = node
+        while level:
+            parent = path[level - 1]
+            number = parent.kind_id
+            if number in _TEMPLATES:
+                if parent.child_by_field_name("name") != node:
+                    break
+                if node.end_byte == at + len(word):
+                    template = self._template(parent)
+            elif number == QUALIFIED:
+                scope = parent.child_by_field_name("scope")
+                if scope is not None and scope.start_byte <= at < scope.end_byte:
+                    last = False
+            elif number != DEPENDENT:
+                break
+            level -= 1
+            node = path[level]
+            first = node
+        if path[-1].kind_id == _NAMESPACE_IDENTIFIER and last:
+            return None
+        written = without_templates(self._text[first.start_byte : at + len(word)]).removeprefix("::")
+        parent = path[level - 1] if level else node
+        number = parent.kind_id
+        outer = path[:level]
+        form = "scoped" if "::" in written else "bare"
+        if not last:
+            return Use(word, at, form, written, self._place(path), template=template, last=False)
+        if number == FIELD:
+            object_ = parent.child_by_field_name("argument")
+            if object_ is None or object_ == node:
+                return self._named(word, at, form, written, template, None, False, path, outer)
+            call = self._called(path, level - 1)
+            operator = parent.child_by_field_name("operator")
+            arrow = operator is not None and operator.end_byte - operator.start_byte == 2
+            if "::" in written:
+                return None
+            return Use(word, at, "member", written, self._place(path), self._expression(object_, outer), arrow,
+                       call, template=template)  # fmt: skip
+        if number == _INITIALIZER:
+            call = self._arguments(parent.named_children[-1], outer)
+            return Use(word, at, "initializer", written, self._place(path), call=call, template=template)
+        if number == CALL:
+            return self._named(word, at, form, written, template, self._called(path, level), False, path, outer)
+        if self._is_declared(node, parent, path, level):
+            return None
+        made, call = self._made(node, parent, path, level)
+        return self._named(word, at, form, written, template, call, made, path, outer)
+
+    def _named(self, word, at, form, written, template, call, made, path, outer) -> Use:
+        local = self._local(word, at, outer) if form == "bare" else None
+        return Use(word, at, form, written, self._place(path), None, False, call, made, template, local)
+
+    def _called(self, path: Sequence[Node], level: int) -> tuple[Expr, ...] | None:
+        """The arguments where the node at a level is what a call calls."""
+        call = path[level - 1] if level else None
+        if call is None or call.kind_id != CALL or call.child_by_field_name("function") != path[level]:
+            return None
+        return self._arguments(call.child_by_field_name("arguments"), path[:level])
+
+    def _arguments(self, node: Node | None, path: Sequence[Node]) -> tuple[Expr, ...] | None:
+        if node is None or node.kind_id not in LISTS or node.has_error:
+            return None
+        return tuple(self._expression(each, path) for each in listed_in(node))
+
+    def _is_declared(self, node: Node, parent: Node, path: Sequence[Node], level: int) -> bool:
+        """Whether a name stands where it is declared."""
+        number = parent.kind_id
+        if number in _CLASSES or number == _ENUM or number in (_ALIAS, _NAMESPACE, _SPACE_ALIAS):
+            return parent.child_by_field_name("name") == node
+        if number in _DEFINES or parent.type == "enumerator" or number in _TYPE_PARAMETERS:
+            return parent.child_by_field_name("name") == node or number in _TYPE_PARAMETERS
+        if number == _TYPEDEF or number in _PARAMETERS or number in (DECLARATION, _FIELD_DECLARATION, _EACH):
+            return parent.child_by_field_name("type") != node and node in parent.children_by_field_name("declarator")
+        if number == INIT_DECLARATOR:
+            return parent.child_by_field_name("declarator") == node
+        return (
+            number in (FUNCTION_DECLARATOR, _FRIEND)
+            or number in _MARKS
+            or (number in _WRAPPED and parent.type != "parenthesized_declarator")
+            or parent.type in ("destructor_name", "structured_binding_declarator", "labeled_statement",
+                               "goto_statement", "lambda_capture_specifier", "preproc_defined", "attribute")
+        )  # fmt: skip
+
+    def _made(self, node: Node, parent: Node, path: Sequence[Node], level: int):
+        """Whether a name is the type of what is made, and with which arguments."""
+        number = parent.kind_id
+        if number == _NEW and parent.child_by_field_name("type") == node:
+            arguments = parent.child_by_field_name("arguments")
+            return True, self._arguments(arguments, path[:level]) if arguments is not None else ()
+        if number == _LITERAL and parent.child_by_field_name("type") == node:
+            return True, None  # braces may be an aggregate's
+        if number == _DESCRIPTOR and level > 3 and path[level - 2].kind_id == _TEMPLATE_ARGUMENTS:
+            function = path[level - 3]
+            name = function.child_by_field_name("name")
+            if name is not None and self._of(name) in _MAKERS and path[level - 2].named_children[0] == parent:
+                up = level - 3
+                while up and path[up - 1].kind_id == QUALIFIED:
+                    up -= 1
+                if up and path[up - 1].kind_id == CALL:
+                    return True, self._called(path, up)
+        if number in (DECLARATION, _FIELD_DECLARATION) and parent.child_by_field_name("type") == node:
+            for declarator in parent.children_by_field_name("declarator"):
+                if declarator.kind_id == INIT_DECLARATOR:
+                    value = declarator.child_by_field_name("value")
+                    inner = declarator.child_by_field_name("declarator")
+                    if value is None or inner is None:
+                        continue
+                    if value.kind_id == ARGUMENTS and inner.kind_id == IDENTIFIER:
+                        return True, self._arguments(value, path[:level])
+                elif declarator.kind_id == FUNCTION_DECLARATOR and self._in_function(path):
+                    return True, self._as_arguments(declarator, path[:level])
+        return False, None
+
+    def _as_arguments(self, declarator: Node, path: Sequence[Node]) -> tuple[Expr, ...] | None:
+        """The arguments of `A a(b, c)`, which look like the parameters of a function."""
+        listed = declarator.child_by_field_name("parameters")
+        inner = declarator.child_by_field_name("declarator")
+        if listed is None or inner is None or inner.kind_id != IDENTIFIER:
+            return None
+        found = []
+        for each in listed_in(listed):
+            type_ = each.child_by_field_name("type") if each.kind_id == PARAMETER else None
+            if type_ is None or each.child_by_field_name("declarator") is not None or each.named_child_count != 1:
+                return None
+            found.append(self._expression(type_, path))
+        return tuple(found) or None  # `A a();` declares a function
+
+    # -- places --------------------------------------------------------------------------------------------------------
+
+    def _in_function(self, path: Sequence[Node]) -> bool:
+        return any(node.kind_id in (COMPOUND, LAMBDA, _INITIALIZERS) for node in path)
+
+    def _place(self, path: Sequence[Node]) -> Place:
+        scope: list[str] = []
+        owner, function = "", False
+        opened: list[str] = []
+        used: list[str] = []
+        for node in path:
+            number = node.kind_id
+            if number == _NAMESPACE or number in _CLASSES:
+                name = node.child_by_field_name("name")
+                if name is not None:
+                    scope.append(without_templates(self._of(name)))
+                if number in _CLASSES:
+                    owner = "::".join(scope)
+            elif number == _FUNCTION:
+                name, _, declarator, _ = self._declarator(node.child_by_field_name("declarator"))
+                if name is not None and declarator is not None and self._of(name) in _FIXTURES:
+                    listed = declarator.child_by_field_name("parameters")
+                    owner = self._of(listed.named_children[0]) if listed is not None and listed.named_children else ""
+                elif name is not None and name.kind_id == QUALIFIED:
+                    written = without_templates(self._of(name)).rpartition("::")[0]
+                    owner = written.removeprefix("::")
+            elif number in (COMPOUND, LAMBDA, _INITIALIZERS):
+                function = True
+            if number == COMPOUND:
+                for at, name, _, how in self._block(node):
+                    if how == "opened":
+                        opened.append(name)
+                    elif how == "used" and at < path[-1].start_byte:
+                        used.append(name)
+        return Place("::".join(scope), owner, function, tuple(opened), tuple(used))
+
+    # -- what names mean inside functions ------------------------------------------------------------------------------
+
+    def _local(self, name: str, at: int, path: Sequence[Node], depth: int = 0) -> Local | None:
+        """What a name means at an offset, as declared in the blocks around it."""
+        if depth > 8:
+            return None
+        for level in range(len(path) - 1, -1, -1):
+            number = path[level].kind_id
+            if number in _BLOCKS or number in _SCOPED:
+                found = None
+                for offset, other, node, how in self._block(path[level]):
+                    if offset >= at:
+                        break
+                    if other == name and how not in ("opened", "used"):
+                        found = offset, node, how
+                if found is not None:
+                    return self._declared_locally(name, *found, path[: level + 1], depth)
+            elif number in _CLASSES and any(node.kind_id == _FUNCTION for node in path[level:]):
+                members = path[level].child_by_field_name("body")
+                if members is not None and self._is_member(members, name):
+                    return None  # a member hides what is outside of the class
+        return None
+
+    def _is_member(self, body: Node, name: str) -> bool:
+        text = self._text[body.start_byte : body.end_byte]
+        return re.search(rf"\b{re.escape(name)}\s*(?:[;={{,]|\[)", text) is not None
+
+    def _declared_locally(
+        self, name: str, offset: int, node: Node, how: str, path: Sequence[Node], depth: int
+    ) -> Local | None:
+        if how in ("template", "type"):
+            return Local(how, "", None, offset)
+        if how == "alias":
+            return Local(how, self._of(node.child_by_field_name("type") or node), None, offset)
+        if how == "captured":
+            value = node.child_by_field_name("right")
+            return Local("variable", "auto", self._value(value, path, depth), offset)
+        type_ = self._type(node)
+        if how == "each":
+            value = self._value(node.child_by_field_name("right"), path, depth)
+            declarator = node.child_by_field_name("declarator")
+            name_node, marks, *_ = self._declarator(declarator)
+            if name_node is not None and name_node.kind_id == _BINDING:
+                return Local("binding", "auto", value, offset)
+            return Local("each", type_ + marks, value, offset)
+        for declarator in node.children_by_field_name("declarator"):
+            name_node, marks, parameters, array = self._declarator(declarator)
+            if name_node is None:
+                continue
+            if name_node.kind_id == _BINDING:
+                return Local("binding", "auto", None, offset)
+            if name_node.start_byte != offset:
+                continue
+            value = None
+            if declarator.kind_id == INIT_DECLARATOR:
+                given = declarator.child_by_field_name("value")
+                if given is not None and "auto" in type_:
+                    value = self._value(given, path, depth)
+            elif parameters is not None and "auto" not in type_:
+                # `A a(b);` looks like a function, and is one only with parameters that have names or kinds.
+                if how == "variable" and self._as_arguments_likely(declarator):
+                    return Local("variable", type_ + marks, None, offset)
+                return Local("function", type_ + marks, None, offset)
+            return Local(how, type_ + marks + ("[]" if array else ""), value, offset)
+        return Local("variable", "", None, offset)
+
+    def _as_arguments_likely(self, declarator: Node) -> bool:
+        listed = declarator.child_by_field_name("parameters")
+        return listed is not None and all(
+            each.kind_id == PARAMETER and each.named_child_count == 1 for each in listed_in(listed)
+        ) and bool(listed_in(listed))
+
+    def _value(self, node: Node | None, path: Sequence[Node], depth: int) -> Expr | None:
+        if node is None:
+            return None
+        if node.kind_id in LISTS:
+            inner = listed_in(node)
+            return self._expression(inner[0], path, depth + 1) if len(inner) == 1 else None
+        return self._expression(node, path, depth + 1)
+
+    def _block(self, node: Node) -> list[tuple[int, str, Node, str]]:
+        """What a block, loop, lambda or function declares itself: offset, name, node and how."""
+        known = self._blocks.get(node.id)
+        if known is None:
+            known = self._blocks[node.id] = sorted(self._declares(node), key=lambda each: each[0])
+        return known
+
+    def _declares(self, node: Node) -> Iterator[tuple[int, str, Node, str]]:
+        number = node.kind_id
+        if number in _BLOCKS:
+            yield from self._declares_among(node.named_children)
+        elif number == LAMBDA:
+            declarator = node.child_by_field_name("declarator")
+            if declarator is not None:
+                yield from self._parameters_of(declarator)
+            captures = node.child_by_field_name("captures")
+            for each in captures.named_children if captures is not None else ():
+                left = each.child_by_field_name("left")
+                if left is not None:
+                    yield left.start_byte, self._of(left), each, "captured"
+        elif number == _FUNCTION:
+            declarator = node.child_by_field_name("declarator")
+            while declarator is not None and declarator.kind_id != FUNCTION_DECLARATOR:
+                declarator = declarator.child_by_field_name("declarator") or (
+                    declarator.named_children[-1] if declarator.kind_id in _MARKS else None
+                )
+            if declarator is not None:
+                yield from self._parameters_of(declarator)
+        elif number == _CATCH:
+            yield from self._parameters_of(node)
+        elif number == _EACH:
+            name, *_ = self._declarator(node.child_by_field_name("declarator"))
+            if name is not None and name.kind_id == _BINDING:
+                for each in name.named_children:
+                    yield each.start_byte, self._of(each), node, "each"
+            elif name is not None:
+                yield name.start_byte, self._of(name), node, "each"
+        elif number == _FOR:
+            first = node.child_by_field_name("initializer")
+            if first is not None:
+                yield from self._declares_among([first])
+        elif number in _STATEMENTS_WITH_HEAD:
+            condition = node.child_by_field_name("condition")
+            if condition is not None and condition.kind_id == CONDITION:
+                for each in condition.named_children:
+                    yield from self._declares_among(each.named_children if each.type == "init_statement" else [each])
+        elif number == _TEMPLATE:
+            for name, at in self._template_parameters(node):
+                yield at, name, node, "template"
+
+    def _declares_among(self, children: Sequence[Node]) -> Iterator[tuple[int, str, Node, str]]:
+        for child in children:
+            number = child.kind_id
+            if number == DECLARATION:
+                for declarator in child.children_by_field_name("declarator"):
+                    name, *_ = self._declarator(declarator)
+                    if name is None:
+                        continue
+                    if name.kind_id == _BINDING:
+                        for each in name.named_children:
+                            yield each.start_byte, self._of(each), child, "variable"
+                    else:
+                        yield name.start_byte, self._of(name), child, "variable"
+                type_ = child.child_by_field_name("type")
+                if type_ is not None and type_.kind_id in _CLASSES:
+                    yield from self._declares_among([type_])
+            elif number in _PREPROCESSOR:
+                yield from self._declares_among(child.named_children)
+            elif number in (_ALIAS, _TYPEDEF):
+                name = child.child_by_field_name("name") or child.child_by_field_name("declarator")
+                if name is not None:
+                    yield child.start_byte, self._of(name), child, "alias"
+            elif number in _CLASSES or number == _ENUM:
+                name = child.child_by_field_name("name")
+                if name is not None and child.parent is not None and child.parent.kind_id == COMPOUND:
+                    yield name.start_byte, self._of(name), child, "type"
+            elif number == _USING:
+                text = self._of(child)
+                full = text.removeprefix("using").strip(" ;")
+                if full.startswith("namespace "):
+                    space = "".join(full.removeprefix("namespace").split())
+                    yield child.start_byte, space.removeprefix("::"), child, "opened"
+                else:
+                    yield child.start_byte, without_templates(full).removeprefix("::"), child, "used"
+
+    def _parameters_of(self, node: Node) -> Iterator[tuple[int, str, Node, str]]:
+        listed = node.child_by_field_name("parameters")
+        for each in listed.named_children if listed is not None else ():
+            if each.kind_id in _PARAMETERS:
+                name, *_ = self._declarator(each.child_by_field_name("declarator"))
+                if name is not None:
+                    yield name.start_byte, self._of(name), each, "parameter"
+
+    def _template_parameters(self, node: Node) -> Iterator[tuple[str, int]]:
+        listed = node.child_by_field_name("parameters")
+        for each in listed.named_children if listed is not None else ():
+            if each.kind_id in _TYPE_PARAMETERS:
+                names = [inner for inner in each.named_children if inner.kind_id == _TYPE_IDENTIFIER]
+                if names:
+                    yield self._of(names[0]), names[0].start_byte
+            elif each.kind_id in _PARAMETERS:
+                name, *_ = self._declarator(each.child_by_field_name("declarator"))
+                if name is not None:
+                    yield self._of(name), name.start_byte
+
+    def _declarator(self, node: Node | None) -> tuple[Node | None, str, Node | None, bool]:
+        """Name, marks, parameters and whether it is an array, of a declarator."""
+        marks, parameters, array = "", None, False
+        while node is not None:
+            number = node.kind_id
+            if number in _NAMES or number == _BINDING:
+                return node, marks, parameters, array
+            if number in _MARKS:
+                marks += _MARKS[number]
+                inner = node.child_by_field_name("declarator")
+                node = inner if inner is not None else next(
+                    (c for c in reversed(node.named_children) if c.type != "type_qualifier"), None
+                )  # fmt: skip
+            elif number == FUNCTION_DECLARATOR:
+                parameters = node
+                node = node.child_by_field_name("declarator")
+            elif number == INIT_DECLARATOR:
+                node = node.child_by_field_name("declarator")
+            elif number in _WRAPPED:
+                array = array or node.type == "array_declarator"
+                inner = node.child_by_field_name("declarator")
+                node = inner if inner is not None else (node.named_children[0] if node.named_child_count else None)
+            else:
+                return None, marks, parameters, array
+        return None, marks, parameters, array
+
+    def _type(self, node: Node) -> str:
+        """The type that a declaration begins with, with its `const`."""
+        type_ = node.child_by_field_name("type")
+        if type_ is None:
+            return ""
+        if type_.kind_id in _CLASSES or type_.kind_id == _ENUM:
+            name = type_.child_by_field_name("name")
+            return self._of(name) if name is not None else ""
+        constant = any(
+            child.type == "type_qualifier" and self._of(child) == "const" for child in node.named_children[:3]
+        )
+        return ("const " if constant else "") + self._of(type_)
+
+    def _template(self, node: Node) -> tuple[str, ...]:
+        listed = node.child_by_field_name("arguments")
+        return tuple(self._of(each) for each in listed_in(listed)) if listed is not None else ()
+
+    # -- expressions ---------------------------------------------------------------------------------------------------
+
+    def _expression(self, node: Node, path: Sequence[Node], depth: int = 0) -> Expr:
+        number, at = node.kind_id, node.start_byte
+        if depth > _DEEPEST:
+            return Expr("other", "", at)
+        if number in (IDENTIFIER, _TYPE_IDENTIFIER):
+            name = self._of(node)
+            return Expr("name", name, at, local=self._local(name, at, path, depth))
+        if number in (QUALIFIED, TEMPLATE_FUNCTION, TEMPLATE_TYPE):
+            inner, template = node, None
+            while inner is not None and inner.kind_id == QUALIFIED:
+                inner = inner.child_by_field_name("name")
+            if inner is not None and inner.kind_id in _TEMPLATES:
+                template = self._template(inner)
+                written = self._text[at : (inner.child_by_field_name("name") or inner).end_byte]
+            else:
+                written = self._text[at : node.end_byte]
+            return Expr("name", without_templates(written).removeprefix("::"), at, template=template)
+        if number == FIELD:
+            object_, field = node.child_by_field_name("argument"), node.child_by_field_name("field")
+            if object_ is None or field is None:
+                return Expr("other", "", at)
+            if field.kind_id == DEPENDENT and field.named_child_count:
+                field = field.named_children[-1]
+            template = None
+            if field.kind_id in _TEMPLATES:
+                template = self._template(field)
+                field = field.child_by_field_name("name") or field
+            operator = node.child_by_field_name("operator")
+            arrow = operator is not None and operator.end_byte - operator.start_byte == 2
+            return Expr("member", self._of(field), field.start_byte, (self._expression(object_, path, depth + 1),),
+                        arrow, template)  # fmt: skip
+        if number == CALL:
+            function, arguments = node.child_by_field_name("function"), node.child_by_field_name("arguments")
+            if function is None:
+                return Expr("other", "", at)
+            given = listed_in(arguments) if arguments is not None else []
+            parts = (function, *given)
+            return Expr("call", "", at, tuple(self._expression(each, path, depth + 1) for each in parts))
+        if number == PARENTHESIZED and node.named_child_count:
+            return self._expression(listed_in(node)[0], path, depth + 1) if listed_in(node) else Expr("other", "", at)
+        if number == POINTER:
+            inner = node.child_by_field_name("argument")
+            sign = self._text[at]
+            if inner is not None:
+                return Expr("unary", sign, at, (self._expression(inner, path, depth + 1),))
+        if number == SUBSCRIPT:
+            inner = node.child_by_field_name("argument")
+            if inner is not None:
+                return Expr("index", "", at, (self._expression(inner, path, depth + 1),))
+        if number == THIS:
+            return Expr("this", "this", at)
+        if number in _STRINGS:
+            return Expr("literal", "text", at)
+        if number == _NUMBER:
+            text = self._of(node)
+            floating = text[:2] not in ("0x", "0X") and any(c in text for c in ".eE")
+            return Expr("literal", "float" if floating else "integer", at)
+        if number in _BOOLEANS:
+            return Expr("literal", "bool", at)
+        if number == _NULL:
+            return Expr("literal", "null", at)
+        if number == LAMBDA:
+            return Expr("lambda", "", at)
+        if number in (_NEW, _LITERAL, CAST):
+            type_ = node.child_by_field_name("type")
+            given = node.child_by_field_name("arguments") or node.child_by_field_name("value")
+            values = [] if given is None else listed_in(given) if given.kind_id in LISTS else [given]
+            how = "new" if number == _NEW else "cast" if number == CAST else "braces"
+            return Expr(how, self._of(type_) if type_ is not None else "", at,
+                        tuple(self._expression(each, path, depth + 1) for each in values))  # fmt: skip
+        if number == BRACES:
+            return Expr("braces", "", at, tuple(self._expression(each, path, depth + 1) for each in listed_in(node)))
+        if number in (_BINARY, _UNARY):
+            operator = node.child_by_field_name("operator")
+            operands = [
+                each
+                for name in ("left", "right", "argument")
+                if (each := node.child_by_field_name(name)) is not None
+            ]
+            return Expr("binary" if number == _BINARY else "unary", self._of(operator) if operator is not None else "",
+                        at, tuple(self._expression(each, path, depth + 1) for each in operands))  # fmt: skip
+        if number == _CONDITIONAL:
+            both = (node.child_by_field_name("consequence"), node.child_by_field_name("alternative"))
+            parts = tuple(self._expression(each, path, depth + 1) for each in both if each is not None)
+            return Expr("conditional", "", at, parts)
+        return Expr("pack" if number == _PACK else "other", "", at)
+
+
+# Macros of gtest that open the body of a method of a class that is derived from what they are given first.
+_FIXTURES = frozenset(("TEST_F", "TEST_P", "TYPED_TEST", "TYPED_TEST_P"))
+_MAKERS = frozenset(("make_shared", "make_unique"))
+_SCOPED = frozenset((LAMBDA, _FUNCTION, _CATCH, _EACH, _FOR, _TEMPLATE)) | _STATEMENTS_WITH_HEAD
+
+
+@lru_cache(maxsize=4096)
+def _called_pattern(word: str) -> re.Pattern[bytes]:
+    name = re.escape(word.encode())
+    return re.compile(rb"(?:[\w&*>\]]\s+|[*&])" + name + rb"\s*\(")
+
+
+@lru_cache(maxsize=4096)
+def _member_pattern(word: str) -> re.Pattern[bytes]:
+    return re.compile(rb"(?:\.|->|::)\s*" + re.escape(word.encode()) + rb"(?!\w|\s*\(|\s*::)")
+
+
+def _errors(root: Node) -> int:
+    """How many places of a tree were not understood."""
+    found, waiting = 0, [root] if root.has_error else []
+    while waiting:
+        node = waiting.pop()
+        if node.kind_id == ERROR:
+            found += 1
+        elif node.has_error:
+            waiting += node.children
+    return found
+
+
+class _Declarations:
+    """Reads what a file declares outside of functions."""
+
+    def __init__(self, code: Code):
+        self.code = code
+        self.classes: list[Class] = []
+        self.names: list[Declared] = []
+        self.using: list[tuple[str, str]] = []
+        self.opened: list[tuple[str, str]] = []
+        self.spaces: list[tuple[str, str, str]] = []
+        self.added: dict[str, None] = {}
+        self.announced: list[str] = []
+        self.macros: list[str] = []
+
+    def read(self, root: Node) -> File:
+        with suppress(RecursionError):  # what nobody writes by hand is read as far as it goes
+            self._among(root.named_children, "", None, ())
+        return File(
+            tuple(self.classes), tuple(self.names), tuple(self.using), tuple(self.opened), tuple(self.spaces),
+            tuple(self.added), tuple(self.announced), tuple(self.macros),
+        )  # fmt: skip
+
+    def _among(self, children: Sequence[Node], scope: str, members: dict | None, template: tuple[str, ...]) -> None:
+        for node in children:
+            number = node.kind_id
+            if number == _NAMESPACE:
+                name = node.child_by_field_name("name")
+                inner = _joined(scope, "".join(self.code._of(name).split())) if name is not None else scope
+                self.added[inner] = None
+                body = node.child_by_field_name("body")
+                if body is not None:
+                    self._among(body.named_children, inner, None, ())
+            elif number in (DECLARATION, _FIELD_DECLARATION, _FUNCTION):
+                self._declaration(node, scope, members, template)
+            elif number in _CLASSES:
+                self._class(node, scope, members, template)
+            elif number == _ENUM:
+                self._enum(node, scope, members)
+            elif number == _TEMPLATE:
+                inner = tuple(name for name, _ in self.code._template_parameters(node))
+                self._among(node.named_children[1:], scope, members, inner or ("",))
+            elif number in _PREPROCESSOR:
+                self._among(node.named_children, scope, members, template)
+            elif number == _LINKAGE:
+                body = node.child_by_field_name("body")
+                if body is not None:
+                    self._among(body.named_children if body.kind_id == _DECLARATIONS else [body], scope, members, ())
+            elif number in (_ALIAS, _TYPEDEF):
+                self._alias(node, scope, members, template)
+            elif number == _USING:
+                self._using(node, scope)
+            elif number == _SPACE_ALIAS:
+                name = node.child_by_field_name("name")
+                meant = self.code._of(node).partition("=")[2].strip(" ;")
+                if name is not None and meant:
+                    self.spaces.append((scope, self.code._of(name), "".join(meant.split()).removeprefix("::")))
+            elif number in _DEFINES:
+                name = node.child_by_field_name("name")
+                if name is not None:
+                    self.macros.append(self.code._of(name))
+            elif number in (ERROR, _DECLARATIONS):
+                self._among(node.named_children, scope, members, template)
+
+    def _add(self, members: dict[str, list[Declared]] | None, one: Declared) -> None:
+        if members is None:
+            self.names.append(one)
+        else:
+            members.setdefault(one.name, []).append(one)
+
+    def _declaration(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
+        code = self.code
+        type_node = node.child_by_field_name("type")
+        declarators = node.children_by_field_name("declarator")
+        if type_node is not None:
+            if type_node.kind_id in _CLASSES:
+                self._class(type_node, scope, members, template if not declarators else ())
+            elif type_node.kind_id == _ENUM:
+                self._enum(type_node, scope, members)
+        type_ = code._type(node)
+        traits = {
+            text for child in node.children if child.kind_id in _TRAIT_NODES and (text := code._of(child)) in _TRAITS
+        } - {"const"}
+        if template:
+            traits.add("template")
+        for declarator in declarators:
+            name, marks, function, array = code._declarator(declarator)
+            if name is None or name.kind_id == _BINDING:
+                continue
+            written = without_templates(code._of(name))
+            outer, _, last = written.removeprefix("::").rpartition("::")
+            around = _joined(scope, outer) if outer else scope
+            if function is not None:
+                inner = set(traits)
+                result = type_ + marks
+                for child in function.children:
+                    if child.kind_id in _TRAIT_NODES and code._of(child) in _TRAITS:
+                        inner.add(code._of(child))
+                    elif child.kind_id == _TRAILING and child.named_child_count:
+                        result = code._of(child.named_children[-1])
+                behind = code._text[function.end_byte : node.end_byte][:40]
+                if node.kind_id == _FIELD_DECLARATION and re.match(r"\s*=\s*0\s*;", behind):
+                    inner.add("pure")
+                if re.match(r"[^{;]*=\s*delete\b", behind):
+                    inner.add("deleted")
+                self._add(members if not outer else None,
+                          Declared("function", last, around, name.start_byte, result, self._parameters(function),
+                                   frozenset(inner), template))  # fmt: skip
+            else:
+                value = None
+                if "auto" in type_ and declarator.kind_id == INIT_DECLARATOR:
+                    given = declarator.child_by_field_name("value")
+                    value = code._value(given, (), 0)
+                self._add(members if not outer else None,
+                          Declared("variable", last, around, name.start_byte, type_ + marks + ("[]" if array else ""),
+                                   (), frozenset(traits), template, value))  # fmt: skip
+
+    def _parameters(self, function: Node) -> tuple[Parameter, ...]:
+        code = self.code
+        listed = function.child_by_field_name("parameters")
+        found = []
+        for each in listed_in(listed) if listed is not None else ():
+            if each.kind_id not in _PARAMETERS:
+                found.append(Parameter("..." if each.type == "variadic_parameter" else code._of(each)))
+                continue
+            declarator = each.child_by_field_name("declarator")
+            name, *_ = code._declarator(declarator)
+            default = each.child_by_field_name("default_value")
+            # The type is all but the name and the default.
+            end = default.start_byte if default is not None else each.end_byte
+            text = code._text[each.start_byte : end].rstrip(" \t\n=")
+            if name is not None and name.kind_id == IDENTIFIER:
+                start = name.start_byte - each.start_byte
+                text = text[:start] + text[start + name.end_byte - name.start_byte :]
+            found.append(Parameter(" ".join(text.split()), code._of(name) if name is not None else "",
+                                   code._of(default) if default is not None else None))  # fmt: skip
+        return tuple(found) if [p.type for p in found] != ["void"] else ()
+
+    def _class(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
+        code = self.code
+        name = node.child_by_field_name("name")
+        body = node.child_by_field_name("body")
+        if name is None:
+            if body is not None:  # members of what is around it
+                self._among(body.named_children, scope, members, ())
+            return
+        written = code._of(name)
+        full = _joined(scope, without_templates(written))
+        if body is None:
+            if node.parent is None or node.parent.kind_id not in (DECLARATION, _FIELD_DECLARATION) or not (
+                node.parent.children_by_field_name("declarator")
+            ):
+                self.announced.append(full)
+            return
+        bases = []
+        for child in node.named_children:
+            if child.kind_id == _BASES:
+                bases = [code._of(one) for one in child.named_children if one.kind_id in _TYPES]
+        inside: dict[str, list[Declared]] = {}
+        place = len(self.classes)
+        self._among(body.named_children, full, inside, ())
+        open_ = any(child.kind_id == ERROR or child.is_missing for child in body.children) or any(
+            each.type.isupper() for those in inside.values() for each in those
+        )
+        one = Class(full, name.start_byte, tuple(bases), inside, template, "<" in written, open_, node.end_byte)
+        self.classes.insert(place, one)
+        if members is not None:
+            self._add(members, Declared("type", without_templates(written), scope, name.start_byte))
+
+    def _enum(self, node: Node, scope: str, members) -> None:
+        code = self.code
+        name, body = node.child_by_field_name("name"), node.child_by_field_name("body")
+        text = code._text[node.start_byte : node.start_byte + 12]
+        scoped = re.match(r"enum\s+(?:class|struct)\b", text) is not None
+        full = scope
+        if name is not None:
+            last = without_templates(code._of(name))
+            full = _joined(scope, last)
+            self._add(members, Declared("type", last, scope, name.start_byte))
+        for each in body.named_children if body is not None else ():
+            inner = each.child_by_field_name("name")
+            if inner is not None:
+                one = Declared("enumerator", code._of(inner), full if scoped else scope, inner.start_byte, full)
+                if scoped:
+                    self.names.append(one)
+                else:
+                    self._add(members, one)
+
+    def _alias(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
+        code = self.code
+        if node.kind_id == _ALIAS:
+            name, type_ = node.child_by_field_name("name"), node.child_by_field_name("type")
+            if name is not None and type_ is not None:
+                self._add(members, Declared("alias", code._of(name), scope, name.start_byte, code._of(type_),
+                                            template=template))  # fmt: skip
+            return
+        type_ = node.child_by_field_name("type")
+        if type_ is not None and type_.kind_id in _CLASSES:
+            self._class(type_, scope, members, ())
+        for declarator in node.children_by_field_name("declarator"):
+            name, marks, function, array = code._declarator(declarator)
+            if name is not None and function is None:
+                self._add(members, Declared("alias", code._of(name), scope, name.start_byte,
+                                            code._type(node) + marks + ("[]" if array else "")))  # fmt: skip
+
+    def _using(self, node: Node, scope: str) -> None:
+        full = self.code._of(node).removeprefix("using").strip(" ;")
+        if full.startswith("namespace "):
+            self.opened.append((scope, "".join(full.removeprefix("namespace").split()).removeprefix("::")))
+        else:
+            self.using.append((scope, without_templates(full.removeprefix("typename")).removeprefix("::")))
+
+
+def _joined(scope: str, name: str) -> str:
+    return f"{scope}::{name}" if scope and name else scope or name

@@ -1,0 +1,32 @@
+"""Names and types of C++ as text: their parts."""
+
+from __future__ import annotations
+
+import re
+
+_ARGUMENTS = re.compile(r"<[^<>]*>")
+
+
+def without_templates(text: str) -> str:
+    """A name without its template arguments and white space."""
+    while "<" in text:
+        shorter = _ARGUMENTS.sub("", text)
+        if shorter == text:
+            break
+        text = shorter
+    return "".join(text.split())
+
+
+def split_at_commas(text: str) -> list[str]:
+    """The parts of a list, split at commas outside of brackets of every kind, `<>` among them."""
+    parts, depth, begins = [], 0, 0
+    for at, character in enumerate(text):
+        if character in "<({[":
+            depth += 1
+        elif character in ")}]" or (character == ">" and text[at - 1 : at] != "-"):
+            depth -= 1
+        elif character == "," and depth == 0:
+            parts.append(text[begins:at].strip())
+            begins = at + 1
+    final = text[begins:].strip()
+    return [*parts, final] if final or parts else []

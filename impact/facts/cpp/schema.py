@@ -1,0 +1,139 @@
+"""What one C++ file declares and uses, as plain data: nothing here is resolved across files.
+
+Types and names are text as written, with single blanks. Offsets count the characters of the file as `text_of` gives it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Parameter(NamedTuple):
+    """A parameter of a function. type: as written, with `&` and `*`. default: as written, None for none."""
+
+    type: str
+    name: str = ""
+    default: str | None = None
+
+
+class Declared(NamedTuple):
+    """A function, method, variable, field, alias, enumerator or nested type.
+
+    kind: `function`, `variable`, `alias`, `enumerator` or `type`. name: its last part. scope: the namespaces and
+    classes around it, with those that are written before a name that is defined outside of them. type: result, type,
+    or what an alias stands for. value: what a variable of type `auto` begins with. traits: those of virtual, pure,
+    override, final, const, static, deleted and template that hold. template: names of template parameters."""
+
+    kind: str
+    name: str
+    scope: str
+    offset: int
+    type: str = ""
+    parameters: tuple[Parameter, ...] = ()
+    traits: frozenset[str] = frozenset()
+    template: tuple[str, ...] = ()
+    value: Expr | None = None
+
+
+class Class(NamedTuple):
+    """A class that is defined. name: in full. bases: as written. members: by name. template: names of template
+    parameters. specialised: template arguments stand behind its name. open: something in it was not understood, so
+    that it may have other members. end: where it ends."""
+
+    name: str
+    offset: int
+    bases: tuple[str, ...]
+    members: dict[str, list[Declared]]
+    template: tuple[str, ...] = ()
+    specialised: bool = False
+    open: bool = False
+    end: int = 0
+
+
+class File(NamedTuple):
+    """What a file declares outside of functions. classes, names: in the order of the file; aliases are among the
+    names. using: (scope, full name) of each `using a::b`. opened: (scope, namespace) of each `using namespace`.
+    spaces: (scope, name, namespace) of each other name of a namespace. added: full names of the namespaces it adds to.
+    announced: names of types that are declared but not defined. macros: that it defines."""
+
+    classes: tuple[Class, ...] = ()
+    names: tuple[Declared, ...] = ()
+    using: tuple[tuple[str, str], ...] = ()
+    opened: tuple[tuple[str, str], ...] = ()
+    spaces: tuple[tuple[str, str, str], ...] = ()
+    added: tuple[str, ...] = ()
+    announced: tuple[str, ...] = ()
+    macros: tuple[str, ...] = ()
+
+
+class Local(NamedTuple):
+    """What a name means inside a function: a variable or parameter. how: `variable`, `parameter`, `each` (of a loop
+    over value), `binding`, `function`, `alias` or `template`. value: what it begins with, where that is written."""
+
+    how: str
+    type: str
+    value: Expr | None
+    offset: int
+
+
+class Expr(NamedTuple):
+    """An expression.
+
+    | kind | text | parts |
+    |---|---|---|
+    | name | qualified, without template arguments | |
+    | member | its name | the object |
+    | call | | what is called, then the arguments |
+    | braces | the type, empty where none is written | the values |
+    | new, cast | the type | the values |
+    | index | | the object, then the indices |
+    | unary, binary | the operator | the operands |
+    | conditional | | both values |
+    | literal | `text`, `float`, `integer`, `bool` or `null` | |
+    | this, lambda, pack, other | | |
+
+    arrow: the member is reached by `->`. template: template arguments that are written. local: of a name, what it
+    means inside the function; None for what is declared elsewhere."""
+
+    kind: str
+    text: str
+    offset: int
+    parts: tuple[Expr, ...] = ()
+    arrow: bool = False
+    template: tuple[str, ...] | None = None
+    local: Local | None = None
+
+
+class Place(NamedTuple):
+    """Where a piece of code stands. scope: namespaces and classes around it, in full. owner: the class in whose method
+    it is, as far as the file tells, else empty; it may be written without its namespaces. function: it is inside of
+    one. opened: namespaces that the blocks around it open. used: names that they make known, in full."""
+
+    scope: str
+    owner: str
+    function: bool
+    opened: tuple[str, ...] = ()
+    used: tuple[str, ...] = ()
+
+
+class Use(NamedTuple):
+    """A place where a word stands in code, and is not declared there.
+
+    form: `member` (object.word), `scoped` (a::word), `bare`, `initializer` (of a base class or member), or `assigned`
+    (object += ...). name: qualified, as written, without template arguments. object: of a member. call: the arguments
+    of the call or construction it begins, None where there is none. made: it is the type of what is constructed.
+    template: template arguments behind it. local: what a bare word means inside the function. last: it is not followed
+    by `::`."""
+
+    word: str
+    offset: int
+    form: str
+    name: str
+    place: Place
+    object: Expr | None = None
+    arrow: bool = False
+    call: tuple[Expr, ...] | None = None
+    made: bool = False
+    template: tuple[str, ...] | None = None
+    local: Local | None = None
+    last: bool = True

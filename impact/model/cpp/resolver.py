@@ -1,0 +1,682 @@
+"""What names and expressions of a C++ file stand for: classes of the package, of other packages, or interfaces.
+
+A file is seen with the headers of its package that it includes. What it says is facts.cpp.code's; what other packages
+offer is told by a vocabulary (model.api) and a scope of interfaces (model.members). None is an answer: not known.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+from ...facts.cpp.code import Code
+from ...facts.cpp.names import split_at_commas, without_templates
+from ...facts.cpp.schema import Class, Declared, Expr, Place
+from ..api import Vocabulary
+from ..members import Interface, Scope, section_of
+from ..members import Type as InterfaceType
+
+_POINTERS = frozenset(("shared_ptr", "unique_ptr", "weak_ptr", "intrusive_ptr", "optional", "unique_lock"))
+_MAKERS = frozenset(("make_shared", "make_unique", "allocate_shared"))
+_SEQUENCES = frozenset(("vector", "array", "deque", "list", "set", "initializer_list", "BoundedVector", "span"))
+_MAPS = frozenset(("map", "unordered_map", "multimap", "unordered_multimap"))
+_CASTS = frozenset(("static_cast", "dynamic_cast", "const_cast", "reinterpret_cast"))
+_POINTER_CASTS = frozenset(("static_pointer_cast", "dynamic_pointer_cast", "const_pointer_cast"))
+_THROUGH = frozenset(("move", "forward", "as_const", "ref", "cref"))
+_POINTED = re.compile(r"(?:Const|Shared|Unique|Weak)*(?:Ptr|_ptr)")
+_SUFFIX = re.compile(r"(?:Const|Shared|Unique|Weak)*Ptr\Z")
+_SAME = frozenset(("get", "lock", "value"))
+_ELEMENT = frozenset(("front", "back", "at"))
+_QUALIFIERS = re.compile(r"\b(?:const|volatile|typename|class|struct|mutable|static|constexpr|inline)\b")
+_DEEPEST = 8
+
+
+class Type(NamedTuple):
+    """What an expression is. name: the full name of a class, of the package itself (own) or another; empty for an
+    interface, which is then given with its section, or for a map (values). pointer: members are reached by `->`.
+    several: a sequence of them. arguments: template arguments as written."""
+
+    name: str
+    own: bool = False
+    pointer: bool = False
+    several: bool = False
+    interface: Interface | None = None
+    section: str = ""
+    arguments: tuple[str, ...] = ()
+    values: Type | None = None
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is one object, neither pointer nor several."""
+        return not self.pointer and not self.several and self.values is None
+
+    def of_interface(self) -> InterfaceType:
+        """The same as a scope of interfaces takes it."""
+        assert self.interface is not None
+        return InterfaceType(self.interface, self.section)
+
+
+class Written(NamedTuple):
+    """A type in its parts. outer: the name without template arguments; arguments: those of its template, None without;
+    tail: names behind the template; pointer: it ends with `*`."""
+
+    outer: str
+    arguments: tuple[str, ...] | None
+    tail: str
+    pointer: bool
+    array: bool
+
+
+@lru_cache(maxsize=16384)
+def parse_type(text: str) -> Written:
+    """A type as written, in its parts."""
+    array = text.endswith("[]")
+    text = _QUALIFIERS.sub(" ", text.removesuffix("[]")).strip()
+    pointer = text.rstrip("& ").endswith("*")
+    text = text.rstrip("*& \n\t").removeprefix("::")
+    opened = text.find("<")
+    if opened < 0:
+        return Written("".join(text.split()), None, "", pointer, array)
+    depth, closed = 0, -1
+    for at in range(opened, len(text)):
+        if text[at] == "<":
+            depth += 1
+        elif text[at] == ">" and text[at - 1] != "-":
+            depth -= 1
+            if depth == 0:
+                closed = at
+                break
+    if closed < 0:
+        return Written("", None, "", pointer, array)
+    inner = tuple(split_at_commas(text[opened + 1 : closed]))
+    tail = without_templates(text[closed + 1 :]).removeprefix("::")
+    return Written("".join(text[:opened].split()), inner, tail, pointer, array)
+
+
+class Known:
+    """What one file declares, by the last parts of the names. Kept with the file, for all that include it. words: all
+    of four letters or more that stand in it, where that is known."""
+
+    def __init__(self, code: Code, words: frozenset[str] = frozenset()):
+        self.code, self.words = code, words
+
+    def mentions(self, word: str) -> bool:
+        """Whether the word may stand in it."""
+        return word in self.words if self.words and len(word) > 3 else self.code.mentions(word)
+
+    @cached_property
+    def classes(self) -> dict[str, list[Class]]:
+        """Its classes."""
+        return _by_last(self.code.file.classes)
+
+    @cached_property
+    def names(self) -> dict[str, list[Declared]]:
+        """What it declares outside of classes and functions."""
+        found: dict[str, list[Declared]] = {}
+        for one in self.code.file.names:
+            found.setdefault(one.name, []).append(one)
+        return found
+
+    @cached_property
+    def members(self) -> frozenset[str]:
+        """Names of all members of its classes."""
+        return frozenset(name for one in self.code.file.classes for name in one.members)
+
+    @cached_property
+    def defines(self) -> frozenset[str]:
+        """Names that it declares in any way, outside of functions."""
+        return frozenset((*self.classes, *self.names, *self.members, *self.code.file.macros))
+
+    def aliases(self, name: str) -> Iterator[Declared]:
+        """What a name stands for, outside of classes."""
+        if self.mentions(name) and name in self.code.like_aliases:
+            yield from (one for one in self.names.get(name, ()) if one.kind == "alias")
+
+    def classes_named(self, last: str) -> list[Class]:
+        """Its classes of a name."""
+        if self.mentions(last) and last in self.code.like_classes:
+            return self.classes.get(last, [])
+        return []
+
+
+def _by_last(classes: Iterable[Class]) -> dict[str, list[Class]]:
+    found: dict[str, list[Class]] = {}
+    for one in classes:
+        if not one.specialised:
+            found.setdefault(one.name.rpartition("::")[2], []).append(one)
+    return found
+
+
+class Resolver:
+    """Resolves what one file writes. known: the file; headers: those of the package that it reaches."""
+
+    def __init__(self, known: Known, headers: Collection[Known], vocabulary: Vocabulary | None, scope: Scope | None):
+        self.known = known
+        self.files = (known, *headers)
+        self.vocabulary, self.scope = vocabulary, scope
+        self._types: dict[tuple[str, str, str], Type | None] = {}
+        self._named: dict[tuple[str, str, str], Type | None] = {}
+        self._homes: dict[str, list[Class]] = {}
+        self._lines: dict[str, tuple[Class, ...]] = {}
+        self._opened: tuple[str, ...] | None = None
+        self._renamed: dict[str, tuple[str, ...]] = {}
+
+    # -- names ---------------------------------------------------------------------------------------------------------
+
+    def meanings(self, name: str, place: Place) -> Iterator[str]:
+        """The full names that a name as written can stand for, nearest first."""
+        around = place.scope
+        while around:
+            yield f"{around}::{name}"
+            around = around.rpartition("::")[0]
+        yield name
+        head, colons, rest = name.partition("::")
+        rest = colons + rest
+        for full in place.used:
+            if full.rpartition("::")[2] == head:
+                yield full + rest
+        for meant in self._meant(head):
+            yield meant + rest
+        for space in self.opened(place):
+            yield f"{space}::{name}"
+
+    def _meant(self, head: str) -> tuple[str, ...]:
+        """What the head of a name stands for by `using a::head` or `namespace head = a`."""
+        known = self._renamed.get(head)
+        if known is None:
+            found: list[str] = []
+            for file in self.files:
+                meant = (file.code.spaces.get(head) or file.code.using.get(head)) if file.mentions(head) else None
+                if meant and meant != head:
+                    found.append(meant)
+                    deeper, more, tail = meant.partition("::")
+                    found += [
+                        other.code.spaces[deeper] + more + tail for other in self.files if deeper in other.code.spaces
+                    ]
+            known = self._renamed[head] = tuple(dict.fromkeys(found))
+        return known
+
+    def opened(self, place: Place) -> tuple[str, ...]:
+        """Namespaces whose names can be written without them."""
+        if self._opened is None:
+            self._opened = tuple(dict.fromkeys(space for file in self.files for space in file.code.opened))
+        return (*place.opened, *self._opened)
+
+    def declares(self, word: str) -> bool:
+        """Whether the file or a header of the package declares a name itself, outside of functions."""
+        return any(file.mentions(word) and word in file.defines for file in self.files)
+
+    def homes(self, class_: str) -> list[Class]:
+        """The classes of the package that a name can be: those of that full name, else those that end so."""
+        known = self._homes.get(class_)
+        if known is None:
+            last = class_.rpartition("::")[2]
+            found = [one for file in self.files for one in file.classes_named(last)]
+            exact = [one for one in found if one.name == class_]
+            ending = f"::{class_}"
+            known = exact or [one for one in found if f"::{one.name}".endswith(ending)]
+            if not known and "::" in class_:
+                # A namespace may be left out, or brought by a macro.
+                known = [one for one in found if "::" not in one.name]
+            self._homes[class_] = known
+        return known
+
+    # -- types ---------------------------------------------------------------------------------------------------------
+
+    def type_of(self, written: str, place: Place, depth: int = 0) -> Type | None:
+        """What a type as written is; None where it is nothing that is known."""
+        key = written, place.scope, place.owner
+        if key in self._types:
+            return self._types[key]
+        if depth > _DEEPEST:
+            return None
+        self._types[key] = None
+        found = self._types[key] = self._type_of(written, place, depth)
+        return found
+
+    def _type_of(self, written: str, place: Place, depth: int) -> Type | None:
+        parts = parse_type(written)
+        if not parts.outer:
+            return None
+        last = parts.outer.rpartition("::")[2]
+        found = None
+        if parts.arguments is not None and not parts.tail and (last in _POINTERS or last in _SEQUENCES):
+            inner = self.type_of(parts.arguments[0], place, depth + 1) if parts.arguments else None
+            if inner is not None and not inner.several:
+                found = inner._replace(pointer=True) if last in _POINTERS else inner._replace(several=True)
+        elif parts.arguments is not None and not parts.tail and last in _MAPS and len(parts.arguments) > 1:
+            inner = self.type_of(parts.arguments[1], place, depth + 1)
+            found = Type("", values=inner) if inner is not None else None
+        else:
+            name = f"{parts.outer}::{parts.tail}" if parts.tail else parts.outer
+            found = self.named(name, place, depth)
+            if found is not None and parts.arguments:
+                found = found._replace(arguments=parts.arguments)
+        if found is None:
+            return None
+        if parts.array:
+            found = found._replace(several=True)
+        return found._replace(pointer=True) if parts.pointer else found
+
+    def named(self, name: str, place: Place, depth: int = 0) -> Type | None:
+        """The class that a name without template arguments is."""
+        key = name, place.scope, place.owner
+        if key in self._named:
+            return self._named[key]
+        self._named[key] = None
+        found = self._named[key] = self._find_named(name, place, depth)
+        return found
+
+    def _find_named(self, name: str, place: Place, depth: int) -> Type | None:
+        if depth > _DEEPEST or name == "std" or name.startswith("std::"):
+            return None
+        head, _, rest = name.partition("::")
+        # What the class around declares comes first.
+        if place.owner:
+            for one in self.line_of_own(place.owner):
+                for member in one.members.get(head, ()):
+                    if member.kind == "alias":
+                        return self._nested(self.type_of(member.type, _inside(one), depth + 1), rest, place, depth)
+                    if member.kind == "type":
+                        name = f"{one.name}::{name}"
+                        break
+                for base in one.bases:
+                    if parse_type(base).outer.rpartition("::")[2] == head and parse_type(base).outer != name:
+                        return self._nested(self.type_of(base, _around(one), depth + 1), rest, place, depth)
+        own = self._own_class(name, place)
+        if own is not None:
+            return own
+        meanings = list(dict.fromkeys(self.meanings(name, place)))
+        for file in self.files:
+            for alias in file.aliases(head):
+                inner = self.type_of(alias.type, Place(alias.scope, "", False), depth + 1)
+                if inner is not None or not rest:
+                    return self._nested(inner, rest, place, depth)
+        if self.vocabulary is not None:
+            for full in meanings:
+                if full in self.vocabulary.classes:
+                    return Type(full)
+                meant = self.vocabulary.alias(full)
+                if meant is not None:
+                    return self.type_of(meant, _NOWHERE, depth + 1)
+        if self.scope is not None:
+            for full in meanings:
+                told = self._interface(full)
+                if told is not None:
+                    return told
+        outer, _, last = name.rpartition("::")
+        if outer and _POINTED.fullmatch(last):
+            inner = self.named(outer, place, depth + 1)
+            return inner._replace(pointer=True) if inner is not None else None
+        shorter = _SUFFIX.sub("", name)
+        if shorter and shorter != name and not shorter.endswith("::"):
+            inner = self.named(shorter, place, depth + 1)
+            return inner._replace(pointer=True) if inner is not None and not inner.own else None
+        if self.scope is not None and "::" not in name:
+            told = self._interface(name)
+            if told is not None:
+                return told
+        # An alias of some class, where nothing else is so called.
+        found = {
+            self._nested(self.type_of(member.type, _inside(one), depth + 1), rest, place, depth)
+            for file in self.files
+            if file.mentions(head) and head in file.code.like_aliases
+            for one in file.code.file.classes
+            for member in one.members.get(head, ())
+            if member.kind == "alias"
+        }
+        return next(iter(found)) if len(found) == 1 else None
+
+    def _nested(self, type_: Type | None, rest: str, place: Place, depth: int) -> Type | None:
+        """What `alias::rest` is."""
+        if type_ is None or not rest:
+            return type_
+        if type_.interface is not None:
+            return self._section(type_, rest.split("::"))
+        return self.named(f"{type_.name}::{rest}", _NOWHERE, depth + 1) if type_.name else None
+
+    def _own_class(self, name: str, place: Place) -> Type | None:
+        last = name.rpartition("::")[2]
+        names = {one.name for one in self.homes(last)}
+        if not names:
+            return None
+        around = place.scope
+        while True:
+            full = f"{around}::{name}" if around else name
+            if full in names:
+                return Type(full, own=True)
+            if not around:
+                break
+            around = around.rpartition("::")[0]
+        for full in self.meanings(name, place):
+            if full in names:
+                return Type(full, own=True)
+        if "::" not in name:
+            return Type(name, own=True)
+        ending = f"::{name}"
+        found = [full for full in names if full.endswith(ending)]
+        return Type(found[0], own=True) if len(found) == 1 else None
+
+    def _interface(self, name: str) -> Type | None:
+        """The interface that a qualified name is; only one may be meant."""
+        assert self.scope is not None
+        parts = name.split("::")
+        for at in range(len(parts) - 1, max(-1, len(parts) - 4), -1):
+            told = self._plain_interface(parts[: at + 1])
+            if told is None:
+                continue
+            pointer = any(_POINTED.fullmatch(part) for part in parts[at + 1 :]) or told[2]
+            section = section_of(told[:2], [part for part in parts[at + 1 :] if not _POINTED.fullmatch(part)])
+            if section is not None:
+                return Type("", pointer=pointer, interface=told[0], section=section)
+        return None
+
+    def _plain_interface(self, parts: list[str]) -> tuple[Interface, str, bool] | None:
+        assert self.scope is not None
+        *outer, name = parts
+        for spelt in (name, name.removesuffix("Ptr"), name.removesuffix("ConstPtr")):
+            meant = self.scope.by_name.get(spelt, [])
+            if outer:
+                kind = outer[-1] if outer[-1] in ("msg", "srv", "action") else ""
+                package = outer[-2] if kind and len(outer) > 1 else ("" if kind else outer[-1])
+                meant = [
+                    (i, s) for i, s in meant
+                    if (not package or i.package == package) and (not kind or i.name.startswith(kind))
+                ]  # fmt: skip
+            if len(meant) == 1:
+                return *meant[0], spelt != name
+        return None
+
+    def _section(self, type_: Type, words: list[str]) -> Type | None:
+        assert type_.interface is not None
+        pointer = type_.pointer or any(_POINTED.fullmatch(word) for word in words)
+        told = type_.interface, type_.section
+        section = section_of(told, [word for word in words if not _POINTED.fullmatch(word)])
+        return type_._replace(section=section, pointer=pointer) if section is not None else None
+
+    # -- classes of the package ----------------------------------------------------------------------------------------
+
+    def line_of_own(self, class_: str) -> tuple[Class, ...]:
+        """A class of the package and those of the package that it is derived from, with the arguments of templates
+        written where their parameters stood."""
+        known = self._lines.get(class_)
+        if known is None:
+            self._lines[class_] = ()
+            known = self._lines[class_] = tuple(self._find_line(class_, (), 0))
+        return known
+
+    def _find_line(self, class_: str, arguments: tuple[str, ...], depth: int) -> Iterator[Class]:
+        homes = self.homes(class_)
+        if len(homes) != 1 or depth > _DEEPEST:
+            return
+        one = _filled(homes[0], arguments) if homes[0].template and arguments else homes[0]
+        yield one
+        for base in one.bases:
+            parts = parse_type(base)
+            own = self._own_class(parts.outer, _around(one))
+            if own is not None and own.name != one.name:
+                yield from self._find_line(own.name, parts.arguments or (), depth + 1)
+
+    def bases(self, class_: Class) -> list[tuple[str, Type | None]]:
+        """The bases of a class of the package, with what they are."""
+        return [(base, self.type_of(base, _around(class_))) for base in class_.bases]
+
+    def own_member(self, class_: str, word: str, depth: int = 0) -> tuple[str, tuple[str, ...]] | None:
+        """The changing name of another package that a member of an own class is, by its bases, and the packages in
+        between, with an empty one where a base is not known."""
+        assert self.vocabulary is not None
+        homes = self.homes(class_)
+        if len(homes) != 1 or depth > _DEEPEST or word in homes[0].members:
+            return None
+        found, strange = None, homes[0].open
+        for base, type_ in self.bases(homes[0]):
+            if type_ is None:
+                strange = strange or not base.startswith("std::")
+            elif type_.own:
+                found = found or self.own_member(type_.name, word, depth + 1)
+            elif type_.name:
+                found = found or self.vocabulary.member(type_.name, word)
+        if found is not None and strange:
+            return found[0], (*found[1], "")
+        return found
+
+    def known_bases(self, base: str, place: Place, depth: int = 0) -> list[str]:
+        """The classes of other packages that a base stands for, or is derived from."""
+        type_ = self.type_of(base, place)
+        if type_ is None or depth > _DEEPEST or not type_.name:
+            return []
+        if not type_.own:
+            return [type_.name]
+        return [
+            known
+            for one in self.homes(type_.name)
+            for inner in one.bases
+            for known in self.known_bases(inner, _around(one), depth + 1)
+        ]
+
+    # -- expressions ---------------------------------------------------------------------------------------------------
+
+    def value_of(self, expr: Expr, place: Place, depth: int = 0) -> Type | None:
+        """What an expression is."""
+        if depth > 4 * _DEEPEST:
+            return None
+        kind = expr.kind
+        if kind == "name":
+            return self._of_name(expr, place, depth)
+        if kind == "member":
+            return self._of_member(expr, place, depth)
+        if kind == "call":
+            return self._of_call(expr, place, depth)
+        if kind == "index":
+            type_ = self.value_of(expr.parts[0], place, depth + 1)
+            if type_ is not None and type_.values is not None:
+                return type_.values
+            return type_._replace(several=False) if type_ is not None and type_.several else None
+        if kind == "unary" and expr.text == "*":
+            type_ = self.value_of(expr.parts[0], place, depth + 1)
+            return type_._replace(pointer=False) if type_ is not None and type_.pointer and not type_.several else None
+        if kind == "unary" and expr.text == "&":
+            type_ = self.value_of(expr.parts[0], place, depth + 1)
+            return type_._replace(pointer=True) if type_ is not None and type_.plain else None
+        if kind == "this":
+            return Type(place.owner, own=True, pointer=True) if place.owner else None
+        if kind in ("new", "cast", "braces") and expr.text:
+            type_ = self.type_of(expr.text, place)
+            return type_._replace(pointer=True) if type_ is not None and kind == "new" else type_
+        if kind == "conditional" and len(expr.parts) == 2:
+            one, other = (self.value_of(part, place, depth + 1) for part in expr.parts)
+            return one if one == other else None
+        return None
+
+    def _of_name(self, expr: Expr, place: Place, depth: int) -> Type | None:
+        local = expr.local
+        if local is None:
+            return None if "::" in expr.text else self._variable(expr.text, place)
+        if local.how in ("variable", "parameter"):
+            if "auto" not in local.type:
+                return self.type_of(local.type, place) if local.type else None
+            if local.value is None:
+                return None
+            type_ = self.value_of(local.value, place, depth + 1)
+            return type_._replace(pointer=True) if type_ is not None and "*" in local.type else type_
+        if local.how == "each":
+            if "auto" not in local.type:
+                return self.type_of(local.type, place)
+            type_ = self.value_of(local.value, place, depth + 1) if local.value is not None else None
+            return type_._replace(several=False) if type_ is not None and type_.several else None
+        return None
+
+    def _variable(self, name: str, place: Place) -> Type | None:
+        """What a name is that no function declares: a member of the class around, or a variable outside of all."""
+        if place.owner:
+            for one in self.line_of_own(place.owner):
+                if name in one.members:
+                    return self._declared_type(one.members[name], _inside(one), "variable")
+        found = [
+            self.type_of(one.type, Place(one.scope, "", False))
+            for file in self.files
+            if file.mentions(name)
+            for one in file.names.get(name, ())
+            if one.kind == "variable" and "auto" not in one.type
+        ]
+        return found[0] if found and all(one == found[0] for one in found) else None
+
+    def _declared_type(self, those: Iterable[Declared], place: Place, kind: str) -> Type | None:
+        """What several declarations of one name give, where they agree."""
+        found = {self.type_of(one.type, place) if one.type and "auto" not in one.type else None
+                 for one in those if one.kind == kind}  # fmt: skip
+        return next(iter(found)) if len(found) == 1 else None
+
+    def _of_member(self, expr: Expr, place: Place, depth: int, called: bool = False) -> Type | None:
+        type_ = self.value_of(expr.parts[0], place, depth + 1)
+        if type_ is None:
+            return None
+        if type_.values is not None:
+            return type_.values if called and expr.text == "at" else None
+        if called and type_.several:
+            return type_._replace(several=False) if expr.text in _ELEMENT and not expr.arrow else None
+        if called and expr.text in _SAME and type_.pointer and not expr.arrow:
+            return type_
+        if type_.several or type_.pointer != expr.arrow:
+            return None
+        return self.step(type_, expr.text, place, called)
+
+    def step(self, type_: Type, name: str, place: Place, called: bool) -> Type | None:
+        """What a member of an object is."""
+        if type_.interface is not None:
+            if called or self.scope is None:
+                return None
+            found = self.scope.step(type_.of_interface(), name)
+            return None if found is None else Type("", several=found.several, interface=found.interface,
+                                                   section=found.section)  # fmt: skip
+        if not type_.own:
+            return self._released(type_, name)
+        for one in self.line_of_own(type_.name):
+            if name in one.members:
+                kind = "function" if called else "variable"
+                found = self._declared_type(one.members[name], _inside(one), kind)
+                if found is None and one.template and type_.arguments:
+                    written = {each.type for each in one.members[name] if each.kind == kind}
+                    found = self._substituted(written, one.template, type_.arguments, place)
+                return found
+        for one in self.line_of_own(type_.name):
+            for _, base in self.bases(one):
+                if base is not None and not base.own and base.name:
+                    found = self._released(base, name)
+                    if found is not None:
+                        return found
+        return None
+
+    def _substituted(self, written: set[str], parameters: tuple[str, ...], arguments: tuple[str, ...], place: Place):
+        """A type that is written with the parameters of a template."""
+        return self.type_of(_filled_text(written.pop(), parameters, arguments), place) if len(written) == 1 else None
+
+    def _released(self, type_: Type, name: str) -> Type | None:
+        """What a member of a class of another package is."""
+        if self.vocabulary is None:
+            return None
+        told = self.vocabulary.result(type_.name, name)
+        if told is None:
+            return None
+        written, parameters = told
+        if parameters and type_.arguments:
+            return self._substituted({written}, parameters, type_.arguments, _NOWHERE)
+        return self.type_of(written, _NOWHERE)
+
+    def _of_call(self, expr: Expr, place: Place, depth: int) -> Type | None:
+        callee = expr.parts[0]
+        if callee.kind == "member":
+            return self._of_member(callee, place, depth, called=True)
+        if callee.kind != "name":
+            return None
+        if callee.local is not None and callee.local.how != "function":
+            return None
+        name = callee.text
+        outer, _, last = name.rpartition("::")
+        if callee.template:
+            if last in _MAKERS:
+                type_ = self.type_of(callee.template[0], place)
+                return type_._replace(pointer=True) if type_ is not None else None
+            if name in _CASTS:
+                return self.type_of(callee.template[0], place)
+            if last in _POINTER_CASTS:
+                type_ = self.type_of(callee.template[0], place)
+                return type_._replace(pointer=True) if type_ is not None else None
+        if last in _THROUGH and outer in ("std", "boost") and len(expr.parts) == 2:
+            return self.value_of(expr.parts[1], place, depth + 1)
+        if outer and last in _MAKERS and outer not in ("std", "boost"):
+            type_ = self.named(outer, place)
+            return type_._replace(pointer=True) if type_ is not None else None
+        if last in ("shared_from_this", "weak_from_this") and not outer:
+            return Type(place.owner, own=True, pointer=True) if place.owner else None
+        written = f"{name}<{', '.join(callee.template)}>" if callee.template else name
+        type_ = self.type_of(written, place)
+        if type_ is not None and not type_.pointer:
+            return type_
+        return self._result(name, place)
+
+    def _result(self, name: str, place: Place) -> Type | None:
+        """What a function gives back."""
+        if "::" not in name and place.owner:
+            for one in self.line_of_own(place.owner):
+                if name in one.members:
+                    return self._declared_type(one.members[name], _inside(one), "function")
+            for one in self.line_of_own(place.owner):
+                for _, base in self.bases(one):
+                    if base is not None and not base.own and base.name:
+                        found = self._released(base, name)
+                        if found is not None:
+                            return found
+        outer, _, last = name.rpartition("::")
+        if outer:
+            class_ = self.named(outer, place)
+            if class_ is not None and class_.name:
+                return self.step(class_._replace(pointer=False), last, place, True)
+        found = {
+            self.type_of(one.type, Place(one.scope, "", False)) if "auto" not in one.type else None
+            for file in self.files
+            if file.mentions(last)
+            for one in file.names.get(last, ())
+            if one.kind == "function" and (not outer or f"::{one.scope}".endswith(f"::{outer}"))
+        }
+        if found:
+            return next(iter(found)) if len(found) == 1 else None
+        if self.vocabulary is not None:
+            for full in self.meanings(name, place):
+                owner, _, inner = full.rpartition("::")
+                told = self.vocabulary.result(owner, inner)
+                if told is not None:
+                    return self.type_of(told[0], _NOWHERE)
+        return None
+
+
+_NOWHERE = Place("", "", False)
+
+
+def _filled_text(text: str, parameters: Iterable[str], arguments: Iterable[str]) -> str:
+    """A type with the arguments of a template in the places of its parameters."""
+    for name, given in zip(parameters, arguments, strict=False):
+        if name and name in text:
+            text = re.sub(rf"\b{re.escape(name)}\b", lambda _, given=given: given, text)
+    return text
+
+
+def _filled(class_: Class, arguments: tuple[str, ...]) -> Class:
+    """A class with the arguments of its template in the places of the parameters."""
+    members = {
+        name: [one._replace(type=_filled_text(one.type, class_.template, arguments)) for one in those]
+        for name, those in class_.members.items()
+    }
+    bases = tuple(_filled_text(base, class_.template, arguments) for base in class_.bases)
+    return class_._replace(members=members, bases=bases)
+
+
+def _inside(class_: Class) -> Place:
+    return Place(class_.name, class_.name, False)
+
+
+def _around(class_: Class) -> Place:
+    """Where the bases of a class are written."""
+    return Place(class_.name.rpartition("::")[0], "", False)

@@ -1,0 +1,446 @@
+"""Uses in one C++ file of other packages' names that are not the same in all versions: C++ names, overrides, fields."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator
+
+from ...facts.cpp.schema import Class, Expr, Parameter, Place
+from ...facts.cpp.schema import Use as Written
+from ..api import ASSIGNING, CALLED, CLASSES, Found, Name
+from ..members import Found as FoundMember
+from .resolver import Known, Resolver, Type
+
+_LAST_WORD = re.compile(r"[A-Za-z_]\w*\Z")
+_SCOPES = re.compile(r"(?<![\w>:])(?:[A-Za-z_]\w*\s*::\s*)+\Z")
+_CALLED = re.compile(r"\s*[<({]")
+# What an argument may show itself to be of.
+_SHOWN = re.compile(r"[\"\[{]|\b(?:true|false|this|NULL|nullptr|new|bind|\d[\w.]*|\w*[qQ]o[sS]\w*)\b")
+_BRACKETS = re.compile(r"[()\[\]{},<>\"'/]|\.\.\.")
+_MOST_NEAR = 600
+_INTERFACES = ("::msg", "::srv", "::action")
+_CONSTRUCTED = re.compile(r"\s*(?:[<({]|>\s*\(|[A-Za-z_]\w*\s*[({])")
+_TYPES = CLASSES | {"alias", "enum"}
+
+
+class ApiUses:
+    """Uses of C++ names of other packages. heads: first parts of the paths of other packages' headers that reach the
+    file."""
+
+    def __init__(self, resolver: Resolver, heads: Collection[str] = ()):
+        assert resolver.vocabulary is not None
+        self.resolver, self.heads = resolver, heads
+        self.vocabulary = resolver.vocabulary
+
+    def found(self, words: Iterable[str]) -> Iterator[Found]:
+        """Every use of a name that is looked for and whose last part is among the words."""
+        words = list(words)
+        home = self.vocabulary.home
+        for use in self.resolver.known.code.uses(words, self._may_matter):
+            for found in (self._use(use), self._construction(use)):
+                if found is not None and found.package not in home and self._differs(found):
+                    yield found
+        yield from (found for found in self._overrides(frozenset(words)) if found.package not in home)
+
+    def _may_matter(self, word: str, at: int) -> bool:
+        """Whether a word may be such a use, as far as the text around it shows."""
+        text, vocabulary = self.resolver.known.code.text, self.vocabulary
+        before = at
+        while before and text[before - 1] in " \t\n":
+            before -= 1
+        if word in ASSIGNING:
+            root = _LAST_WORD.search(text, max(0, before - 80), before)
+            if root is None:
+                return text[before - 1 : before] == "]"
+            speakers = vocabulary.speakers_of(word)
+            return root.group().endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
+        sign = text[before - 2 : before]
+        if sign == "->" or sign.endswith("."):
+            return vocabulary.of_classes(word) and self._may_be_any(word, text, at + len(word))
+        if sign != "::":
+            return self._may_be_any(word, text, at + len(word))
+        scopes = _SCOPES.search(text, max(0, before - 160), before)
+        if scopes is None:
+            return True  # behind template arguments, or of the global namespace
+        scope = "".join(scopes.group().split()).removesuffix("::")
+        head = scope.partition("::")[0]
+        if head == "std":
+            return False
+        full = f"{scope}::{word}"
+        known = vocabulary.names.get(full)
+        end = at + len(word)
+        if known is not None and (known.there or (known.what in CALLED and _may_differ(known, text, end))):
+            return True
+        if f"{full}::{word}" in vocabulary.constructors(word):
+            constructed = _CONSTRUCTED.match(text, end)
+            return constructed is not None and _may_differ(
+                vocabulary.names[f"{full}::{word}"], text, constructed.end() - 1
+            )
+        if known is not None or scope.endswith(_INTERFACES):
+            return False
+        return scope in vocabulary.classes or not vocabulary.has_space(head)
+
+    def _may_be_any(self, word: str, text: str, end: int) -> bool:
+        """Whether any of the names that end so may be used in a way that differs between versions."""
+        names = self.vocabulary.names
+        for name in self.vocabulary.by_last(word):
+            known = names[name]
+            if known.there or (known.what in CALLED and _may_differ(known, text, end)):
+                return True
+            if known.what == "constructor" and _CONSTRUCTED.match(text, end) is not None:
+                return True
+        return False
+
+    def _differs(self, found: Found) -> bool:
+        return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
+
+    # -- one place -----------------------------------------------------------------------------------------------------
+
+    def _use(self, use: Written) -> Found | None:
+        if use.form == "member":
+            return self._of_object(use)
+        if use.form == "scoped":
+            return self._in_scope(use)
+        if use.form == "bare":
+            return self._bare(use)
+        if use.form == "assigned" and use.object is not None:
+            type_ = self.resolver.value_of(use.object, use.place)
+            return self._member(type_, use) if type_ is not None and type_.plain else None
+        return None
+
+    def _of_object(self, use: Written) -> Found | None:
+        assert use.object is not None
+        if use.object.kind == "this":
+            return self._of_this(use)
+        type_ = self.resolver.value_of(use.object, use.place)
+        if type_ is None or type_.several or type_.pointer != use.arrow:
+            return None
+        return self._member(type_, use)
+
+    def _member(self, type_: Type, use: Written) -> Found | None:
+        if not type_.name:
+            return None
+        if type_.own:
+            return self._of_own(type_.name, use)
+        member = self.vocabulary.member(type_.name, use.word)
+        return None if member is None else self._found(member[0], use, True, member[1])
+
+    def _of_own(self, class_: str, use: Written) -> Found | None:
+        member = self.resolver.own_member(class_, use.word)
+        return None if member is None else self._found(member[0], use, "" not in member[1], member[1])
+
+    def _in_scope(self, use: Written) -> Found | None:
+        """`scope::word`."""
+        scope = use.name.rpartition("::")[0]
+        if scope == "std" or scope.startswith("std::"):
+            return None
+        for full in self.resolver.meanings(scope, use.place):
+            name = f"{full}::{use.word}"
+            if name in self.vocabulary.names:
+                return self._found(name, use, True, ())
+        type_ = self.resolver.named(scope, use.place)
+        if type_ is None or type_.own or not type_.plain or not type_.name:
+            return None
+        member = self.vocabulary.member(type_.name, use.word)
+        return None if member is None else self._found(member[0], use, True, member[1])
+
+    def _bare(self, use: Written) -> Found | None:
+        names, word = self.vocabulary.names, use.word
+        if use.local is not None:
+            return None
+        if word in names:
+            # A macro, a function of C, or a type; what else lies in no namespace may be anybody's.
+            known = names[word]
+            if known.what in _TYPES:
+                return self._found(word, use, True, ()) if self._is_bare_type(use, known.package) else None
+            if known.what not in ("macro", "function", "enumerator") or "_" not in word:
+                return None
+            return None if self.resolver.declares(word) else self._found(word, use, known.package in self.heads, ())
+        full = self._using(use)
+        if full is not None:
+            return self._found(full, use, True, ()) if full in names else None
+        inner = self._of_this(use)
+        if inner is not None:
+            return inner
+        for space in (*self._spaces(use.place), *self.resolver.opened(use.place)):
+            full = f"{space}::{word}"
+            if full in names and names[full].what not in ("method", "field") and not self.resolver.declares(word):
+                return self._found(full, use, False, ())
+        return None
+
+    def _spaces(self, place: Place) -> Iterator[str]:
+        """The namespaces around a place."""
+        around = place.scope
+        while around:
+            yield around
+            around = around.rpartition("::")[0]
+
+    def _using(self, use: Written) -> str | None:
+        """The full name that a using declaration makes known."""
+        for full in use.place.used:
+            if full.rpartition("::")[2] == use.word:
+                return full
+        return next(
+            (full for file in self.resolver.files
+             if (full := file.code.using.get(use.word)) is not None), None
+        )  # fmt: skip
+
+    def _is_bare_type(self, use: Written, package: str) -> bool:
+        """Whether a package's type that lies in no namespace is surely meant: outside of classes and functions, where
+        no base class has a name like it, and where nothing makes one known by another way."""
+        word, place = use.word, use.place
+        return (
+            package in self.heads
+            and not (word.islower() or word.isupper())
+            and not place.function
+            and (not place.owner or place.scope != place.owner)
+            and not self.vocabulary.knows(place.scope.partition("::")[0])
+            and not any(
+                file.code.opened or word in file.code.using or any(file.aliases(word)) for file in self.resolver.files
+            )
+            and not self.resolver.declares(word)
+        )
+
+    def _of_this(self, use: Written) -> Found | None:
+        """A member of the class around a place that one of its bases in another package has."""
+        if not use.place.owner or not self.vocabulary.of_classes(use.word):
+            return None
+        return self._of_own(use.place.owner, use)
+
+    def _construction(self, use: Written) -> Found | None:
+        """A constructor that is called where the name of its class stands."""
+        if use.call is None or not use.last or use.form in ("member", "assigned") or use.local is not None:
+            return None
+        owners = self.vocabulary.constructors(use.word)
+        if not owners:
+            return None
+        if not use.made and use.form != "initializer" and not use.place.function:
+            return None
+        type_ = self.resolver.named(use.name, use.place)
+        if type_ is None or type_.own or not type_.plain or f"{type_.name}::{use.word}" not in owners:
+            return None
+        name = f"{type_.name}::{use.word}"
+        count, given = self._given(use)
+        return Found(self.vocabulary.names[name].package, name, use.offset, "call", count, given,
+                     use.template is not None, True, ())  # fmt: skip
+
+    def _found(self, name: str, use: Written, sure: bool, through: tuple[str, ...]) -> Found:
+        """The use that a name at a place is."""
+        known = self.vocabulary.names[name]
+        how, count, given = "name", -1, ()
+        if known.what in CALLED and use.call is not None and not use.made:
+            how = "call"
+            count, given = self._given(use)
+        return Found(known.package, name, use.offset, how, count, given, use.template is not None, sure, through)
+
+    def _given(self, use: Written) -> tuple[int, tuple[str, ...]]:
+        """How many arguments a call gives (-1: not to be told), and what each shows itself to be."""
+        call = use.call or ()
+        if any(argument.kind == "pack" for argument in call):
+            return -1, ()
+        return len(call), tuple(self.shown(argument, use.place) for argument in call)
+
+    def shown(self, argument: Expr, place: Place) -> str:
+        """What an argument shows itself to be: `text`, `float`, `integer`, `bool`, `lambda`, `bind`, `null`, `this`,
+        `*this`, `new`, `qos` (an rclcpp::QoS) or `profile` (an rmw_qos_profile_t); empty for the rest."""
+        kind = argument.kind
+        if kind == "literal":
+            return argument.text
+        if kind in ("lambda", "this", "new"):
+            return kind
+        if kind == "unary":
+            inner = argument.parts[0] if argument.parts else None
+            if inner is not None and argument.text == "*" and inner.kind == "this":
+                return "*this"
+            if inner is not None and argument.text in "+-" and inner.kind == "literal":
+                return inner.text
+            return ""
+        if kind == "name":
+            if argument.text == "NULL":
+                return "null"
+            return "profile" if argument.text.startswith("rmw_qos_profile_") else ""
+        if kind not in ("call", "braces"):
+            return ""
+        callee = argument.parts[0] if kind == "call" else None
+        name = argument.text if callee is None else callee.text
+        if callee is not None and callee.kind == "name" and name in ("std::bind", "boost::bind"):
+            return "bind"
+        if callee is not None and callee.kind == "member":
+            return "profile" if name == "get_rmw_qos_profile" else ""
+        return "qos" if re.fullmatch(r"rclcpp\s*::\s*\w*QoS", name) else ""
+
+    # -- overrides -----------------------------------------------------------------------------------------------------
+
+    def _overrides(self, words: frozenset[str]) -> Iterator[Found]:
+        """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
+        names = self.vocabulary.names
+        code = self.resolver.known.code
+        if not code.may_derive:
+            return
+        virtual = {
+            word for word in words
+            if any(names[name].virtual for name in self.vocabulary.by_last(word)) and code.may_declare(word)
+        }  # fmt: skip
+        for class_ in code.file.classes if virtual else ():
+            if not class_.bases:
+                continue
+            declared = sorted(virtual.intersection(class_.members))
+            lines = [self.resolver.known_bases(base, around_(class_)) for base in class_.bases] if declared else []
+            for word in declared:
+                for method in class_.members[word]:
+                    if method.kind != "function" or "static" in method.traits:
+                        continue
+                    for line in lines:
+                        member = self._first(line, word)
+                        if member is None:
+                            continue
+                        types = tuple(parameter_type(one) for one in method.parameters)
+                        marks = tuple(mark for mark in ("const", "override") if mark in method.traits)
+                        if "final" in method.traits and "override" not in marks:
+                            marks = (*marks, "override")
+                        yield Found(names[member[0]].package, member[0], method.offset, "override", len(types),
+                                    (*types, *marks), False, True, member[1])  # fmt: skip
+
+    def unimplemented(self, exported: Collection[str]) -> Iterator[Found]:
+        """Methods that a base class in another package makes others implement in some version, and that an exported
+        class of the file does not have. exported: full names of classes that others make objects of."""
+        code = self.resolver.known.code
+        if not code.may_derive:
+            return
+        for class_ in code.file.classes:
+            if class_.open or class_.template or not _is_among(class_.name, exported):
+                continue
+            own = self.resolver.line_of_own(class_.name)
+            if any(one.open for one in own):
+                continue
+            have = {name for one in own for name in one.members}
+            for one in own:
+                for base in one.bases:
+                    type_ = self.resolver.type_of(base, around_(one))
+                    if type_ is None or type_.own or not type_.name:
+                        continue
+                    for name in self.vocabulary.pure(type_.name):
+                        package = self.vocabulary.names[name].package
+                        if name.rpartition("::")[2] not in have and package not in self.vocabulary.home:
+                            yield Found(package, name, class_.offset, "implement", -1, (), False, True, ())
+
+    def _first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
+        return next((found for one in classes if (found := self.vocabulary.member(one, word)) is not None), None)
+
+
+def _may_differ(known: Name, text: str, at: int) -> bool:
+    """Whether what follows a name may call it in a way that not all versions take."""
+    opened = _CALLED.match(text, at)
+    if opened is None:
+        return False
+    found = _count_near(text, opened.end() - 1)
+    if found is None:
+        return True
+    count, given = found
+    return (known.typed and _SHOWN.search(given) is not None) or known.differs("call", count, ())
+
+
+def _count_near(text: str, at: int) -> tuple[int, str] | None:
+    """How many arguments a bracket gives that opens at an offset, and their text; None where that takes a parser."""
+    if text[at] != "(":
+        return None
+    depth, commas, quoted = 0, 0, ""
+    for match in _BRACKETS.finditer(text, at, at + _MOST_NEAR):
+        sign, place = match.group(), match.start()
+        if quoted:
+            if sign == quoted and text[place - 1] != "\\":
+                quoted = ""
+        elif sign in "\"'":
+            quoted = sign
+        elif sign in "([{":
+            depth += 1
+        elif sign in ")]}":
+            depth -= 1
+            if depth == 0:
+                given = text[at + 1 : place]
+                return (commas + 1 if given.strip() else 0), given
+        elif sign == "," and depth == 1:
+            commas += 1
+        elif sign == "<" or (sign == ">" and text[place - 1] != "-") or sign in ("/", "..."):
+            return None  # template arguments, a comparison or a comment
+    return None
+
+
+def _is_among(class_: str, names: Collection[str]) -> bool:
+    """Whether a class is one of those that are named, in full or without the namespaces around."""
+    return any(f"::{class_}".endswith(f"::{name}") for name in names)
+
+
+def around_(class_: Class) -> Place:
+    """Where the bases of a class are written."""
+    return Place(class_.name.rpartition("::")[0], "", False)
+
+
+def parameter_type(parameter: Parameter | str) -> str:
+    """The type of a parameter in the form that surfaces have."""
+    text = parameter if isinstance(parameter, str) else parameter.type
+    return " ".join(re.sub(r"\s*([<>,&*:]+)\s*", r"\1", text).split())
+
+
+class MemberUses:
+    """Uses of fields and constants of other packages' interfaces that some version lacks."""
+
+    def __init__(self, resolver: Resolver):
+        assert resolver.scope is not None
+        self.resolver, self.scope = resolver, resolver.scope
+
+    def found(self, words: Iterable[str], guess: bool) -> Iterator[FoundMember]:
+        """Every use of such a member; guess: also accesses through something whose type does not show, of names that
+        only one interface has."""
+        for use in self.resolver.known.code.uses(words):
+            if use.form == "scoped":
+                found = self._constant(use)
+            elif use.form == "member" and use.call is None:
+                found = self._field(use, guess)
+            else:
+                continue
+            if found is not None:
+                yield found
+
+    def _field(self, use: Written, guess: bool) -> FoundMember | None:
+        assert use.object is not None
+        type_ = self.resolver.value_of(use.object, use.place)
+        if type_ is None:
+            if not guess or "_" not in use.word or self._shows(use.object) or self.resolver.declares(use.word):
+                return None
+            meant = [(i, s) for i, d in self.scope.definitions.items() for s in d.sections if use.word in d.sections[s]]
+            return FoundMember(*meant[0], use.word, use.offset, False) if len(meant) == 1 else None
+        if type_.interface is None or type_.several:
+            return None
+        section = self.scope.changes(type_.of_interface(), use.word)
+        return FoundMember(type_.interface, section, use.word, use.offset, True) if section is not None else None
+
+    def _shows(self, object_: Expr) -> bool:
+        """Whether an object has a declared type of its own that is no interface's."""
+        if object_.kind in ("this", "call"):
+            return object_.kind == "this"
+        if object_.kind != "name":
+            return False
+        local = object_.local
+        if local is not None:
+            return "auto" not in local.type
+        return any(
+            one.kind == "variable" and "auto" not in one.type
+            for file in self.resolver.files
+            if file.mentions(object_.text)
+            for one in (*file.names.get(object_.text, ()), *_members(file, object_.text))
+        )
+
+    def _constant(self, use: Written) -> FoundMember | None:
+        """`pkg::msg::Type::CONSTANT`, also through an alias or a part (`Type::Request::CONSTANT`)."""
+        type_ = self.resolver.named(use.name.rpartition("::")[0], use.place)
+        if type_ is None or type_.interface is None:
+            return None
+        if self.scope.changes(type_.of_interface(), use.word) is None:
+            return None
+        return FoundMember(type_.interface, type_.section, use.word, use.offset, True)
+
+
+def _members(file: Known, name: str):
+    return [one for class_ in file.code.file.classes for one in class_.members.get(name, ())]
+
