@@ -8,6 +8,7 @@ Workers are forked where that is safe (processes.py), loky elsewhere; a backend 
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -56,6 +57,7 @@ class Gathered:
         self.second: Gathered | None = None
         self._packed: dict[tuple[str, str], bytes] = {}
         self._decoded: dict[tuple[str, str], Any] = {}
+        self._looked: dict[bytes, Any] = {}
 
     def paths(self, *wanted: str) -> list[str]:
         """Paths of these kinds, sorted; of every kind when none is given."""
@@ -72,6 +74,38 @@ class Gathered:
                 self.preload((path,))
             known = self._decoded[key] = self._decode(path, key)
         return known
+
+    def look(self, paths: Iterable[str], kind: str, table: Any = None) -> dict[str, Any]:
+        """Facts of another kind of files, made when they are first asked for and stored by content as all facts are.
+
+        paths: files whose content is known here; others, and those that can no longer be read, are left out. kind: one
+        of kinds.EXTRACTORS. table: of kinds.SEARCHES, what to look for; its `stamp` differs whenever it does.
+        """
+        version = _version(kind) + (table.stamp if table is not None else "")
+        rows = {path: fact_key(self.ids[path], version) for path in paths if path in self.ids}
+        known = self._looked
+        for row, packed in self.store.get({row for row in rows.values() if row not in known}):
+            with contextlib.suppress(ValueError, msgspec.MsgspecError):
+                known[row] = kinds.decode(kind, unpack(packed)).facts
+        fresh: list[tuple[bytes, bytes]] = []
+        for path, row in rows.items():
+            if row in known:
+                continue
+            try:
+                data, content = self.tree.read_with_id(path, _largest(kind))
+            except OSError:
+                continue
+            if kind in kinds.SEARCHES:
+                found = kinds.search(kind, data, self.facts(path).facts, table)
+            else:
+                found = kinds.extract(kind, data)
+            known[row] = found.facts
+            if content == self.ids[path]:  # else it has just been written to
+                with contextlib.suppress(UnicodeEncodeError, OverflowError, RecursionError):
+                    fresh.append((row, pack(kinds.encode(found))))
+        if fresh:
+            self.store.put(fresh)
+        return {path: known[row] for path, row in rows.items() if row in known}
 
     def preload(self, paths: Iterable[str]) -> None:
         """Reads the stored facts of many files at once, which is faster than one by one. Paths without facts are left

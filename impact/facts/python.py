@@ -14,6 +14,7 @@ from .markup import text_encoding
 from .place import Problem, Reference
 from .python_objects import PythonUse
 from .python_tree import TRY, Attribute, Import, Reader
+from .words import words_of
 
 
 class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -24,6 +25,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
     has and Python 2 has not), or None. interpreter: the first line when it is a `#!` that names python. main: has an
     `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes.
+    words: see words_of().
     """
 
     imports: tuple[Import, ...]
@@ -35,6 +37,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     main: bool = False
     problems: tuple[Problem, ...] = ()
     uses: tuple[PythonUse, ...] = ()
+    words: str = ""
 
 
 class Source(NamedTuple):
@@ -155,6 +158,7 @@ def extract(data: bytes) -> PythonFile:
                 main=reader.main,
                 problems=problems,
                 uses=reader.object_uses(reader.column),
+                words=words_of(data),
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))
@@ -166,6 +170,7 @@ def extract(data: bytes) -> PythonFile:
         interpreter=interpreter,
         main="__main__" in text,
         problems=problems,
+        words=words_of(data),
     )
 
 

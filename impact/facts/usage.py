@@ -6,15 +6,15 @@ literals are blanked; nothing is resolved, so a pattern has to be particular eno
 
 from __future__ import annotations
 
+import hashlib
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 import msgspec
-from msgspec import structs
 
 from .condition import Condition
-from .cpp import KEYWORDS, CppFile, Use, scan, standing, text_of
+from .cpp import KEYWORDS, CppFile, scan, standing, text_of
 
 
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -48,6 +48,16 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def calls(self) -> bool:
         """True for calls of functions, which a package may have one of its own for."""
         return bool(self.arguments) and not self.names
+
+
+class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A use that a table describes, by the label it has there. types: the template arguments that are written."""
+
+    label: str
+    line: int
+    column: int
+    conditions: tuple[Condition, ...] = ()
+    types: str = ""
 
 
 Place = tuple[int, int, tuple[Condition, ...], str]
@@ -97,26 +107,43 @@ _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&
 # The same before a variable, which may be a reference or a pointer.
 _TYPE_OF_VARIABLE = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|>)(?:\s*[&*]+\s*|[ \t]+)\Z")
 _ASSIGNED = re.compile(rb"\s*=(?!=)")
-_NAMED = re.compile(rb"\s+\w+\s*[;={]")
-_BEFORE_MEMBER = re.compile(rb"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?")
+_VARIABLE_LINE = re.compile(
+    rb"^[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s+\w+\s*[;={]", re.MULTILINE
+)
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
 class Table:
-    """What to look for in C++ files: patterns with their labels, by a word that stands in each.
+    """What to look for in C++ files: patterns with their labels, by a word that stands in each; and bare words.
 
-    heads: first parts of words that are qualified names. called: words that are functions in some pattern.
+    stamp: differs whenever another table does. heads: first parts of words that are qualified names. called: words that
+    are functions in some pattern.
     """
 
-    def __init__(self, patterns: Mapping[str, Sequence[tuple[str, Pattern]]]):
+    def __init__(self, patterns: Mapping[str, Sequence[tuple[str, Pattern]]], words: Collection[str] = ()):
         self.patterns = patterns
+        self.words = frozenset(words)
+        self.stamp = stamp_of(sorted(patterns.items()), sorted(self.words))
         self.heads = frozenset(word.partition("::")[0] for word in patterns if "::" in word)
         self.called = frozenset(word for word, rows in patterns.items() if any(p.calls for _, p in rows))
 
 
-def with_uses(facts: CppFile, data: bytes, table: Table) -> CppFile:
-    """The facts of a C++ file with the uses that a table describes, the first of each under the same conditions, and
-    those functions that such uses call and the file declares itself. Never raises."""
+class Rows:
+    """Uses to look for in files that no compiler reads: (label, pattern). stamp: differs whenever other rows do."""
+
+    def __init__(self, rows: Sequence[tuple[str, Pattern]]):
+        self.rows = rows
+        self.stamp = stamp_of(rows)
+
+
+def stamp_of(*tables: object) -> str:
+    """A digest of what tables say."""
+    return hashlib.sha1(repr(tables).encode()).hexdigest()[:16]
+
+
+def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...], tuple[str, ...]]:
+    """The uses in a C++ file that a table describes, the first of each under the same conditions, and those functions
+    that such uses call and the file declares itself. Never raises."""
     patterns = table.patterns
     spoken = set(facts.words.split(" "))
     uses: list[Use] = []
@@ -134,7 +161,7 @@ def with_uses(facts: CppFile, data: bytes, table: Table) -> CppFile:
         for label, pattern in patterns[word]:
             if may_have(data, pattern):
                 uses.extend(Use(label, *place) for place in first_places(places_of_use(data, pattern)))
-    return structs.replace(facts, uses=tuple(uses), functions=tuple(functions)) if uses or functions else facts
+    return tuple(uses), tuple(functions)
 
 
 def first_places(places: Iterable[Place]) -> Iterator[Place]:
@@ -201,12 +228,9 @@ def initialises(data: bytes, variable: str) -> bool:
     return False
 
 
-def names_a_variable(data: bytes, type_: str) -> bool:
-    """Whether a line of a C++ file declares a variable or member of this type itself, not a pointer or reference."""
-    return any(
-        _NAMED.match(data, end) and _BEFORE_MEMBER.fullmatch(data, _line_start(data, at), at)
-        for at, end in _places(type_.encode(), data)
-    )
+def types_of_variables(data: bytes) -> Iterator[str]:
+    """The types of which some line of a C++ file declares a variable or member itself, not a pointer or reference."""
+    return (match[1].decode() for match in _VARIABLE_LINE.finditer(data))
 
 
 def _line_start(data: bytes, at: int) -> int:

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple, Protocol
 
-from ..facts.flow_launch import Entry, LaunchFile, ParameterFile
+from ..facts.flow_launch import LaunchFile
+from ..facts.flow_parameters import Entry, ParameterFile
 from .launch_text import Text, known, within
 from .names_ros import canonical, joined
 

@@ -19,9 +19,10 @@ import msgspec
 
 from ...edges.limits import limits_stamp
 from .. import processes
-from ..facts.kinds import EXTRACTORS
+from ..facts.kinds import version_of_all
 from ..facts.manifest import Manifest
 from ..gather import Gathered
+from ..source_keys import source_key
 from ..targets.fields import snake
 from .build import Build, extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
@@ -33,11 +34,8 @@ if TYPE_CHECKING:
     from .flow.join import Join
     from .flow.launches import Launch
 
-# Raise with every change of what a digest or the CMake interpreter says.
-DIGEST_VERSION = "36"
 # Starting processes costs about as much as joining packages with this many files here.
 _ALONE_FILES = 100
-_VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 
 class Package:
@@ -454,7 +452,8 @@ class _Linker:
         self.all_paths = frozenset(e.path for e in tree.entries())
         self.by_name = {p.name: p for p in discovered.packages}
         self._extras: dict[str, tuple[str, ...]] = {}
-        self.identity = hashlib.sha1(f"{DIGEST_VERSION} {ros}".encode())
+        self.code = f"{source_key('impact.model.workspace')} {version_of_all()}"
+        self.identity = hashlib.sha1(f"{self.code} {ros}".encode())
 
     def digests(self, store) -> list[Digest]:
         places = [p for p in self.discovered.packages if _manifest(self.gathered, p.manifest_path) is not None]
@@ -500,6 +499,7 @@ class _Linker:
             return
         jobs = 1 if len(order) < 2 or files < _ALONE_FILES else self.jobs
         self.gathered.store.close()  # every process opens it for itself
+        _ = self.watched.in_cpp  # made once and for all processes
         decoder = msgspec.msgpack.Decoder(Digest)
         for path, result in processes.forked(_join, order, jobs, self, tasks):
             if isinstance(result, processes.Died):
@@ -544,7 +544,7 @@ class _Linker:
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
-        versions = f"{_VERSIONS}{limits_stamp()} {self.watched.version}"
+        versions = f"{self.code}{limits_stamp()} {self.watched.version}"
         about = f"{versions} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n"
         digest = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
         digest.update(
@@ -614,6 +614,7 @@ class _Linker:
             gathered.kinds,
             files,
             gathered.facts,
+            gathered.look,
             self.tree.read,
             self.watched,
             self.home,

@@ -54,7 +54,7 @@ class Job(NamedTuple):
 
     def key(self) -> str:
         """Changes with all that the result depends on."""
-        from ..cache import code_stamp
+        from ..source_keys import code_stamp
 
         return hashlib.sha1(repr((self.name, self.states, self.trees, code_stamp())).encode()).hexdigest()
 

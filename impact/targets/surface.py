@@ -9,7 +9,7 @@ import hashlib
 import posixpath
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cache, cached_property
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
@@ -20,6 +20,7 @@ from ..facts.parameters import last_part, mentions
 from ..facts.store import encodable
 from ..facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
 from ..model.package import role_of_folder
+from ..source_keys import code_stamp
 from . import surface_build, surface_diff, surface_python
 from .surface_build import BuildSurface
 from .surface_changes import PARAMETER
@@ -144,7 +145,7 @@ def _parameters(declared: Gathered, files: Iterable[str]) -> tuple[tuple[tuple[s
 def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:
     """The same as surfaces_of, remembered as a whole for trees that git names by one id. folder: that id, empty for a
     tree that has none."""
-    key = hashlib.sha1(f"{folder} {_stamp()}".encode()).digest()
+    key = hashlib.sha1(f"{folder} {code_stamp()}".encode()).digest()
     if folder:
         memory = store.memo("surface", key)
         if memory is not None:
@@ -159,14 +160,6 @@ def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None)
 
 
 _decoder = msgspec.msgpack.Decoder(dict[str, Surface])
-
-
-@cache
-def _stamp() -> str:
-    """Changes with the code that surfaces are made by."""
-    from ..cache import code_stamp
-
-    return code_stamp()
 
 
 def _kind_for_build(path: str) -> str | None:
