@@ -58,6 +58,7 @@ class Gathered:
         self._packed: dict[tuple[str, str], bytes] = {}
         self._decoded: dict[tuple[str, str], Any] = {}
         self._looked: dict[bytes, Any] = {}
+        self._others: dict[str, str] = {}
 
     def paths(self, *wanted: str) -> list[str]:
         """Paths of these kinds, sorted; of every kind when none is given."""
@@ -78,11 +79,19 @@ class Gathered:
     def look(self, paths: Iterable[str], kind: str, table: Any = None) -> dict[str, Any]:
         """Facts of another kind of files, made when they are first asked for and stored by content as all facts are.
 
-        paths: files whose content is known here; others, and those that can no longer be read, are left out. kind: one
-        of kinds.EXTRACTORS. table: of kinds.SEARCHES, what to look for; its `stamp` differs whenever it does.
+        paths: files of the tree; those that cannot be read are left out. kind: one of kinds.EXTRACTORS. table: of
+        kinds.SEARCHES, whose files have facts, what to look for; its `stamp` differs whenever it does.
         """
         version = _version(kind) + (table.stamp if table is not None else "")
-        rows = {path: fact_key(self.ids[path], version) for path in paths if path in self.ids}
+        rows: dict[str, bytes] = {}
+        for path in paths:
+            content = self.ids.get(path) or self._others.get(path)
+            if content is None:  # of a file that no kind was asked of before
+                try:
+                    content = self._others[path] = self.tree.content_id(path)
+                except OSError:
+                    continue
+            rows[path] = fact_key(content, version)
         known = self._looked
         for row, packed in self.store.get({row for row in rows.values() if row not in known}):
             with contextlib.suppress(ValueError, msgspec.MsgspecError):
@@ -100,7 +109,7 @@ class Gathered:
             else:
                 found = kinds.extract(kind, data)
             known[row] = found.facts
-            if content == self.ids[path]:  # else it has just been written to
+            if row == fact_key(content, version):  # else it has just been written to
                 with contextlib.suppress(UnicodeEncodeError, OverflowError, RecursionError):
                     fresh.append((row, pack(kinds.encode(found))))
         if fresh:

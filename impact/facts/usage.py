@@ -230,7 +230,8 @@ def initialises(data: bytes, variable: str) -> bool:
 
 def types_of_variables(data: bytes) -> Iterator[str]:
     """The types of which some line of a C++ file declares a variable or member itself, not a pointer or reference."""
-    return (match[1].decode() for match in _VARIABLE_LINE.finditer(data))
+    types = (match[1].decode() for match in _VARIABLE_LINE.finditer(data))
+    return (type_ for type_ in types if type_ not in KEYWORDS)
 
 
 def _line_start(data: bytes, at: int) -> int:

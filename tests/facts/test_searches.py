@@ -50,7 +50,7 @@ def test_what_rows_describe_in_text():
         ("class A;\n", {"A"}, set(), set(), set()),
         ("struct A : B {};\n", {"A", "B"}, set(), set(), set()),
         ("enum class A { X };\n", {"A"}, set(), set(), set()),
-        ("typedef a::B C;\n", {"C"}, set(), set(), set()),
+        ("typedef a::B C;\n", {"a", "C"}, set(), set(), set()),
         ("using C = a::B;\n", {"C"}, set(), set(), set()),
         ("ROS_DECLARE_MESSAGE(Twist)\n", {"Twist"}, set(), set(), set()),
         ("  static const a::B b = f();\n", set(), {"a::B"}, set(), set()),
