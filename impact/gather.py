@@ -76,11 +76,18 @@ class Gathered:
             known = self._decoded[key] = self._decode(path, key)
         return known
 
-    def look(self, paths: Iterable[str], kind: str, table: Any = None) -> dict[str, Any]:
+    def look(
+        self,
+        paths: Iterable[str],
+        kind: str,
+        table: Any = None,
+        on_error: Callable[[str, OSError], None] = lambda path, error: None,
+    ) -> dict[str, Any]:
         """Facts of another kind of files, made when they are first asked for and stored by content as all facts are.
 
-        paths: files of the tree; those that cannot be read are left out. kind: one of kinds.EXTRACTORS. table: of
-        kinds.SEARCHES, whose files have facts, what to look for; its `stamp` differs whenever it does.
+        paths: files of the tree; those that cannot be read are left out, and on_error is told. kind: one of
+        kinds.EXTRACTORS. table: of kinds.SEARCHES, whose files have facts, what to look for; its `stamp` differs
+        whenever it does.
         """
         version = _version(kind) + (table.stamp if table is not None else "")
         rows: dict[str, bytes] = {}
@@ -89,7 +96,8 @@ class Gathered:
             if content is None:  # of a file that no kind was asked of before
                 try:
                     content = self._others[path] = self.tree.content_id(path)
-                except OSError:
+                except OSError as error:
+                    on_error(path, error)
                     continue
             rows[path] = fact_key(content, version)
         known = self._looked
@@ -102,7 +110,8 @@ class Gathered:
                 continue
             try:
                 data, content = self.tree.read_with_id(path, _largest(kind))
-            except OSError:
+            except OSError as error:
+                on_error(path, error)
                 continue
             if kind in kinds.SEARCHES:
                 found = kinds.search(kind, data, self.facts(path).facts, table)

@@ -62,12 +62,17 @@ EXTRACTORS: dict[str, tuple[str, str]] = {
     "flow_launch_yaml": ("flow_launch", "LaunchFile"),
     "flow_launch_python": ("flow_launch", "LaunchFile"),
     "flow_parameters": ("flow_parameters", "ParameterFile"),
+    "colcon_cmake": ("colcon", "ColconFile"),
+    "colcon_setup_py": ("colcon", "ColconFile"),
+    "colcon_setup_cfg": ("colcon", "ColconFile"),
+    "colcon_pyproject": ("colcon", "ColconFile"),
+    "colcon_settings": ("colcon", "ColconFile"),
     "searched_cpp": ("searches", "SearchedCpp"),
     "searched_text": ("searches", "SearchedText"),
     "declared_cpp": ("searches", "DeclaredCpp"),
 }
 """kind: (module, struct). A kind is stored under the key of its module\'s code."""
-WITH_KIND = frozenset({"flow_launch", "interface", "launch", "parameters", "setup"})
+WITH_KIND = frozenset({"colcon", "flow_launch", "interface", "launch", "parameters", "setup"})
 SEARCHES = frozenset(kind for kind, (module, _) in EXTRACTORS.items() if module == "searches")
 """Kinds that are made of a file's first facts too, and of a table that says what to look for; see search()."""
 _OTHERS_READ_TOO = {
@@ -161,8 +166,9 @@ def largest(kind: str) -> int:
 _BUDGETS = {
     **dict.fromkeys(("launch_yaml", "params", "parameters_yaml", "flow_launch_yaml", "flow_parameters"), "parameters"),
     "flow_launch_xml": "launch",
-    **dict.fromkeys(("setup_cfg", "pyproject"), "settings"),
-    "setup_py": "python",
+    **dict.fromkeys(("setup_cfg", "pyproject", "colcon_setup_cfg", "colcon_pyproject", "colcon_settings"), "settings"),
+    **dict.fromkeys(("setup_py", "colcon_setup_py"), "python"),
+    "colcon_cmake": "cmake",
     "shell": "script",
 }
 

@@ -24,7 +24,7 @@ from ..facts.python import PythonFile
 from ..facts.python_objects import PythonUse
 from ..facts.searches import DeclaredCpp, SearchedCpp, WordUse
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, Rows, Table, place_in, python_text
+from ..facts.usage import Pattern, Rows, Table
 from ..facts.words import mentions
 from ..targets.fields import Fields
 from ..targets.message_headers import type_in
@@ -787,28 +787,24 @@ class _Join:
 
     def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""
-        from .members import Scope, interfaces_imported
-        from .members_python import PythonUses
+        from .members import Scope
+        from .members_python import changing_members, interfaces_used
 
         table = self.watched.fields
         if table is None:
             return
         for path, facts in files.items():
-            imported = interfaces_imported(((i.module, i.names) for i in facts.imports if not i.level), table)
+            used = interfaces_used(facts.members, table) if facts.members else ()
             seen = set()
             # Both generations import an interface alike: each is followed for itself.
-            for ros in sorted({interface.ros for interface in imported}):
-                scope = Scope((interface for interface in imported if interface.ros == ros), table)
-                if not scope.changing:
-                    continue
-                text = python_text(self.read(path))
-                for found in PythonUses(text, scope).found():
+            for ros in sorted({interface.ros for interface in used}):
+                scope = Scope((interface for interface in used if interface.ros == ros), table)
+                for use, found in changing_members(facts.members, scope) if scope.changing else ():
                     key = (found.interface, found.section, found.member)
                     if key not in seen:
                         seen.add(key)
-                        line, column = place_in(text, found.offset)
                         yield MemberUse(found.interface.package, found.interface.ros, found.interface.name,
-                                        found.section, found.member, At(path, line, column),
+                                        found.section, found.member, At(path, use.line, use.column),
                                         self.python_role(path), "python", found.sure)  # fmt: skip
 
     def python_api(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
