@@ -25,6 +25,7 @@ from ..edges.limits import limits_stamp
 from .cache import cache_folder
 
 _ROOTS = {"impact": os.path.dirname(__file__), "edges": os.path.dirname(limits.__file__)}
+_PROJECT = __name__.partition(".")[0] + "."
 # Data have stamps of their own, see targets.snapshot.
 _NO_SOURCE = frozenset(("__pycache__", "data"))
 _SOURCES = (".py", ".pyc", ".toml")
@@ -45,11 +46,11 @@ class _Keys(msgspec.Struct, frozen=True, array_like=True):
 
 
 def source_key(*modules: str) -> str:
-    """Changes whenever the code behind one of these modules does. modules: as `impact.facts.cpp`.
+    """Changes whenever the code behind one of these modules does. modules: their `__name__`s.
 
     Raises KeyError for a name that no module has."""
     keys = _keys()
-    return _digest(keys[module] for module in modules)
+    return _digest(keys[module.removeprefix(_PROJECT)] for module in modules)
 
 
 @cache

@@ -81,14 +81,6 @@ def test_one_line_of_an_extractor_changes_its_key_alone(monkeypatch, module, exp
     assert len(set(before.values())) == len(before)
 
 
-def test_facts_import_neither_the_model_nor_targets():
-    found = sources()
-    for module in (name for name in found if name.startswith("impact.facts.")):
-        above = {name for name in source_keys._imports(module, found[module], found) if name.startswith("impact.")}
-        allowed = ("impact.facts", "impact.cache", "impact.source_keys")
-        assert {name for name in above if not name.startswith(allowed)} == set(), module
-
-
 @pytest.fixture
 def anew(monkeypatch, tmp_path):
     """Works out the keys again, with a cache folder of its own."""
@@ -127,4 +119,4 @@ def test_what_cannot_be_looked_at_is_never_read_back(anew, monkeypatch):
 
 def test_a_module_that_is_not_there_has_no_key():
     with pytest.raises(KeyError):
-        source_key("impact.nothing")
+        source_key("rosimpact.impact.nothing")

@@ -184,9 +184,8 @@ def version_of_all() -> str:
     return source_key(_HERE, *sorted({f"{_ROOM}.{module}" for module, _ in EXTRACTORS.values() if module}))
 
 
-# The names of this module and of its folder, as source_key() has them.
-_HERE = __name__.partition(".")[2]
-_ROOM = _HERE.rpartition(".")[0]
+_HERE = __name__
+_ROOM = __name__.rpartition(".")[0]
 
 SHELLS = re.compile(rb"#!.*\b(?:ba|z|da|k)?sh\b")
 PYTHONS = re.compile(rb"#!.*python")

@@ -19,11 +19,11 @@ from typing import Any
 
 import msgspec
 
+from ...edges.patterns import PatternError, cost_of, matches
 from ..facts.colcon import ColconFile
+from ..facts.extract import Gathered
 from ..facts.manifest import Manifest
-from ..gather import Gathered
 from ..tree import PathProblem, Tree, inside
-from .patterns import PatternError, cost_of, matches
 
 _FILES = frozenset(
     ("package.xml", "CMakeLists.txt", "setup.py", "setup.cfg", "pyproject.toml", "colcon.pkg", "manifest.xml")

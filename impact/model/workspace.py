@@ -17,14 +17,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
+from ...edges import processes
 from ...edges.limits import limits_stamp
-from .. import processes
+from ..facts.extract import Gathered
 from ..facts.kinds import version_of_all
 from ..facts.manifest import Manifest
-from ..gather import Gathered
 from ..source_keys import source_key
-from ..targets.fields import snake
-from .build import Build, extras_of, interpret
+from ..targets.surface.fields import snake
+from .cmake.build import Build
+from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
 from .package import Digest, Watched, build_type_of, digest_of
 
@@ -452,7 +453,7 @@ class _Linker:
         self.all_paths = frozenset(e.path for e in tree.entries())
         self.by_name = {p.name: p for p in discovered.packages}
         self._extras: dict[str, tuple[str, ...]] = {}
-        self.code = f"{source_key('impact.model.workspace')} {version_of_all()}"
+        self.code = f"{source_key(__name__)} {version_of_all()}"
         self.identity = hashlib.sha1(f"{self.code} {ros}".encode())
 
     def digests(self, store) -> list[Digest]:

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 from ...facts.flow_launch import LaunchFile
 from ...facts.flow_parameters import ParameterFile
-from ..launch import Launched, Remap, Started, follow
-from ..names_ros import NameRefused, Rule, ros1_remapped, ros2_remapped
+from ..launch.follow import Launched, Remap, Started, follow
 from ..workspace import Workspace
+from .names import NameRefused, Rule, ros1_remapped, ros2_remapped
 
 
 class InWorkspace:

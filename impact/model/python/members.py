@@ -1,0 +1,43 @@
+"""Fields and constants of other packages' interfaces that a Python file uses, of those that only some versions have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from ...facts.python_interfaces import ELEMENT, MemberUse
+from ...targets.surface.fields import Fields
+from ..members import Found, Interface, Scope, Type, interfaces_imported, section_of
+
+
+def interfaces_used(uses: Iterable[MemberUse], table: Fields) -> list[Interface]:
+    """The interfaces that uses are of, of both generations where both have one of that name."""
+    named = dict.fromkeys(tuple(use.type.split(".")[:3]) for use in uses)
+    return interfaces_imported([(f"{package}.{kind}", (name,)) for package, kind, name in named], table)
+
+
+def changing_members(uses: Iterable[MemberUse], scope: Scope) -> Iterator[tuple[MemberUse, Found]]:
+    """The uses of members that some version lacks."""
+    for use in uses:
+        if use.steps[-1] not in scope.changing:
+            continue
+        type_ = _type(use.type, scope)
+        for step in use.steps[:-1]:
+            if type_ is None:
+                break
+            if step == ELEMENT:
+                type_ = type_._replace(several=False) if type_.several else None
+            else:
+                type_ = scope.step(type_, step)
+        section = scope.changes(type_, use.steps[-1]) if type_ is not None else None
+        if type_ is not None and section is not None:
+            yield use, Found(type_.interface, section, use.steps[-1], 0, True)
+
+
+def _type(text: str, scope: Scope) -> Type | None:
+    """The type that `pkg.kind.Name` or `pkg.kind.Name.Request` is."""
+    package, kind, name, *rest = text.split(".")
+    for told in scope.by_name.get(name, ()):
+        if told[0].package == package and told[0].name.startswith(f"{kind}/"):
+            section = section_of(told, rest)
+            return Type(told[0], section) if section is not None else None
+    return None
