@@ -50,7 +50,8 @@ def source_key(*modules: str) -> str:
 
     Raises KeyError for a name that no module has."""
     keys = _keys()
-    return _digest(keys[module.removeprefix(_PROJECT)] for module in modules)
+    names = (module.removeprefix(_PROJECT) for module in modules)
+    return _digest(keys[f"{name}.__init__" if f"{name}.__init__" in keys else name] for name in names)
 
 
 @cache
@@ -97,7 +98,7 @@ def _imports(module: str, source: bytes, sources: Mapping[str, bytes]) -> set[st
         whole = ".".join(base)
         for name in _NAME.findall(several or one):
             inner = f"{whole}.{name.decode()}"
-            found.add(inner if inner in sources else whole if whole in sources else f"{whole}.__init__")
+            found.add(next((one for one in (inner, f"{inner}.__init__", whole) if one in sources), f"{whole}.__init__"))
     # A table that lies beside the modules is read by whoever names it.
     near = module.rpartition(".")[0] + "/"
     found.update(name for name in sources if name.startswith(near) and name[len(near) :].encode() in source)
