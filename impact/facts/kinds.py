@@ -78,7 +78,6 @@ SEARCHES = frozenset(kind for kind, (module, _) in EXTRACTORS.items() if module 
 _OTHERS_READ_TOO = {
     "script": ("python", "shell"),
     "flow_script": ("flow_python",),
-    "setup_py": ("python",),
 }
 """Kinds whose facts are made by the extractors of other kinds too."""
 FLOW = {"cpp": "flow_cpp", "python": "flow_python", "script": "flow_script"}
@@ -237,14 +236,7 @@ def _facts(kind: str, data: bytes) -> Any:
 
 def _extracted(kind: str, data: bytes) -> Any:
     read = _extractor(kind)
-    facts = read(data, kind) if EXTRACTORS[kind][0] in WITH_KIND else read(data)
-    if kind == "setup_py":
-        python = _facts("python", data)
-        # Python 2 is no mistake on a target that runs it: the rule on Python versions knows, and what it installs
-        # is then merely not known.
-        old = {"problems": (), "unresolved": ("written for Python 2",)} if python.python2_only else {}
-        facts = msgspec.structs.replace(facts, python=python, **old)
-    return facts
+    return read(data, kind) if EXTRACTORS[kind][0] in WITH_KIND else read(data)
 
 
 def _contained(kind: str, make: Callable[[], Any]) -> Any:

@@ -149,8 +149,7 @@ def test_a_setup_py_is_a_python_file_too():
 
 def test_a_setup_py_of_python_2_is_not_a_mistake():
     facts = extract("setup_py", b"print 'a'\nsetup(packages=['a'])\n").facts
-    assert facts.problems == ()
-    assert facts.unresolved == ("written for Python 2",)
+    assert (facts.problems, facts.unresolved, facts.packages) == ((), (), ("a",))
     assert facts.python.python2_only
 
 
