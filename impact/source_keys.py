@@ -15,7 +15,7 @@ import re
 import secrets
 import sys
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, partial
 
 import msgspec
@@ -60,11 +60,12 @@ def code_stamp() -> str:
     return _digest(f"{module} {key}" for module, key in _keys().items()) + limits_stamp()
 
 
-def keys_of(sources: Mapping[str, bytes], libraries: Mapping[str, str]) -> dict[str, str]:
-    """The key of every module. sources: by module, `impact.facts` for the package itself. libraries: versions by the
-    name that is imported; other names than these and the modules are those of Python itself."""
+def keys_of(sources: Mapping[str, bytes], version: Callable[[str], str]) -> dict[str, str]:
+    """The key of every module. sources: by module, `impact.facts.__init__` for a folder itself. version: gives that of
+    a library by the name that is imported."""
     imports = {module: _imports(module, source, sources) for module, source in sources.items()}
     own = {module: hashlib.sha1(source).hexdigest() for module, source in sources.items()}
+    own.update((name, version(name)) for name in set().union(*imports.values()) - sources.keys())
     python = "{}.{}".format(*sys.version_info)
     keys = {}
     for module in sorted(sources):
@@ -76,7 +77,7 @@ def keys_of(sources: Mapping[str, bytes], libraries: Mapping[str, str]) -> dict[
                     reached.add(name)
                     if name in sources:
                         waiting.append(name)
-        parts = (f"{name} {own.get(name) or libraries.get(name, '')}" for name in sorted(reached))
+        parts = (f"{name} {own[name]}" for name in sorted(reached))
         keys[module] = _digest((python, *parts))
     return keys
 
@@ -87,7 +88,8 @@ def _imports(module: str, source: bytes, sources: Mapping[str, bytes]) -> set[st
         return set(sources)
     found = set()
     package = module.split(".") if f"{module}.__init__" in sources else module.split(".")[:-1]
-    for dots, path, several, one, plain in _IMPORT.findall(_FOR_TYPES.sub(b"", source)):
+    read = _FOR_TYPES.sub(b"", source) if b"TYPE_CHECKING" in source else source
+    for dots, path, several, one, plain in _IMPORT.findall(read):
         if plain:
             found.update(name.split()[0].partition(".")[0] for name in plain.decode().split(",") if name.strip())
             continue
@@ -120,8 +122,7 @@ def _keys() -> Mapping[str, str]:
         if known.state == state:
             return known.keys
     sources = {name: files.read_file(path, _LARGEST) for name, path, _ in _sources()}
-    names = {name for module, source in sources.items() for name in _imports(module, source, sources)}
-    keys = keys_of(sources, {name: _version(name) for name in names - sources.keys()})
+    keys = keys_of(sources, _version)
     if _state(libraries) == state:  # else a file changed while all were read
         with contextlib.suppress(OSError, UnicodeEncodeError):
             os.makedirs(cache_folder(), exist_ok=True)

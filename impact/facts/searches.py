@@ -13,7 +13,7 @@ import msgspec
 from .condition import Condition
 from .cpp import CppFile, places_of
 from .place import Problem
-from .usage import Rows, Table, Use, find_uses, first_places, initialises, places_of_use, types_of_variables
+from .usage import Rows, Table, Use, find_uses, initialises, types_of_variables, uses_of
 
 
 class WordUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -59,8 +59,7 @@ class SearchedText(msgspec.Struct, frozen=True, array_like=True, gc=False):
 def searched_text(data: bytes, facts: object, table: Rows) -> SearchedText:
     """The uses of a table that a file has."""
     rows = [(label, pattern) for label, pattern in table.rows if pattern.word.encode() in data]
-    found = ((label, place) for label, pattern in rows for place in first_places(places_of_use(data, pattern)))
-    return SearchedText(tuple(Use(label, *place) for label, place in found))
+    return SearchedText(tuple(use for row in rows for use in uses_of(data, [row])))
 
 
 class DeclaredCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 import msgspec
@@ -158,37 +158,18 @@ def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...
     for word in sorted(patterns.keys() & (spoken | KEYWORDS)):
         if word in table.called and declares(data, word):
             functions.append(word)
-        for label, pattern in patterns[word]:
-            if may_have(data, pattern):
-                uses.extend(Use(label, *place) for place in first_places(places_of_use(data, pattern)))
+        uses.extend(uses_of(data, patterns[word]))
     return tuple(uses), tuple(functions)
 
 
-def first_places(places: Iterable[Place]) -> Iterator[Place]:
-    """The first place for every distinct set of conditions."""
+def uses_of(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[Use]:
+    """The first use of every row under each set of conditions. rows: labels and patterns of one word."""
     seen = set()
-    for place in places:
-        if place[2] not in seen:
-            seen.add(place[2])
-            yield place
-
-
-def may_have(data: bytes, pattern: Pattern) -> bool:
-    """False when a use is surely not in a file; cheap, so that few files have to be looked at closely."""
-    if not pattern.before:
-        return True
-    before = _in_bytes(rf"(?:{pattern.before})\Z")
-    for at, _ in _places(pattern.word.encode(), data):
-        # No use reaches back over the end of the statement before it.
-        begins = max(0, at - _FAR, data.rfind(b";", max(0, at - _FAR), at))
-        if before.search(data, begins, at) is not None:
-            return True
-    return False
-
-
-@lru_cache(maxsize=4096)
-def _in_bytes(expression: str) -> re.Pattern[bytes]:
-    return re.compile(expression.encode())
+    for number, place in places_of_use(data, *(pattern for _, pattern in rows)):
+        key = (number, place[2])
+        if key not in seen:
+            seen.add(key)
+            yield Use(rows[number][0], *place)
 
 
 def template_arguments(text: str, at: int) -> re.Match[str] | None:
@@ -248,22 +229,42 @@ def _places(name: bytes, data: bytes) -> Iterator[tuple[int, int]]:
         at = data.find(name, at + len(name))
 
 
-def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
-    """Line, column, preprocessor conditions and template arguments of every use that looks like the pattern. Never
-    raises."""
-    scanned = scan(data) if pattern.language == "cpp" else None
-    text = scanned.visible if scanned is not None else _TEXTS[pattern.language](data)
-    whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
-    if (pattern.file and not _stands_in(pattern.file, whole)) or (pattern.unless and _stands_in(pattern.unless, whole)):
-        return
-    for at in standing(pattern.word, text):
-        conditions = () if scanned is None else scanned.under(at)
-        if conditions is None:
-            continue  # in a directive
-        types = _fits(pattern, text, at, at + len(pattern.word))
-        if types is not None and (pattern.inside != "class" or _in_class(text, at)):
+def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]]:
+    """Every use that looks like one of the patterns, which are of one word and language, pattern by pattern: the number
+    of the pattern, then line, column, preprocessor conditions and template arguments. Never raises."""
+    word, language = patterns[0].word, patterns[0].language
+    scanned = scan(data) if language == "cpp" else None
+    text = scanned.visible if scanned is not None else _TEXTS[language](data)
+    places: list[tuple[int, str]] = []
+    for at in standing(word, text):
+        # No use reaches back over the end of the statement before it.
+        far = max(0, at - _FAR)
+        places.append((at, text[max(far, text.rfind(";", far, at)) : at]))
+    for number, pattern in enumerate(patterns if places else ()):
+        before = _compiled(rf"(?:{pattern.before})\Z").search if pattern.before else None
+        checked = not (pattern.file or pattern.unless)
+        for at, ahead in places:
+            if before is not None and before(ahead) is None:
+                continue
+            types = _fits(pattern, text, at + len(word), ahead)
+            if types is None or (pattern.inside == "class" and not _in_class(text, at)):
+                continue
+            conditions = () if scanned is None else scanned.under(at)
+            if conditions is None:
+                continue  # in a directive
+            if not checked and not _is_in_such_a_file(pattern, data, text):
+                break
+            checked = True
             line, column = place_in(text, at) if scanned is None else scanned.place(at)
-            yield line, column, conditions, types
+            yield number, (line, column, conditions, types)
+
+
+def _is_in_such_a_file(pattern: Pattern, data: bytes, text: str) -> bool:
+    """Whether a file has what a pattern wants in it, and not what it does not."""
+    whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
+    if pattern.file and not _stands_in(pattern.file, whole):
+        return False
+    return not pattern.unless or not _stands_in(pattern.unless, whole)
 
 
 @lru_cache(maxsize=64)
@@ -282,12 +283,9 @@ def _compiled(expression: str) -> re.Pattern[str]:
     return re.compile(expression)
 
 
-def _fits(pattern: Pattern, text: str, start: int, end: int) -> str | None:
-    """The template arguments of a use (empty: none), None where the text does not look like the pattern."""
-    far = max(0, start - _FAR)
-    ahead = text[max(far, text.rfind(";", far, start)) : start]
-    if pattern.before and not _compiled(rf"(?:{pattern.before})\Z").search(ahead):
-        return None
+def _fits(pattern: Pattern, text: str, end: int, ahead: str) -> str | None:
+    """The template arguments of a use (empty: none), None where the text does not look like the pattern. end: of the
+    word. ahead: what stands before it, which fits."""
     at, shown = end, ""
     opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
     if pattern.language == "cpp" and text.startswith("<", opened):

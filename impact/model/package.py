@@ -285,6 +285,10 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
         words = {name for name in self.headers_of if "::" not in name}
         return Table(self.uses() if self.uses is not None else {}, self.words | words)
 
+    def searches(self) -> dict[str, tuple[str, Table]]:
+        """What is looked for in files while their facts are made, since every join asks for it; as gather() has it."""
+        return {"cpp": ("searched_cpp", self.in_cpp)}
+
     @cached_property
     def in_parameters(self) -> Rows:
         """What to look for in files of parameters."""
