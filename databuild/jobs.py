@@ -27,7 +27,7 @@ class Job(NamedTuple):
 
     def key(self) -> str:
         """Changes with all that the result depends on."""
-        from ..impact.cache import code_stamp
+        from ..impact.source_keys import code_stamp
 
         return hashlib.sha1(repr((self.name, self.states, self.trees, code_stamp())).encode()).hexdigest()
 

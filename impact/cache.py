@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from ..edges.limits import limits_stamp
-
 CACHE_VARIABLE = "ROSIMPACT_CACHE"
 
 
@@ -19,22 +17,6 @@ def cache_folder(environment: Mapping[str, str] = os.environ) -> Path:
     import platformdirs
 
     return Path(platformdirs.user_cache_dir("rosimpact", appauthor=False))
-
-
-@cache
-def code_stamp() -> str:
-    """Changes whenever a file of the tool does: sizes and times of its modules. So it does with the user's limits."""
-    root = Path(__file__).parent
-    stamp = hashlib.sha1()
-    for folder, folders, files in os.walk(root):
-        folders[:] = sorted(name for name in folders if name not in ("__pycache__", "data"))
-        for name in sorted(files):
-            if name.endswith((".py", ".toml")):
-                status = os.stat(os.path.join(folder, name))
-                stamp.update(
-                    f"{folder}/{name} {status.st_size} {status.st_mtime_ns}\n".encode("utf-8", "surrogateescape")
-                )
-    return stamp.hexdigest() + limits_stamp()
 
 
 @cache

@@ -14,8 +14,10 @@ from rosimpact.impact.facts import extract as gather_module
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
+from rosimpact.impact.facts.usage import Table
 from rosimpact.impact.tree import GitTree, PathProblem, WorkingTree
 
+LAUNCH = "<launch><node pkg='p' exec='n'/></launch>"
 MANIFEST = "<package format='3'><name>p</name><version>1.0.0</version></package>"
 FILES = {
     "p/package.xml": MANIFEST,
@@ -489,3 +491,51 @@ def test_memory_that_another_file_took_is_not_held_against_a_file(tmp_path, monk
         gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=1)
     assert gathered.problems == []
     assert sorted(gathered.kinds) == sorted(files)
+
+
+def test_other_facts_are_made_once_and_when_asked_for(tmp_path, monkeypatch):
+    write(tmp_path / "ws", {"a.launch": LAUNCH, "b.launch": LAUNCH, "c.launch": "<launch/>"})
+    taken = []
+    extract = kinds.extract
+    monkeypatch.setattr(kinds, "extract", lambda kind, data: taken.append(kind) or extract(kind, data))
+    for _ in range(2):
+        with Store(tmp_path / "cache") as store:
+            gathered = gather(WorkingTree(tmp_path / "ws"), store)
+            found = gathered.look(["a.launch", "b.launch", "nothing.launch"], "flow_launch_xml")
+            assert sorted(found) == ["a.launch", "b.launch"]
+            assert [action.kind for action in found["b.launch"].actions] == ["node"]
+            assert gathered.look(["a.launch"], "flow_launch_xml")["a.launch"] is found["a.launch"]
+    assert [kind for kind in taken if kind.startswith("flow_")] == ["flow_launch_xml"]
+
+
+def test_searches_are_kept_by_what_they_look_for(tmp_path, monkeypatch):
+    write(tmp_path / "ws", {"a.cpp": "int changed; int other;\n"})
+    taken = []
+    search = kinds.search
+    monkeypatch.setattr(kinds, "search", lambda *given: taken.append(given[3]) or search(*given))
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        for words in (["changed"], ["other"], ["changed"]):
+            (found,) = gathered.look(["a.cpp"], "searched_cpp", Table({}, words)).values()
+            assert [word.text for word in found.words] == words
+    assert [table.words for table in taken] == [{"changed"}, {"other"}]
+
+
+def test_what_can_no_longer_be_read_is_left_out(tmp_path):
+    write(tmp_path / "ws", {"a.launch": LAUNCH, "b.launch": "<launch/>"})
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        (tmp_path / "ws/a.launch").unlink()
+        assert list(gathered.look(["a.launch", "b.launch"], "flow_launch_xml")) == ["b.launch"]
+
+
+def test_what_was_written_to_meanwhile_is_not_kept_under_its_old_content(tmp_path):
+    write(tmp_path / "ws", {"a.launch": LAUNCH})
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        (tmp_path / "ws/a.launch").write_text("<launch/>")
+        assert gathered.look(["a.launch"], "flow_launch_xml")["a.launch"].actions == ()
+    write(tmp_path / "ws", {"a.launch": LAUNCH})
+    with Store(tmp_path / "cache") as store:
+        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        assert len(gathered.look(["a.launch"], "flow_launch_xml")["a.launch"].actions) == 1

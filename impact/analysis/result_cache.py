@@ -12,7 +12,6 @@ from collections.abc import Iterable, Sequence
 import msgspec
 from msgspec import structs
 
-from ..cache import code_stamp
 from ..facts.store import Store, encodable
 from ..model import tracked_names as watch
 from ..model.cmake.build import At
@@ -22,11 +21,13 @@ from ..model.view import View
 from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, Insert, Remove, Replace
 from ..rules.rule import Cure, Edit, Hit
+from ..source_keys import code_stamp
 from ..targets.evidence import Evidence
 from ..targets.snapshot import data_stamp
 from ..targets.surface.fields import default_fields
 from ..targets.surface.store import shipped
 from ..targets.target import Change, Target
+from ..targets.uses import looked_for
 
 _CURES: dict[str, type] = {kind.__name__: kind for kind in (Declare, Remove, Replace, Insert, Edit)}
 
@@ -59,10 +60,10 @@ def watched(store: Store) -> Watched:
     if data is not None:
         with contextlib.suppress(msgspec.MsgspecError):
             known = msgspec.msgpack.decode(data, type=Watched)
-            return structs.replace(known, fields=default_fields(), surfaces=shipped())
+            return structs.replace(known, fields=default_fields(), surfaces=shipped(), uses=looked_for)
     names = watch.watched()
-    # The table of fields and the surfaces are read from files of their own, where they are asked.
-    bare = structs.replace(names, fields=None, surfaces=None)
+    # The table of fields, the surfaces and the uses are read from files of their own, where they are asked.
+    bare = structs.replace(names, fields=None, surfaces=None, uses=None)
     store.remember("watched", encodable([(name, bare)]))
     return names
 

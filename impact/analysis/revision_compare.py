@@ -109,8 +109,9 @@ def read_pinned(path: Path) -> dict[str, str]:
 def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     """The workspace as it was in another tree, seen by the same targets."""
     second = code_kinds(tree) if opened.gathered.second is not None else None
-    gathered = gather(tree, opened.store, jobs=jobs, second=second)
-    workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.watched(opened.store), jobs)
+    watched = memo.watched(opened.store)
+    gathered = gather(tree, opened.store, jobs=jobs, second=second, along=watched.searches)
+    workspace = link(tree, gathered, opened.store, opened.workspace.ros, watched, jobs)
     views = [View(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
     # What is installed is of no revision.
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())

@@ -102,8 +102,9 @@ def open_workspace(
     asks_flow = chosen is not None and any(rule.flow for rule in chosen(config).values())
     with Store(options.cache) as store:
         second = code_kinds(tree) if asks_flow else None
-        gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second)
-        workspace = link(tree, gathered, store, None, memo.watched(store), options.jobs)
+        watched = memo.watched(store)
+        gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second, along=watched.searches)
+        workspace = link(tree, gathered, store, None, watched, options.jobs)
         gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
         targets = choose_targets(options.targets, config, workspace, tree)
         asked = frozenset(chosen.target.distro for chosen in targets)

@@ -8,11 +8,12 @@ Workers are forked where that is safe (processes.py), loky elsewhere; a backend 
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import closing
-from functools import cache
+from functools import cache, partial
 from itertools import chain, islice
 from typing import Any
 
@@ -34,6 +35,9 @@ _LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 # (path, content id, kinds, bytes) of a file to extract; (content id, kind, packed facts, failure) of facts extracted
 _Item = tuple[str, str, tuple[str, ...], bytes]
 _Result = tuple[str, str, bytes, str]
+_Extract = Callable[[list[_Item]], list[_Result]]
+# By the kind of facts: a kind of search, and what to look for.
+Searches = Mapping[str, tuple[str, Any]]
 # (bytes, path, kinds) of a file to read
 _Unread = tuple[int, str, tuple[str, ...]]
 
@@ -56,6 +60,8 @@ class Gathered:
         self.second: Gathered | None = None
         self._packed: dict[tuple[str, str], bytes] = {}
         self._decoded: dict[tuple[str, str], Any] = {}
+        self._looked: dict[bytes, Any] = {}
+        self._others: dict[str, str] = {}
 
     def paths(self, *wanted: str) -> list[str]:
         """Paths of these kinds, sorted; of every kind when none is given."""
@@ -72,6 +78,55 @@ class Gathered:
                 self.preload((path,))
             known = self._decoded[key] = self._decode(path, key)
         return known
+
+    def look(
+        self,
+        paths: Iterable[str],
+        kind: str,
+        table: Any = None,
+        on_error: Callable[[str, OSError], None] = lambda path, error: None,
+    ) -> dict[str, Any]:
+        """Facts of another kind of files, made when they are first asked for and stored by content as all facts are.
+
+        paths: files of the tree; those that cannot be read are left out, and on_error is told. kind: one of
+        kinds.EXTRACTORS. table: of kinds.SEARCHES, whose files have facts, what to look for; its `stamp` differs
+        whenever it does.
+        """
+        version = _version(kind) + (table.stamp if table is not None else "")
+        rows: dict[str, bytes] = {}
+        for path in paths:
+            content = self.ids.get(path) or self._others.get(path)
+            if content is None:  # of a file that no kind was asked of before
+                try:
+                    content = self._others[path] = self.tree.content_id(path)
+                except OSError as error:
+                    on_error(path, error)
+                    continue
+            rows[path] = fact_key(content, version)
+        known = self._looked
+        for row, packed in self.store.get({row for row in rows.values() if row not in known}):
+            with contextlib.suppress(ValueError, msgspec.MsgspecError):
+                known[row] = kinds.decode(kind, unpack(packed)).facts
+        fresh: list[tuple[bytes, bytes]] = []
+        for path, row in rows.items():
+            if row in known:
+                continue
+            try:
+                data, content = self.tree.read_with_id(path, _largest(kind))
+            except OSError as error:
+                on_error(path, error)
+                continue
+            if kind in kinds.SEARCHES:
+                found = kinds.search(kind, data, self.facts(path).facts, table)
+            else:
+                found = kinds.extract(kind, data)
+            known[row] = found.facts
+            if row == fact_key(content, version):  # else it has just been written to
+                with contextlib.suppress(UnicodeEncodeError, OverflowError, RecursionError):
+                    fresh.append((row, pack(kinds.encode(found))))
+        if fresh:
+            self.store.put(fresh)
+        return {path: known[row] for path, row in rows.items() if row in known}
 
     def preload(self, paths: Iterable[str]) -> None:
         """Reads the stored facts of many files at once, which is faster than one by one. Paths without facts are left
@@ -102,7 +157,7 @@ class Gathered:
                 pass
         # The store lost it, or holds something else under its name: the file is still there.
         data, content = self.tree.read_with_id(path, _largest(key[1]))
-        ((_, ((_, kind, made, failure),)),) = _extracted(iter([[(path, content, (key[1],), data)]]), 1)
+        ((_, ((_, kind, made, failure),)),) = _extracted(iter([[(path, content, (key[1],), data)]]), 1, {})
         if failure:
             return kinds.FileFacts(kind, kinds.empty(kind, Problem(1, failure)))
         self.store.put([(_key(content, kind), made)])
@@ -117,11 +172,13 @@ def gather(
     progress: Callable[[int, int], None] | None = None,
     kind_of: Callable[[str], str | None] = kinds.kind_of,
     second: Callable[[str], str | None] | None = None,
+    along: Callable[[], Searches] = dict,
 ) -> Gathered:
     """Finds or makes the facts of every file whose kind is known.
 
     kind_of: the kind of facts wanted of a path, None for none; by its name when left out. second: the kind wanted of it
-    by the second look; a worker makes both facts of a file in one visit.
+    by the second look; a worker makes both facts of a file in one visit. along: gives the searches that a worker makes
+    in the same visit, since look() will ask for them; it is called where there is something to extract.
     jobs: processes to use, all available cores when None. progress: called with (done, total) bytes of the files whose
     facts are not known from an earlier run. KeyboardInterrupt passes through; what was parsed before it stays stored.
     """
@@ -167,7 +224,7 @@ def gather(
 
     if unread:
         try:
-            _make(gathered, unread, jobs or processes.cores(), progress)
+            _make(gathered, unread, jobs or processes.cores(), progress, along())
         finally:
             _remember(tree, store, key)
             gathered.problems.sort()
@@ -199,6 +256,7 @@ def _make(
     unread: list[_Unread],
     jobs: int,
     progress: Callable[[int, int], None] | None,
+    along: Searches,
 ) -> None:
     """Reads the files, stores the facts of those whose content is not known, and notes what failed."""
     # Large files first: the last chunks are then small, and no worker is left alone with a large one.
@@ -217,7 +275,8 @@ def _make(
             progress(min(done, total), total)
 
     chunks = _chunks(gathered, unread, paths_of, advance)
-    with closing(_extracted(chunks, jobs)) as finished:  # an interrupt must reach the workers at once
+    stamps = {kind: table.stamp for kind, table in along.values()}
+    with closing(_extracted(chunks, jobs, along)) as finished:  # an interrupt must reach the workers at once
         for chunk, results in finished:
             rows = []
             for content, kind, packed, failure in results:
@@ -225,9 +284,9 @@ def _make(
                     for look, path in paths_of[content, kind]:
                         _drop(look, path, failure)
                 else:
-                    rows.append((_key(content, kind), packed))
+                    rows.append((fact_key(content, _version(kind) + stamps.get(kind, "")), packed))
+                    gathered.extracted += kind not in stamps
             gathered.store.put(rows)
-            gathered.extracted += len(rows)
             advance(sum(len(item[3]) for item in chunk))
 
 
@@ -314,7 +373,7 @@ def _drop(gathered: Gathered, path: str, message: str) -> None:
     gathered.ids.pop(path, None)
 
 
-def _extract(chunk: list[_Item]) -> list[_Result]:
+def _extract(along: Searches, chunk: list[_Item]) -> list[_Result]:
     """What a worker does: bytes to packed facts, a file that its extractor fails on named and not fatal."""
     results: list[_Result] = []
     part = 0
@@ -323,7 +382,12 @@ def _extract(chunk: list[_Item]) -> list[_Result]:
             processes.begin_part(part, len(data))
             part += 1
             try:
-                results.append((content, kind, pack(kinds.encode(kinds.extract(kind, data))), ""))
+                found = kinds.extract(kind, data)
+                results.append((content, kind, pack(kinds.encode(found)), ""))
+                if kind in along:
+                    search, table = along[kind]
+                    also = kinds.search(search, data, found.facts, table)
+                    results.append((content, search, pack(kinds.encode(also)), ""))
             except MemoryError:
                 raise
             except Exception as error:
@@ -332,7 +396,9 @@ def _extract(chunk: list[_Item]) -> list[_Result]:
     return results
 
 
-def _extracted(chunks: Iterator[list[_Item]], jobs: int) -> Generator[tuple[list[_Item], list[_Result]], None, None]:
+def _extracted(
+    chunks: Iterator[list[_Item]], jobs: int, along: Searches
+) -> Generator[tuple[list[_Item], list[_Result]], None, None]:
     """Chunks with their results, from one process when there is little to do, else from several."""
     first: list[list[_Item]] = []
     size = 0
@@ -345,13 +411,13 @@ def _extracted(chunks: Iterator[list[_Item]], jobs: int) -> Generator[tuple[list
         jobs = 1
     everything = chain(first, chunks)
     if processes.may_fork() and not (jobs > 1 and _scheduler_chosen()):
-        yield from _in_workers(everything, jobs)
+        yield from _in_workers(everything, jobs, partial(_extract, along))
     elif jobs > 1:
-        yield from _by_joblib(everything, jobs)
+        yield from _by_joblib(everything, jobs, partial(_extract, along))
     else:
         for chunk in everything:
             for item in chunk:
-                yield [item], _extract([item])
+                yield [item], _extract(along, [item])
 
 
 def _scheduler_chosen() -> bool:
@@ -363,7 +429,9 @@ def _scheduler_chosen() -> bool:
     return type(get_active_backend()[0]).__name__ not in ("LokyBackend", "SequentialBackend")
 
 
-def _by_joblib(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_Item], list[_Result]]]:
+def _by_joblib(
+    chunks: Iterator[list[_Item]], jobs: int, extract: _Extract
+) -> Iterator[tuple[list[_Item], list[_Result]]]:
     """Chunks in whatever joblib runs. In waves: joblib would take from the iterator in a thread of its own, and reading
     and storing belong to this one."""
     from joblib import Parallel, delayed, effective_n_jobs
@@ -372,16 +440,18 @@ def _by_joblib(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[
         jobs = effective_n_jobs(-1)
     with Parallel(n_jobs=jobs) as parallel:
         while wave := list(islice(chunks, _WAVE_PER_JOB * jobs)):
-            results: Any = parallel(delayed(_extract)(chunk) for chunk in wave)
+            results: Any = parallel(delayed(extract)(chunk) for chunk in wave)
             yield from zip(wave, results, strict=True)
 
 
-def _in_workers(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_Item], list[_Result]]]:
+def _in_workers(
+    chunks: Iterator[list[_Item]], jobs: int, extract: _Extract
+) -> Iterator[tuple[list[_Item], list[_Result]]]:
     """Chunks in forked processes. A file that kills its process, or that takes too much time or memory, is found, named
     and left out."""
     waiting: deque[list[_Item]] = deque()
     alone: deque[list[_Item]] = deque()
-    with processes.Workers(_extract, jobs) as workers:
+    with processes.Workers(extract, jobs) as workers:
         while True:
             while workers.free:
                 chunk = waiting.popleft() if waiting else next(chunks, None)

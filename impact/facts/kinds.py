@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from typing import Any, Generic, TypeVar
@@ -10,6 +11,7 @@ from typing import Any, Generic, TypeVar
 import msgspec
 
 from ...edges.limits import limits, limits_stamp, size_text
+from ..source_keys import source_key
 from .allow import allows
 from .place import Allow, Problem
 
@@ -26,40 +28,58 @@ class FileFacts(msgspec.Struct, Generic[T], frozen=True, array_like=True, gc=Fal
     allows: tuple[Allow, ...] = ()
 
 
-EXTRACTORS: dict[str, tuple[str, str, int]] = {
-    "manifest": ("manifest", "Manifest", 3),
-    "manifest_variant": ("manifest", "Manifest", 3),
-    "cmake": ("cmake", "CMakeFile", 1),
-    "msg": ("interface", "Interface", 2),
-    "srv": ("interface", "Interface", 2),
-    "action": ("interface", "Interface", 2),
-    "idl": ("interface", "Interface", 2),
-    "cpp": ("cpp", "CppFile", 2),
-    "python": ("python", "PythonFile", 3),
-    "launch_xml": ("launch", "ReferenceFile", 5),
-    "launch_yaml": ("launch", "ReferenceFile", 5),
-    "xacro": ("launch", "ReferenceFile", 5),
-    "plugin_xml": ("launch", "ReferenceFile", 5),
-    "xml": ("launch", "ReferenceFile", 5),
-    "params": ("launch", "ReferenceFile", 5),
-    "shell": ("launch", "ReferenceFile", 5),
-    "setup_py": ("setup", "SetupFile", 3),
-    "setup_cfg": ("setup", "SetupFile", 3),
-    "pyproject": ("setup", "SetupFile", 3),
-    "script": ("", "", 1),
-    "flow_cpp": ("flow_cpp", "FlowFile", 4),
-    "flow_python": ("flow_python", "FlowFile", 4),
-    "flow_script": ("", "", 1),
-    "surface_cpp": ("surface_cpp", "HeaderSurface", 2),
-    "surface_python": ("surface_python", "ModuleSurface", 1),
-    "parameters_cpp": ("parameters", "ParametersFile", 2),
-    "parameters_python": ("parameters", "ParametersFile", 2),
-    "parameters_cfg": ("parameters", "ParametersFile", 2),
-    "parameters_yaml": ("parameters", "ParametersFile", 2),
+EXTRACTORS: dict[str, tuple[str, str]] = {
+    "manifest": ("manifest", "Manifest"),
+    "manifest_variant": ("manifest", "Manifest"),
+    "cmake": ("cmake", "CMakeFile"),
+    "msg": ("interface", "Interface"),
+    "srv": ("interface", "Interface"),
+    "action": ("interface", "Interface"),
+    "idl": ("interface", "Interface"),
+    "cpp": ("cpp", "CppFile"),
+    "python": ("python", "PythonFile"),
+    "launch_xml": ("launch", "ReferenceFile"),
+    "launch_yaml": ("launch", "ReferenceFile"),
+    "xacro": ("launch", "ReferenceFile"),
+    "plugin_xml": ("launch", "ReferenceFile"),
+    "xml": ("launch", "ReferenceFile"),
+    "params": ("launch", "ReferenceFile"),
+    "shell": ("launch", "ReferenceFile"),
+    "setup_py": ("setup", "SetupFile"),
+    "setup_cfg": ("setup", "SetupFile"),
+    "pyproject": ("setup", "SetupFile"),
+    "script": ("", ""),
+    "flow_cpp": ("flow_cpp", "FlowFile"),
+    "flow_python": ("flow_python", "FlowFile"),
+    "flow_script": ("", ""),
+    "surface_cpp": ("surface_cpp", "HeaderSurface"),
+    "surface_python": ("surface_python", "ModuleSurface"),
+    "parameters_cpp": ("parameters", "ParametersFile"),
+    "parameters_python": ("parameters", "ParametersFile"),
+    "parameters_cfg": ("parameters", "ParametersFile"),
+    "parameters_yaml": ("parameters", "ParametersFile"),
+    "flow_launch_xml": ("flow_launch", "LaunchFile"),
+    "flow_launch_yaml": ("flow_launch", "LaunchFile"),
+    "flow_launch_python": ("flow_launch", "LaunchFile"),
+    "flow_parameters": ("flow_parameters", "ParameterFile"),
+    "colcon_cmake": ("colcon", "ColconFile"),
+    "colcon_setup_py": ("colcon", "ColconFile"),
+    "colcon_setup_cfg": ("colcon", "ColconFile"),
+    "colcon_pyproject": ("colcon", "ColconFile"),
+    "colcon_settings": ("colcon", "ColconFile"),
+    "searched_cpp": ("searches", "SearchedCpp"),
+    "searched_text": ("searches", "SearchedText"),
+    "declared_cpp": ("searches", "DeclaredCpp"),
 }
-"""kind: (module, struct, version). Raise the version with every change of what an extractor says: it is part of the key
-under which facts are stored."""
-WITH_KIND = frozenset({"interface", "launch", "parameters", "setup"})
+"""kind: (module, struct). A kind is stored under the key of its module\'s code."""
+WITH_KIND = frozenset({"colcon", "flow_launch", "interface", "launch", "parameters", "setup"})
+SEARCHES = frozenset(kind for kind, (module, _) in EXTRACTORS.items() if module == "searches")
+"""Kinds that are made of a file's first facts too, and of a table that says what to look for; see search()."""
+_OTHERS_READ_TOO = {
+    "script": ("python", "shell"),
+    "flow_script": ("flow_python",),
+}
+"""Kinds whose facts are made by the extractors of other kinds too."""
 FLOW = {"cpp": "flow_cpp", "python": "flow_python", "script": "flow_script"}
 """The second look that the message-flow graph takes at files of a kind."""
 SURFACE = {"cpp": "surface_cpp"}
@@ -143,31 +163,28 @@ def largest(kind: str) -> int:
 
 # Names of limits, where the extractor's name does not say it.
 _BUDGETS = {
-    **dict.fromkeys(("launch_yaml", "params", "parameters_yaml"), "parameters"),
-    **dict.fromkeys(("setup_cfg", "pyproject"), "settings"),
-    "setup_py": "python",
+    **dict.fromkeys(("launch_yaml", "params", "parameters_yaml", "flow_launch_yaml", "flow_parameters"), "parameters"),
+    "flow_launch_xml": "launch",
+    **dict.fromkeys(("setup_cfg", "pyproject", "colcon_setup_cfg", "colcon_pyproject", "colcon_settings"), "settings"),
+    **dict.fromkeys(("setup_py", "colcon_setup_py"), "python"),
+    "colcon_cmake": "cmake",
     "shell": "script",
 }
 
 
 def version_of(kind: str) -> str:
-    """The part of a store key that changes when an extractor does, or what it may read at most."""
-    return _extractors_of(kind) + limits_stamp()
+    """The part of a store key that changes when the code of an extractor does, or what it may read at most."""
+    modules = {EXTRACTORS[each][0] for each in (kind, *_OTHERS_READ_TOO.get(kind, ())) if EXTRACTORS[each][0]}
+    return f"{kind}.{source_key(_HERE, *(f'{_ROOM}.{name}' for name in sorted(modules)))}{limits_stamp()}"
 
 
-def _extractors_of(kind: str) -> str:
-    if kind == "script":
-        return f"script.{EXTRACTORS['python'][2]}.{EXTRACTORS['shell'][2]}.{EXTRACTORS[kind][2]}"
-    if kind == "flow_script":
-        return f"{kind}.{EXTRACTORS['flow_python'][2]}.{EXTRACTORS[kind][2]}"
-    if kind == "setup_py":
-        return f"{kind}.{EXTRACTORS[kind][2]}.{EXTRACTORS['python'][2]}"
-    if kind == "cpp":
-        from ..targets.uses import stamp
+def version_of_all() -> str:
+    """The same for all extractors together."""
+    return source_key(_HERE, *sorted({f"{_ROOM}.{module}" for module, _ in EXTRACTORS.values() if module}))
 
-        return f"{kind}.{EXTRACTORS[kind][2]}.{stamp()}"
-    return f"{kind}.{EXTRACTORS[kind][2]}"
 
+_HERE = __name__
+_ROOM = __name__.rpartition(".")[0]
 
 SHELLS = re.compile(rb"#!.*\b(?:ba|z|da|k)?sh\b")
 PYTHONS = re.compile(rb"#!.*python")
@@ -202,22 +219,30 @@ def extract(kind: str, data: bytes) -> FileFacts[Any]:
     return FileFacts(kind, _facts(kind, data), allows(data))
 
 
-def _facts(kind: str, data: bytes) -> Any:
-    module = EXTRACTORS[kind][0]
-    try:
-        read = import_module(f".{module}", __package__).extract
-        facts = read(data, kind) if module in WITH_KIND else read(data)
-        if kind == "cpp":
-            from ..targets.uses import looked_for  # the one table that says what to look for
+def search(kind: str, data: bytes, facts: Any, table: Any) -> FileFacts[Any]:
+    """What one of the SEARCHES finds in a file; never raises, as extract(). facts: those of the file, as extracted by
+    its name. table: what to look for; a store key names it beside the kind."""
+    return FileFacts(kind, _contained(kind, lambda: _extractor(kind)(data, facts, table)))
 
-            facts = import_module(".usage", __package__).with_uses(facts, data, looked_for())
-        if kind == "setup_py":
-            python = _facts("python", data)
-            # Python 2 is no mistake on a target that runs it: the rule on Python versions knows, and what it installs
-            # is then merely not known.
-            old = {"problems": (), "unresolved": ("written for Python 2",)} if python.python2_only else {}
-            facts = msgspec.structs.replace(facts, python=python, **old)
-        return _within_limits(facts)
+
+def _extractor(kind: str) -> Callable[..., Any]:
+    module = EXTRACTORS[kind][0]
+    return getattr(import_module(f".{module}", __package__), kind if kind in SEARCHES else "extract")
+
+
+def _facts(kind: str, data: bytes) -> Any:
+    return _contained(kind, lambda: _extracted(kind, data))
+
+
+def _extracted(kind: str, data: bytes) -> Any:
+    read = _extractor(kind)
+    return read(data, kind) if EXTRACTORS[kind][0] in WITH_KIND else read(data)
+
+
+def _contained(kind: str, make: Callable[[], Any]) -> Any:
+    """What is made, within the limits, or empty facts with a problem that says why it failed."""
+    try:
+        return _within_limits(make())
     except (MemoryError, ImportError, OSError):
         raise  # of this run and not of the file: such facts must not be remembered
     except RecursionError:
@@ -226,8 +251,8 @@ def _facts(kind: str, data: bytes) -> Any:
         return empty(kind, Problem(1, f"cannot be read: {type(error).__name__}: {error}"[:200]))
 
 
-# Sets of names, which are looked up and not gone through.
-_LOOKED_UP = frozenset(("words", "qualified", "mentioned"))
+# Sets of names, which are looked up and not gone through; and what its extractor has a limit of its own for.
+_LOOKED_UP = frozenset(("words", "qualified", "mentioned", "entries"))
 
 
 def _within_limits(facts: Any) -> Any:
@@ -262,7 +287,7 @@ def empty(kind: str, *problems: Problem) -> Any:
 
 @cache
 def _struct(kind: str) -> type[Any]:
-    module, struct, _ = EXTRACTORS[kind]
+    module, struct = EXTRACTORS[kind]
     return getattr(import_module(f".{module}", __package__), struct)
 
 

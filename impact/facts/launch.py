@@ -8,9 +8,11 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import msgspec
+from msgspec import structs
 
 from .markup import TOKEN, Attribute, Document, Element, decode, line_starts, scan, well_formed
 from .place import Problem, Reference
+from .words import words_of
 
 
 class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -25,7 +27,8 @@ class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Any file whose only interest is what it mentions. plugins is filled for plugin descriptions. unresolved: mentions
-    whose package is only known when the file runs (`$(find-pkg-share $(var robot))`), as written.
+    whose package is only known when the file runs (`$(find-pkg-share $(var robot))`), as written. words: of launch
+    files and YAML, see words_of().
 
     Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path),
     and a `file` mentioned on a command line (`roslaunch p f`) is a bare file name, to be found anywhere in the package.
@@ -35,6 +38,7 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     plugins: tuple[PluginClass, ...] = ()
     problems: tuple[Problem, ...] = ()
     unresolved: tuple[Problem, ...] = ()
+    words: str = ""
 
 
 PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_-]*\Z")
@@ -124,7 +128,12 @@ def extract(data: bytes, kind: str) -> ReferenceFile:
     XML that is not well-formed is a problem, and is read on; `xml` and `plugin_xml` are told by their root element, so
     that XML of other trades (behaviour trees, GUI layouts) gives nothing at all.
     """
-    return READERS[kind](data)
+    facts = READERS[kind](data)
+    return structs.replace(facts, words=words_of(data)) if kind in _SPOKEN else facts
+
+
+# What sets parameters, as far as its name tells.
+_SPOKEN = frozenset(("launch_xml", "launch_yaml", "params"))
 
 
 def _xml(data: bytes) -> ReferenceFile:

@@ -20,6 +20,8 @@ import msgspec
 from ...edges.documents import load_yaml
 from .cpp import scan
 from .place import Problem
+from .python import read
+from .python_constants import Constants, module_constants
 from .usage import argument_spans
 
 
@@ -45,7 +47,11 @@ def extract(data: bytes, kind: str) -> ParametersFile:
     readers = {"cpp": _in_cpp, "python": _in_python, "cfg": _in_cfg, "yaml": _in_yaml}
     language = kind.removeprefix("parameters_")
     mentioned = _mentioned(data) if language in ("cpp", "python") else ()
-    return ParametersFile(tuple(dict.fromkeys(readers[language](data))), (), mentioned)
+    problems: tuple[Problem, ...] = ()
+    if language in ("python", "cfg"):
+        source = read(data)
+        problems = source.problems or source.python2_only[:1] if source.tree is None else ()
+    return ParametersFile(tuple(dict.fromkeys(readers[language](data))), problems, mentioned)
 
 
 _TEXT = re.compile(rb"""["']([A-Za-z_~/.][\w./]{0,80})["']""")
@@ -133,9 +139,11 @@ def _short(value: str) -> str:
 
 
 def _in_python(data: bytes) -> Iterator[Declared]:
-    if b"declare" not in data:
+    tree = read(data).tree if b"declare" in data else None
+    if tree is None:
         return
-    for node in ast.walk(ast.parse(data)):
+    constants = module_constants(tree)
+    for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
             continue
         if not _DECLARES.match(node.func.attr):
@@ -144,32 +152,38 @@ def _in_python(data: bytes) -> Iterator[Declared]:
         if node.func.attr.endswith("_parameters"):
             space, listed = [*node.args, None, None][:2]
             space, listed = space or given.get("namespace"), listed or given.get("parameters")
-            start = f"{space.value}." if isinstance(space, ast.Constant) and space.value else ""
+            told = constants.value(space) if space is not None else None
+            start = f"{told}." if isinstance(told, str) and told else ""
             for item in listed.elts if isinstance(listed, (ast.List, ast.Tuple)) else ():
                 if isinstance(item, (ast.Tuple, ast.List)) and item.elts:
-                    yield from _python_parameter(item.elts[0], item.elts[1] if len(item.elts) > 1 else None, start)
+                    default = item.elts[1] if len(item.elts) > 1 else None
+                    yield from _python_parameter(item.elts[0], default, constants, start)
             continue
         name = node.args[0] if node.args else given.get("name")
-        yield from _python_parameter(name, node.args[1] if len(node.args) > 1 else given.get("value"))
+        yield from _python_parameter(name, node.args[1] if len(node.args) > 1 else given.get("value"), constants)
 
 
-def _python_parameter(name: ast.expr | None, default: ast.expr | None, start: str = "") -> Iterator[Declared]:
-    if isinstance(name, ast.Constant) and isinstance(name.value, str):
-        yield Declared(start + name.value, _python_value(default))
+def _python_parameter(
+    name: ast.expr | None, default: ast.expr | None, constants: Constants, start: str = ""
+) -> Iterator[Declared]:
+    told = constants.value(name) if name is not None else None
+    if isinstance(told, str):
+        yield Declared(start + told, _python_value(default, constants))
         return
     last = name.values[-1] if isinstance(name, ast.JoinedStr) and name.values else None
     last = name.right if isinstance(name, ast.BinOp) else last
     if isinstance(last, ast.Constant) and isinstance(last.value, str) and last.value.strip("."):
-        yield Declared(f"*.{last.value.lstrip('.')}", _python_value(default))
+        yield Declared(f"*.{last.value.lstrip('.')}", _python_value(default, constants))
 
 
-def _python_value(node: ast.expr | None) -> str | None:
+def _python_value(node: ast.expr | None, constants: Constants) -> str | None:
     if node is None or (isinstance(node, ast.Attribute) and "Parameter" in ast.unparse(node)):
         return None  # a type
     try:
         return _written(ast.literal_eval(node))
     except (ValueError, TypeError, SyntaxError, MemoryError):
-        return "?"
+        told = constants.value(node)
+        return _written(told) if isinstance(told, (str, bool, int, float)) else "?"
 
 
 def _written(value: Any) -> str:
@@ -184,12 +198,15 @@ def _written(value: Any) -> str:
 
 
 def _in_cfg(data: bytes) -> Iterator[Declared]:
-    for node in ast.walk(ast.parse(data)):
+    tree = read(data).tree
+    constants = module_constants(tree) if tree is not None else Constants()
+    for node in ast.walk(tree) if tree is not None else ():
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "add":
             given = {keyword.arg: keyword.value for keyword in node.keywords}
             name = node.args[0] if node.args else given.get("name")
             if len(node.args) + len(node.keywords) > 2 and isinstance(name, ast.Constant):
-                yield from _python_parameter(name, node.args[4] if len(node.args) > 4 else given.get("default"))
+                default = node.args[4] if len(node.args) > 4 else given.get("default")
+                yield from _python_parameter(name, default, constants)
 
 
 def _in_yaml(data: bytes) -> Iterator[Declared]:

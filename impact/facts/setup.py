@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import ast
 import re
-import warnings
 from collections.abc import Iterable
 from typing import Any
 
 import msgspec
+from msgspec import structs
 
 from ...edges.documents import DocumentError, load_toml
 from .markup import decode
 from .place import Problem
-from .python import PythonFile
+from .python import PythonFile, read
+from .python import extract as read_python
+from .python_constants import Constants, Text, Unresolved, dotted
 
 
 class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -22,7 +24,7 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     entry_points: (name, module, line) of console_scripts. data_files: (destination, pattern, line), where glob(...) and
     os.path.join(...) of literals become a pattern such as `launch/*.launch.py`. scripts, packages: as written, `*` when
     find_packages. requires: install_requires names. unresolved: what was not a literal, in one clause each.
-    python: of a setup.py, its imports and syntax like those of any Python file (filled by kinds.extract).
+    python: of a setup.py, its imports and syntax like those of any Python file.
     install_scripts: of a setup.cfg, where executables go (`$base/lib/package`, without which `ros2 run` misses them).
     """
 
@@ -46,59 +48,37 @@ def extract(data: bytes, kind: str) -> SetupFile:
     try:
         return {"setup_py": _setup_py, "setup_cfg": _setup_cfg, "pyproject": _pyproject}[kind](data)
     except (RecursionError, MemoryError):
-        return SetupFile(problems=(Problem(1, "nested too deeply to be read"),))
+        return SetupFile(problems=(_TOO_DEEP,))
 
 
-class _Text(str):
-    """A string of the file, with the line it stands on."""
-
-    line: int
-
-    def __new__(cls, text: str, line: int) -> _Text:
-        made = super().__new__(cls, text)
-        made.line = line
-        return made
-
-
-class _Unresolved:
-    """A value that only running the file would give; what: its source in a clause."""
-
-    __slots__ = ("what",)
-
-    def __init__(self, what: str):
-        self.what = what
-
-
+_TOO_DEEP = Problem(1, "nested too deeply to be read")
 REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)")
 ENTRY_POINT = re.compile(r"\s*([^=\s][^=]*)=\s*([\w.]+)(?:\s*:[\w.]+)?(?:\s*\[.*\])?\s*\Z")
 SETUP_CALLS = frozenset({"setup", "generate_distutils_setup"})
-JOINS = frozenset({"os.path.join", "path.join", "join", "posixpath.join", "osp.join"})
-GLOBS = frozenset({"glob", "glob.glob", "iglob", "glob.iglob"})
-SAME = frozenset({"list", "tuple", "sorted", "str", "os.path.normpath", "set"})
 
 
 def _setup_py(data: bytes) -> SetupFile:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(data)
-    except SyntaxError as error:
-        last = data.count(b"\n") + 1
-        return SetupFile(problems=(Problem(min(max(error.lineno or 1, 1), last), f"not Python 3: {error.msg}"),))
-    except ValueError as error:
-        return SetupFile(problems=(Problem(1, f"not Python 3: {error}"),))
+    source = read(data)
+    facts = read_python(data)
+    if source.tree is None:
+        # Python 2 is no mistake on a target that runs it: the rule on Python versions knows.
+        if source.python2_only:
+            return SetupFile(unresolved=("written for Python 2",), python=facts)
+        return SetupFile(problems=source.problems, python=facts)
     reader = _Reader()
-    reader.run(tree.body)
-    return reader.file()
+    try:
+        reader.run(source.tree.body)
+        return structs.replace(reader.file(), python=facts)
+    except (RecursionError, MemoryError):
+        return SetupFile(problems=(_TOO_DEEP,), python=facts)
 
 
-class _Reader:
+class _Reader(Constants):
     """Goes through the statements of a setup.py in order and keeps what is assigned and what setup() is given."""
 
     def __init__(self) -> None:
-        self.names: dict[str, Any] = {}
+        super().__init__()
         self.arguments: dict[str, Any] = {}
-        self.unresolved: list[str] = []
 
     def run(self, body: list[ast.stmt]) -> None:
         """Statements in order; both branches of an if, and the body of a loop once, since each may run."""
@@ -117,27 +97,16 @@ class _Reader:
                 self.call(statement.value)
             elif isinstance(statement, (ast.For, ast.While)):
                 if isinstance(statement, ast.For):
-                    self.assign(statement.target, _Unresolved("a loop variable"))
+                    self.assign(statement.target, Unresolved("a loop variable"))
                 self.run(statement.body)
             elif isinstance(statement, (ast.If, ast.With, ast.Try, ast.FunctionDef)):
                 for field in ("body", "handlers", "orelse", "finalbody"):
                     for child in getattr(statement, field, ()):
                         self.run(child.body if isinstance(child, ast.ExceptHandler) else [child])
 
-    def assign(self, target: ast.expr, value: Any) -> None:
-        if isinstance(target, ast.Name):
-            self.names[target.id] = value
-        elif isinstance(target, (ast.Tuple, ast.List)):
-            for element in target.elts:
-                self.assign(element, _Unresolved("a tuple's part"))
-        elif isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name):
-            owner, key = self.names.get(target.value.id), self.value(target.slice)
-            if isinstance(owner, dict) and isinstance(key, str):
-                owner[key] = value
-
     def call(self, call: ast.Call) -> None:
         """setup(...), and append or extend of a list that is known."""
-        name = _dotted(call.func)
+        name = dotted(call.func)
         if name.rpartition(".")[2] in SETUP_CALLS:
             for keyword, value in self.keywords(call).items():
                 self.arguments.setdefault(keyword, value)
@@ -147,94 +116,11 @@ class _Reader:
                 more = self.value(call.args[0])
                 owner.extend(more if call.func.attr == "extend" and isinstance(more, list) else [more])
 
-    def keywords(self, call: ast.Call) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-        for keyword in call.keywords:
-            value = self.value(keyword.value)
-            if keyword.arg is not None:
-                found[keyword.arg] = value
-            elif isinstance(value, dict):
-                found.update(value)
-            elif isinstance(value, _Unresolved):
-                self.unresolved.append(f"arguments are {value.what}")
-        return found
-
-    def value(self, node: ast.expr) -> Any:
-        """A str (with its line), list, dict, or _Unresolved; a file pattern is a str."""
-        if isinstance(node, ast.Constant):
-            return _Text(node.value, node.lineno) if isinstance(node.value, str) else node.value
-        if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
-            return [self.value(element) for element in node.elts]
-        if isinstance(node, ast.Starred):
-            return self.value(node.value)
-        if isinstance(node, ast.Dict):
-            pairs = [
-                (None if k is None else self.value(k), self.value(v))
-                for k, v in zip(node.keys, node.values, strict=True)
-            ]
-            merged: dict[str, Any] = {}
-            for key, value in pairs:
-                if isinstance(key, str):
-                    merged[key] = value
-                elif key is None and isinstance(value, dict):
-                    merged.update(value)
-            return merged
-        if isinstance(node, ast.Name):
-            return self.names.get(node.id, _Unresolved(f"`{node.id}`"))
-        if isinstance(node, ast.BinOp):
-            return self.operation(node)
-        if isinstance(node, ast.JoinedStr):
-            parts = [self.value(v.value if isinstance(v, ast.FormattedValue) else v) for v in node.values]
-            if all(isinstance(part, str) for part in parts):
-                return _Text("".join(parts), node.lineno)
-        if isinstance(node, ast.Call):
-            return self.result(node)
-        if isinstance(node, ast.IfExp):
-            return self.value(node.body)
-        return _Unresolved(_source(node))
-
-    def operation(self, node: ast.BinOp) -> Any:
-        left, right = self.value(node.left), self.value(node.right)
-        if isinstance(node.op, (ast.Add, ast.Div)):
-            if isinstance(left, str) and isinstance(right, str):
-                between = "/" if isinstance(node.op, ast.Div) else ""
-                return _Text(left + between + right, node.lineno)
-            if isinstance(left, list) and isinstance(right, list):
-                return left + right
-            if isinstance(left, list) or isinstance(right, list):
-                return (left if isinstance(left, list) else [left]) + (right if isinstance(right, list) else [right])
-        if isinstance(node.op, ast.Mod) and isinstance(left, str):
-            values = right if isinstance(right, list) else [right]
-            if all(isinstance(v, str) for v in values) and left.count("%s") == len(values) == left.count("%"):
-                pieces = left.split("%s")
-                return _Text(pieces[0] + "".join(v + p for v, p in zip(values, pieces[1:], strict=True)), node.lineno)
-        return _Unresolved(_source(node))
-
     def result(self, call: ast.Call) -> Any:
-        name = _dotted(call.func)
-        last = name.rpartition(".")[2]
+        last = dotted(call.func).rpartition(".")[2]
         if last in ("find_packages", "find_namespace_packages"):
-            return [_Text("*", call.lineno)]
-        if last in SETUP_CALLS or name == "dict":
-            return self.keywords(call)
-        arguments = [self.value(argument) for argument in call.args]
-        if name in JOINS or last == "Path":
-            if arguments and all(isinstance(a, str) for a in arguments):
-                return _Text("/".join(a.rstrip("/") for a in arguments if a), call.lineno)
-        elif (name in GLOBS or last == "glob") and len(arguments) >= 1:
-            if isinstance(arguments[0], str):
-                return [_Text(arguments[0], call.lineno)]
-        elif name in SAME and len(arguments) == 1:
-            return arguments[0]
-        elif last == "format" and isinstance(call.func, ast.Attribute):
-            template = self.value(call.func.value)
-            if isinstance(template, str) and all(isinstance(a, str) for a in arguments) and not call.keywords:
-                pieces = template.split("{}")
-                if len(pieces) == len(arguments) + 1 and "{" not in "".join(pieces):
-                    return _Text(
-                        pieces[0] + "".join(a + p for a, p in zip(arguments, pieces[1:], strict=True)), call.lineno
-                    )
-        return _Unresolved(_source(call))
+            return [Text("*", call.lineno)]
+        return self.keywords(call) if last in SETUP_CALLS else super().result(call)
 
     def file(self) -> SetupFile:
         given = self.arguments
@@ -262,7 +148,7 @@ class _Reader:
                 found.append(str(item))
             elif isinstance(item, list):
                 stack[:0] = item
-            elif isinstance(item, _Unresolved):
+            elif isinstance(item, Unresolved):
                 self.unresolved.append(f"{argument}: {item.what}")
         return found
 
@@ -281,48 +167,34 @@ class _Reader:
             for group in ("console_scripts", "gui_scripts"):
                 entries = value.get(group, [])
                 for item in entries if isinstance(entries, list) else [entries]:
-                    if isinstance(item, _Unresolved):
+                    if isinstance(item, Unresolved):
                         self.unresolved.append(f"entry_points: {item.what}")
                     elif isinstance(item, str) and (entry := ENTRY_POINT.match(item)):
                         found.append((entry[1].rstrip(), entry[2], getattr(item, "line", 1)))
-        elif isinstance(value, _Unresolved):
+        elif isinstance(value, Unresolved):
             self.unresolved.append(f"entry_points: {value.what}")
         return found
 
     def data_files(self, value: Any) -> list[tuple[str, str, int]]:
         found: list[tuple[str, str, int]] = []
         for item in value if isinstance(value, list) else [value]:
-            if isinstance(item, _Unresolved):
+            if isinstance(item, Unresolved):
                 self.unresolved.append(f"data_files: {item.what}")
             if not isinstance(item, list) or len(item) != 2:
                 continue
             destination, files = item
             if not isinstance(destination, str):
-                what = destination.what if isinstance(destination, _Unresolved) else "a destination"
+                what = destination.what if isinstance(destination, Unresolved) else "a destination"
                 self.unresolved.append(f"data_files: {what}")
                 continue
             for file in files if isinstance(files, list) else [files]:
                 if isinstance(file, str):
                     found.append((str(destination), str(file), getattr(file, "line", 1)))
-                elif isinstance(file, _Unresolved):
+                elif isinstance(file, Unresolved):
                     self.unresolved.append(f"data_files: {file.what}")
                 elif isinstance(file, list):
                     found.extend((str(destination), str(f), getattr(f, "line", 1)) for f in file if isinstance(f, str))
         return found
-
-
-def _dotted(node: ast.expr) -> str:
-    parts: list[str] = []
-    while isinstance(node, ast.Attribute):
-        parts.append(node.attr)
-        node = node.value
-    parts.append(node.id if isinstance(node, ast.Name) else "")
-    return ".".join(reversed(parts))
-
-
-def _source(node: ast.expr) -> str:
-    text = " ".join(ast.unparse(node).split())
-    return f"`{text if len(text) <= 60 else text[:57] + '...'}`"
 
 
 def _requirements(texts: Iterable[str]) -> list[str]:

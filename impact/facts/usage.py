@@ -6,15 +6,15 @@ literals are blanked; nothing is resolved, so a pattern has to be particular eno
 
 from __future__ import annotations
 
+import hashlib
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 import msgspec
-from msgspec import structs
 
 from .condition import Condition
-from .cpp import KEYWORDS, CppFile, Use, scan, standing, text_of
+from .cpp import KEYWORDS, CppFile, scan, standing, text_of
 
 
 class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -48,6 +48,16 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def calls(self) -> bool:
         """True for calls of functions, which a package may have one of its own for."""
         return bool(self.arguments) and not self.names
+
+
+class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A use that a table describes, by the label it has there. types: the template arguments that are written."""
+
+    label: str
+    line: int
+    column: int
+    conditions: tuple[Condition, ...] = ()
+    types: str = ""
 
 
 Place = tuple[int, int, tuple[Condition, ...], str]
@@ -97,26 +107,43 @@ _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&
 # The same before a variable, which may be a reference or a pointer.
 _TYPE_OF_VARIABLE = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|>)(?:\s*[&*]+\s*|[ \t]+)\Z")
 _ASSIGNED = re.compile(rb"\s*=(?!=)")
-_NAMED = re.compile(rb"\s+\w+\s*[;={]")
-_BEFORE_MEMBER = re.compile(rb"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?")
+_VARIABLE_LINE = re.compile(
+    rb"^[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s+\w+\s*[;={]", re.MULTILINE
+)
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 
 class Table:
-    """What to look for in C++ files: patterns with their labels, by a word that stands in each.
+    """What to look for in C++ files: patterns with their labels, by a word that stands in each; and bare words.
 
-    heads: first parts of words that are qualified names. called: words that are functions in some pattern.
+    stamp: differs whenever another table does. heads: first parts of words that are qualified names. called: words that
+    are functions in some pattern.
     """
 
-    def __init__(self, patterns: Mapping[str, Sequence[tuple[str, Pattern]]]):
+    def __init__(self, patterns: Mapping[str, Sequence[tuple[str, Pattern]]], words: Collection[str] = ()):
         self.patterns = patterns
+        self.words = frozenset(words)
+        self.stamp = stamp_of(sorted(patterns.items()), sorted(self.words))
         self.heads = frozenset(word.partition("::")[0] for word in patterns if "::" in word)
         self.called = frozenset(word for word, rows in patterns.items() if any(p.calls for _, p in rows))
 
 
-def with_uses(facts: CppFile, data: bytes, table: Table) -> CppFile:
-    """The facts of a C++ file with the uses that a table describes, the first of each under the same conditions, and
-    those functions that such uses call and the file declares itself. Never raises."""
+class Rows:
+    """Uses to look for in files that no compiler reads: (label, pattern). stamp: differs whenever other rows do."""
+
+    def __init__(self, rows: Sequence[tuple[str, Pattern]]):
+        self.rows = rows
+        self.stamp = stamp_of(rows)
+
+
+def stamp_of(*tables: object) -> str:
+    """A digest of what tables say."""
+    return hashlib.sha1(repr(tables).encode()).hexdigest()[:16]
+
+
+def find_uses(facts: CppFile, data: bytes, table: Table) -> tuple[tuple[Use, ...], tuple[str, ...]]:
+    """The uses in a C++ file that a table describes, the first of each under the same conditions, and those functions
+    that such uses call and the file declares itself. Never raises."""
     patterns = table.patterns
     spoken = set(facts.words.split(" "))
     uses: list[Use] = []
@@ -131,37 +158,18 @@ def with_uses(facts: CppFile, data: bytes, table: Table) -> CppFile:
     for word in sorted(patterns.keys() & (spoken | KEYWORDS)):
         if word in table.called and declares(data, word):
             functions.append(word)
-        for label, pattern in patterns[word]:
-            if may_have(data, pattern):
-                uses.extend(Use(label, *place) for place in first_places(places_of_use(data, pattern)))
-    return structs.replace(facts, uses=tuple(uses), functions=tuple(functions)) if uses or functions else facts
+        uses.extend(uses_of(data, patterns[word]))
+    return tuple(uses), tuple(functions)
 
 
-def first_places(places: Iterable[Place]) -> Iterator[Place]:
-    """The first place for every distinct set of conditions."""
+def uses_of(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[Use]:
+    """The first use of every row under each set of conditions. rows: labels and patterns of one word."""
     seen = set()
-    for place in places:
-        if place[2] not in seen:
-            seen.add(place[2])
-            yield place
-
-
-def may_have(data: bytes, pattern: Pattern) -> bool:
-    """False when a use is surely not in a file; cheap, so that few files have to be looked at closely."""
-    if not pattern.before:
-        return True
-    before = _in_bytes(rf"(?:{pattern.before})\Z")
-    for at, _ in _places(pattern.word.encode(), data):
-        # No use reaches back over the end of the statement before it.
-        begins = max(0, at - _FAR, data.rfind(b";", max(0, at - _FAR), at))
-        if before.search(data, begins, at) is not None:
-            return True
-    return False
-
-
-@lru_cache(maxsize=4096)
-def _in_bytes(expression: str) -> re.Pattern[bytes]:
-    return re.compile(expression.encode())
+    for number, place in places_of_use(data, *(pattern for _, pattern in rows)):
+        key = (number, place[2])
+        if key not in seen:
+            seen.add(key)
+            yield Use(rows[number][0], *place)
 
 
 def template_arguments(text: str, at: int) -> re.Match[str] | None:
@@ -201,12 +209,10 @@ def initialises(data: bytes, variable: str) -> bool:
     return False
 
 
-def names_a_variable(data: bytes, type_: str) -> bool:
-    """Whether a line of a C++ file declares a variable or member of this type itself, not a pointer or reference."""
-    return any(
-        _NAMED.match(data, end) and _BEFORE_MEMBER.fullmatch(data, _line_start(data, at), at)
-        for at, end in _places(type_.encode(), data)
-    )
+def types_of_variables(data: bytes) -> Iterator[str]:
+    """The types of which some line of a C++ file declares a variable or member itself, not a pointer or reference."""
+    types = (match[1].decode() for match in _VARIABLE_LINE.finditer(data))
+    return (type_ for type_ in types if type_ not in KEYWORDS)
 
 
 def _line_start(data: bytes, at: int) -> int:
@@ -223,22 +229,42 @@ def _places(name: bytes, data: bytes) -> Iterator[tuple[int, int]]:
         at = data.find(name, at + len(name))
 
 
-def places_of_use(data: bytes, pattern: Pattern) -> Iterator[Place]:
-    """Line, column, preprocessor conditions and template arguments of every use that looks like the pattern. Never
-    raises."""
-    scanned = scan(data) if pattern.language == "cpp" else None
-    text = scanned.visible if scanned is not None else _TEXTS[pattern.language](data)
-    whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
-    if (pattern.file and not _stands_in(pattern.file, whole)) or (pattern.unless and _stands_in(pattern.unless, whole)):
-        return
-    for at in standing(pattern.word, text):
-        conditions = () if scanned is None else scanned.under(at)
-        if conditions is None:
-            continue  # in a directive
-        types = _fits(pattern, text, at, at + len(pattern.word))
-        if types is not None and (pattern.inside != "class" or _in_class(text, at)):
+def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]]:
+    """Every use that looks like one of the patterns, which are of one word and language, pattern by pattern: the number
+    of the pattern, then line, column, preprocessor conditions and template arguments. Never raises."""
+    word, language = patterns[0].word, patterns[0].language
+    scanned = scan(data) if language == "cpp" else None
+    text = scanned.visible if scanned is not None else _TEXTS[language](data)
+    places: list[tuple[int, str]] = []
+    for at in standing(word, text):
+        # No use reaches back over the end of the statement before it.
+        far = max(0, at - _FAR)
+        places.append((at, text[max(far, text.rfind(";", far, at)) : at]))
+    for number, pattern in enumerate(patterns if places else ()):
+        before = _compiled(rf"(?:{pattern.before})\Z").search if pattern.before else None
+        checked = not (pattern.file or pattern.unless)
+        for at, ahead in places:
+            if before is not None and before(ahead) is None:
+                continue
+            types = _fits(pattern, text, at + len(word), ahead)
+            if types is None or (pattern.inside == "class" and not _in_class(text, at)):
+                continue
+            conditions = () if scanned is None else scanned.under(at)
+            if conditions is None:
+                continue  # in a directive
+            if not checked and not _is_in_such_a_file(pattern, data, text):
+                break
+            checked = True
             line, column = place_in(text, at) if scanned is None else scanned.place(at)
-            yield line, column, conditions, types
+            yield number, (line, column, conditions, types)
+
+
+def _is_in_such_a_file(pattern: Pattern, data: bytes, text: str) -> bool:
+    """Whether a file has what a pattern wants in it, and not what it does not."""
+    whole = data.decode("utf-8", "replace") if "#include" in pattern.file + pattern.unless else text
+    if pattern.file and not _stands_in(pattern.file, whole):
+        return False
+    return not pattern.unless or not _stands_in(pattern.unless, whole)
 
 
 @lru_cache(maxsize=64)
@@ -257,12 +283,9 @@ def _compiled(expression: str) -> re.Pattern[str]:
     return re.compile(expression)
 
 
-def _fits(pattern: Pattern, text: str, start: int, end: int) -> str | None:
-    """The template arguments of a use (empty: none), None where the text does not look like the pattern."""
-    far = max(0, start - _FAR)
-    ahead = text[max(far, text.rfind(";", far, start)) : start]
-    if pattern.before and not _compiled(rf"(?:{pattern.before})\Z").search(ahead):
-        return None
+def _fits(pattern: Pattern, text: str, end: int, ahead: str) -> str | None:
+    """The template arguments of a use (empty: none), None where the text does not look like the pattern. end: of the
+    word. ahead: what stands before it, which fits."""
     at, shown = end, ""
     opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
     if pattern.language == "cpp" and text.startswith("<", opened):

@@ -376,4 +376,4 @@ def _facts(history: History, store: Store, wanted: Sequence[tuple[str, str]]) ->
 
 
 def _commit_key(commit: str, folder: str) -> bytes:
-    return bytes.fromhex(commit) + folder.encode("utf-8", "surrogateescape") + stamp("facts", "model/flow", "flow")
+    return bytes.fromhex(commit) + folder.encode("utf-8", "surrogateescape") + stamp(__name__)

@@ -5,14 +5,16 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from pathlib import Path as FilePath
 from typing import Any
 
 import msgspec
 
 from ...edges.console import visible
 from ...edges.limits import limits_stamp
+from ..facts.kinds import version_of_all
 from ..facts.store import pack, unpack
+from ..model.flow import join
+from ..source_keys import source_key
 from .changes import Change, Side, changes, settled
 from .guard_renames import propose_renames
 from .guard_solver import limited_questions
@@ -113,16 +115,11 @@ def decoded(data: bytes | None) -> Digest:
 
 def digest_key(key: bytes) -> bytes:
     """Under which the digest of a state with this key is remembered."""
-    return key + stamp("facts", "model/flow")
+    return key + stamp(__name__)
 
 
 @cache
-def stamp(*folders: str) -> bytes:
-    """Changes whenever the code does that makes facts, joins them, or compares."""
-    root = FilePath(__file__).parent.parent
-    hashed = hashlib.sha1(limits_stamp().encode())
-    files = [path for folder in folders for path in (root / folder).glob("*.*") if path.suffix in (".py", ".toml")]
-    files += [root / "logic" / name for name in ("statements.py", "history.py", "meaning.py")]
-    for path in sorted(set(files)):
-        hashed.update(path.name.encode() + path.read_bytes())
-    return hashed.digest()[:8]
+def stamp(module: str) -> bytes:
+    """Changes whenever the code does that makes facts, joins them, or compares; module: what does so."""
+    found = f"{source_key(module, join.__name__)} {version_of_all()} {limits_stamp()}"
+    return hashlib.sha1(found.encode()).digest()[:8]

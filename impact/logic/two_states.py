@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ...edges import processes
 from ..facts.extract import Gathered, gather
-from ..facts.kinds import FLOW, script_kind
+from ..facts.kinds import FLOW
 from ..facts.store import Store, pack, unpack
 from ..model.package import role_of_folder
 from ..model.workspace import Package, Workspace
@@ -119,10 +119,8 @@ def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, s
 
 
 def _is_python(workspace: Workspace, path: str) -> bool:
-    try:
-        return script_kind(workspace.read(path)[:512]) == "python"
-    except OSError:
-        return False
+    looks = (workspace.gathered.second, workspace.gathered)
+    return any(each is not None and path in each.kinds and each.facts(path).kind.endswith("python") for each in looks)
 
 
 def _renamed(old: Sequence[State], new: Sequence[State]) -> dict[str, str]:

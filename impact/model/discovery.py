@@ -19,9 +19,8 @@ from typing import Any
 
 import msgspec
 
-from ...edges.documents import DocumentError, load_yaml
-from ...edges.limits import limits
 from ...edges.patterns import PatternError, cost_of, matches
+from ..facts.colcon import ColconFile
 from ..facts.extract import Gathered
 from ..facts.manifest import Manifest
 from ..tree import PathProblem, Tree, inside
@@ -34,11 +33,10 @@ _DEFAULTS = (".colcon/defaults.yaml", "defaults.yaml", "colcon_defaults.yaml")
 _VARIANT = re.compile(
     r"package[._-]?(?:[\w-]*[._-])?(?:ros|v)?[._-]?([12])\.xml$|package\.xml[._-](?:ros|v)?[._-]?([12])$", re.I
 )
-_PROJECT = re.compile(r'project\s*\(\s*("?)([a-zA-Z0-9_-]+)\1(?=[\s)])', re.I)
-_SETUP_NAME = re.compile(r"""(?:^|[\s,(])name\s*=\s*(?:["']([\w.-]+)["']|([A-Za-z_]\w*))""")
-_CFG_NAME = re.compile(r"(?ms)^\[metadata\][^\[]*?^name\s*[=:]\s*([\w.-]+)")
-_TOML_NAME = re.compile(r"""(?ms)^\[project\](?:(?!^\[).)*?^name\s*=\s*["']([\w.-]+)["']""")
-_SETUP_CALL = re.compile(r"\bsetup\s*\(")
+# Where the name of a Python package is looked for, in this order.
+_PYTHON_NAMES = {
+    "setup.cfg": "colcon_setup_cfg", "setup.py": "colcon_setup_py", "pyproject.toml": "colcon_pyproject",
+}  # fmt: skip
 # How many globs of base-paths are tried on every folder, and what matching names with regular expressions may cost.
 _GLOBS_AT_MOST = 100
 _MATCHING_AT_MOST = 5_000_000
@@ -269,42 +267,30 @@ class _Search:
 
     def _project_name(self, folder: str) -> str | None:
         """The name in project(), else the folder's; None for the file that catkin puts above all packages."""
-        text = re.sub(r"(?m)#.*$", "", self._text(_join(folder, "CMakeLists.txt")))
-        match = _PROJECT.search(text)
-        name = match[2] if match else _folder_name(folder, self.tree)
-        if name == "Project" and "catkin_workspace()" in text:
-            return None
-        return name
+        file = self._read(_join(folder, "CMakeLists.txt"), "colcon_cmake")
+        return None if file.is_top else file.name or _folder_name(folder, self.tree)
 
     def _python_name(self, folder: str, names: set[str]) -> str:
-        if "setup.cfg" in names and (match := _CFG_NAME.search(self._text(_join(folder, "setup.cfg")))):
-            return match[1]
-        text = self._text(_join(folder, "setup.py"))
-        call = _SETUP_CALL.search(text)
-        if call and (match := _SETUP_NAME.search(text, call.end() - 1)):
-            if match[1]:
-                return match[1]
-            value = re.search(rf"""(?m)^{match[2]}\s*=\s*["']([\w.-]+)["']""", text)
-            if value:
-                return value[1]
-        if "pyproject.toml" in names and (match := _TOML_NAME.search(self._text(_join(folder, "pyproject.toml")))):
-            return match[1]
+        for name, kind in _PYTHON_NAMES.items():
+            if name in names and (found := self._read(_join(folder, name), kind).name):
+                return found
         return ""
 
-    def _text(self, path: str, limit: int = 0) -> str:
-        try:
-            return self.tree.read(path, limit).decode("utf-8", "replace")
-        except OSError as error:
-            self.problems.append(PathProblem(path, f"cannot be read: {(error.strerror or '').lower()}"))
-            return ""
+    def _read(self, path: str, kind: str) -> ColconFile:
+        for file in self.gathered.look((path,), kind, on_error=self._unreadable).values():
+            return file
+        return ColconFile()
+
+    def _unreadable(self, path: str, error: OSError) -> None:
+        self.problems.append(PathProblem(path, f"cannot be read: {(error.strerror or '').lower()}"))
 
     def _yaml(self, path: str) -> dict[str, Any]:
-        try:
-            data = load_yaml(self._text(path, limits().settings))
-        except DocumentError as error:
-            self.problems.append(PathProblem(path, f"is no YAML ({error}), so colcon's settings in it are not known"))
-            return {}
-        return data if isinstance(data, dict) else {}
+        file = self._read(path, "colcon_settings")
+        self.problems += [
+            PathProblem(path, f"{problem.message}, so colcon's settings in it are not known")
+            for problem in file.problems
+        ]
+        return file.settings
 
     def _defaults(self) -> dict[str, Any]:
         """Colcon's default arguments for building, from the files a workspace keeps them in."""

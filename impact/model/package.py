@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Callable, Collection, Container, Iterable, Iterator
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -15,14 +15,17 @@ import msgspec
 
 from ..facts.condition import Condition
 from ..facts.cpp import CppFile, Include
+from ..facts.flow_launch import LaunchFile
 from ..facts.interface import Interface
 from ..facts.launch import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile
 from ..facts.python_objects import PythonUse
+from ..facts.searches import DeclaredCpp, SearchedCpp, WordUse
 from ..facts.setup import SetupFile
-from ..facts.usage import Pattern, first_places, initialises, names_a_variable, place_in, places_of_use, python_text
+from ..facts.usage import Pattern, Rows, Table
+from ..facts.words import mentions
 from ..targets.providers.message_headers import type_in
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
@@ -263,7 +266,8 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
     of the standard library the headers that offer them. modules: labels and patterns of uses in Python, by the
     package that is imported. fields: the table of interfaces. surfaces: what versions of packages offer, as
-    surface_store.Surfaces. parameters: labels and patterns of uses in files of parameters."""
+    surface_store.Surfaces. parameters: labels and patterns of uses in files of parameters. uses: labels and patterns of
+    uses in C++ by a word of each, read when they are asked for."""
 
     words: frozenset[str] = frozenset()
     qualified: frozenset[str] = frozenset()
@@ -274,6 +278,27 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     fields: Fields | None = None
     surfaces: Any = None
     parameters: list[tuple[str, Pattern]] = []
+    uses: Callable[[], Mapping[str, Sequence[tuple[str, Pattern]]]] | None = None
+
+    @cached_property
+    def in_cpp(self) -> Table:
+        """What to look for in C++ files."""
+        words = {name for name in self.headers_of if "::" not in name}
+        return Table(self.uses() if self.uses is not None else {}, self.words | words)
+
+    def searches(self) -> dict[str, tuple[str, Table]]:
+        """What is looked for in files while their facts are made, since every join asks for it; as gather() has it."""
+        return {"cpp": ("searched_cpp", self.in_cpp)}
+
+    @cached_property
+    def in_parameters(self) -> Rows:
+        """What to look for in files of parameters."""
+        return Rows(self.parameters)
+
+    @cached_property
+    def in_python(self) -> dict[str, Rows]:
+        """What to look for in Python files, by the package that they import."""
+        return {name: Rows(rows) for name, rows in self.modules.items()}
 
     @property
     def changing_parameters(self) -> dict[str, frozenset[str]]:
@@ -322,28 +347,30 @@ def digest_of(
     kinds: dict[str, str],
     files: Iterable[str],
     facts: Callable[[str], object],
+    look: Callable[..., Mapping[str, Any]],
     read: Callable[[str], bytes],
     watched: Watched,
     home: Collection[str] = frozenset(),
 ) -> Digest:
     """Joins the facts of the package's files. files: all its paths; kinds: extractor kind by path; facts: path to
-    FileFacts; read: path to bytes, used only to find the place of a watched bare word; home: packages of the same
-    workspace, which are not looked for in what changed elsewhere."""
+    FileFacts; look: as Gathered.look; read: path to bytes, used only to find members and changing names of C++; home:
+    packages of the same workspace, which are not looked for in what changed elsewhere."""
     return _Join(
-        name, path, manifest_path, manifest, build, build_type, kinds, tuple(files), facts, read, watched, home
+        name, path, manifest_path, manifest, build, build_type, kinds, tuple(files), facts, look, read, watched, home
     ).digest()
 
 
 class _Join:
     def __init__(
-        self, name, path, manifest_path, manifest, build, build_type, kinds, files, facts, read, watched, home
+        self, name, path, manifest_path, manifest, build, build_type, kinds, files, facts, look, read, watched, home
     ):
         self.name, self.path, self.manifest_path, self.manifest = name, path, manifest_path, manifest
         self.build, self.build_type, self.kinds, self.files = build, build_type, kinds, files
-        self.facts, self.watched, self.home = facts, watched, home
+        self.facts, self.look, self.watched, self.home = facts, look, watched, home
         self.read = cache(read)  # a file is looked into for several reasons
         self.prefix = path + "/" if path else ""
         self.cpp: dict[str, CppFile] = {}
+        self.searched: Mapping[str, SearchedCpp] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
         self._known: dict[str, Known] = {}
@@ -396,6 +423,9 @@ class _Join:
                     launches.append((path, kind))
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
+        table = self.watched.in_cpp
+        if table.patterns or table.words:
+            self.searched = self.look(self.cpp, "searched_cpp", table)
         self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined})
         roles = self.roles()
         includes, names, needed = self.sources(roles)
@@ -445,7 +475,7 @@ class _Join:
             ),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
             uses=tuple(uses),
-            functions=tuple(sorted({name for facts in self.cpp.values() for name in facts.functions})),
+            functions=tuple(sorted({name for found in self.searched.values() for name in found.functions})),
             members=(*self.members(roles), *self.python_members(python)),
             python_api=tuple(self.python_api(python)),
             cpp_api=tuple(self.cpp_api(roles)),
@@ -566,43 +596,53 @@ class _Join:
                     reach = self.reach(path) if reach is None else reach
                     if not any(h in reach for h in headers) and not self.declares(path, text):
                         around = conditions + self.macros.asked(name.conditions, targets)
-                        whole = (text.startswith("std::") and text not in _ANNOUNCED) or names_a_variable(
-                            self.read(path), text
-                        )
+                        std = text.startswith("std::") and text not in _ANNOUNCED
+                        whole = std or any(text in declared.variables for declared in self.declared([path]))
                         needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
-            if facts.words:
-                words = facts.words.split(" ")
-                for word in sorted(watched.words.intersection(words) - defined):
-                    if not initialises(self.read(path), word):  # else it is a variable of the file's own
-                        names.append(self.bare(word, path, role, public, targets, conditions))
-                for word in sorted((watched.headers_of.keys() & set(words)) - defined):
+            found = self.searched.get(path)
+            for word in found.words if found is not None else ():
+                if word.text in defined:
+                    continue
+                if word.text in watched.words and not word.initialised:  # else it is a variable of the file's own
+                    names.append(self.bare(word, path, role, public, targets, conditions))
+                headers = watched.headers_of.get(word.text)
+                if headers is not None:
                     reach = self.reach(path) if reach is None else reach
-                    if not any(h in reach for h in watched.headers_of[word]):
-                        at = self.bare(word, path, role, public, targets, conditions).at
-                        needed.append(NeededHeader(word, at, role, conditions))
+                    if not any(h in reach for h in headers):
+                        needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
         return includes, names, needed
 
     def uses(self, roles) -> Iterator[NameUse]:
         """Every use that some table row is about, in files that something compiles."""
         for path, (role, public, targets, conditions) in roles.items():
-            facts = self.cpp.get(path)
-            for use in facts.uses if facts is not None else ():
+            found = self.searched.get(path)
+            for use in found.uses if found is not None else ():
                 yield NameUse(use.label, At(path, use.line, use.column), role, public, "cpp",
                               conditions + self.macros.asked(use.conditions, targets), targets,
                               f"<{use.types}>".join(_OPEN_TYPES.split(use.label)))  # fmt: skip
 
     def python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
         """The same in Python files that import the package which the row is about."""
+        importing: dict[str, list[str]] = {}
         for path, facts in files.items():
-            heads = {item.module.split(".")[0] for item in facts.imports}
-            for package in sorted(self.watched.modules.keys() & heads):
-                yield from self.alike(path, self.watched.modules[package])
+            for package in {item.module.split(".")[0] for item in facts.imports} & self.watched.modules.keys():
+                importing.setdefault(package, []).append(path)
+        found = {p: self.look(paths, "searched_text", self.watched.in_python[p]) for p, paths in importing.items()}
+        for path in files:
+            for package in sorted(found):
+                yield from self.alike(path, "python", found[package])
 
-    def parameter_uses(self, paths: Iterable[str]) -> Iterator[NameUse]:
+    def parameter_uses(self, paths: Collection[str]) -> Iterator[NameUse]:
         """The same in files of parameters."""
-        for path in paths:
-            data = self.read(path)
-            yield from self.alike(path, [row for row in self.watched.parameters if row[1].word.encode() in data])
+        if self.watched.parameters:
+            found = self.look(paths, "searched_text", self.watched.in_parameters)
+            for path in paths:
+                yield from self.alike(path, "yaml", found)
+
+    def alike(self, path: str, language: str, found: Mapping[str, Any]) -> Iterator[NameUse]:
+        """The uses that were found in a file that no compiler reads."""
+        for use in found[path].uses if path in found else ():
+            yield NameUse(use.label, At(path, use.line, use.column), self.python_role(path), False, language)
 
     def settings(self, parameters: Iterable[str], launches: list[tuple[str, str]]) -> Iterator[SettingUse]:
         """Parameters of other packages' nodes that files of parameters and launch files set, of those that change."""
@@ -613,38 +653,35 @@ class _Join:
             return
         started: dict[str, list[Named]] = {}
 
+        def spoken(path: str) -> set[str]:
+            return set(self.facts(path).facts.words.split(" "))
+
+        def launched(path: str, kind: str) -> Iterable[LaunchFile]:
+            return self.look((path,), f"flow_{kind}").values()
+
         def named(name: str, packages: Collection[str]) -> Named | None:
             other = None
             for path, kind in launches:
-                data = self.read(path)
-                if name.encode() not in data:
-                    continue
-                if path not in started:
-                    started[path] = list(named_in(data, kind))
-                for one in started[path]:
+                if path not in started and mentions(name, spoken(path)):
+                    started[path] = [one for file in launched(path, kind) for one in named_in(file)]
+                for one in started.get(path, ()):
                     if one.name == name and one.package in packages:
                         return one
                     other = one if one.name == name else other
             return other
 
-        for path in parameters:
-            for found in in_parameters(self.read(path), changing, named):
+        wanted = [p for p in parameters if "ros__parameters" in (words := spoken(p)) and words & changing.keys()]
+        for path, file in self.look(wanted, "flow_parameters").items():
+            for found in in_parameters(file, changing, named):
                 yield self.setting(path, found)
         for path, kind in launches:
-            data = self.read(path)
-            if mentions_changing(data, changing):
-                for found in in_launch(data, kind, changing):
+            for file in launched(path, kind) if mentions_changing(spoken(path), changing) else ():
+                for found in in_launch(file, changing):
                     yield self.setting(path, found)
 
     def setting(self, path: str, found: Setting) -> SettingUse:
         at = At(path, found.line)
         return SettingUse(found.name, found.package, found.plugin, found.node, found.others, at, self.python_role(path))
-
-    def alike(self, path: str, rows: Iterable[tuple[str, Pattern]]) -> Iterator[NameUse]:
-        """Where a file that no compiler reads has what looks like one of these rows' uses."""
-        for label, pattern in rows:
-            for line, column, _, _ in first_places(places_of_use(self.read(path), pattern)):
-                yield NameUse(label, At(path, line, column), self.python_role(path), False, pattern.language)
 
     def members(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
@@ -764,28 +801,24 @@ class _Join:
 
     def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""
-        from .members import Scope, interfaces_imported
-        from .python.members import PythonUses
+        from .members import Scope
+        from .python.members import changing_members, interfaces_used
 
         table = self.watched.fields
         if table is None:
             return
         for path, facts in files.items():
-            imported = interfaces_imported(((i.module, i.names) for i in facts.imports if not i.level), table)
+            used = interfaces_used(facts.members, table) if facts.members else ()
             seen = set()
             # Both generations import an interface alike: each is followed for itself.
-            for ros in sorted({interface.ros for interface in imported}):
-                scope = Scope((interface for interface in imported if interface.ros == ros), table)
-                if not scope.changing:
-                    continue
-                text = python_text(self.read(path))
-                for found in PythonUses(text, scope).found():
+            for ros in sorted({interface.ros for interface in used}):
+                scope = Scope((interface for interface in used if interface.ros == ros), table)
+                for use, found in changing_members(facts.members, scope) if scope.changing else ():
                     key = (found.interface, found.section, found.member)
                     if key not in seen:
                         seen.add(key)
-                        line, column = place_in(text, found.offset)
                         yield MemberUse(found.interface.package, found.interface.ros, found.interface.name,
-                                        found.section, found.member, At(path, line, column),
+                                        found.section, found.member, At(path, use.line, use.column),
                                         self.python_role(path), "python", found.sure)  # fmt: skip
 
     def python_api(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
@@ -801,11 +834,12 @@ class _Join:
             for use in uses_of(facts, frozenset(own), changing):
                 yield PythonApiUse(use, At(path, use.line, use.column), self.python_role(path))
 
-    def bare(self, word, path, role, public, targets, conditions) -> NameUse:
-        """Where a bare word stands first, outside comments, with the preprocessor conditions around it."""
-        line, column, around = place_of_word(self.read(path), word)
-        around = self.macros.asked(around, targets)
-        return NameUse(word, At(path, line, column), role, public, "cpp", conditions + around, targets)
+    def bare(self, word: WordUse, path, role, public, targets, conditions) -> NameUse:
+        """A use of a bare word, with the preprocessor conditions around it."""
+        around = self.macros.asked(word.conditions, targets)
+        return NameUse(
+            word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets
+        )
 
     def reach(self, path: str) -> set[str]:
         """All include paths that reach a file, through files of the package."""
@@ -878,12 +912,18 @@ class _Join:
         head = space.partition("::")[0]
         if head in ("", "std"):
             return False
-        known = _adds_conversion if space == "tf2" and word[0].islower() else _declares_type
-        found = (data for at in self.reached(path) if known(data := self.read(at), word.encode()))
-        if type_in(name) is None:
-            return any(True for _ in found)
+        conversion = space == "tf2" and word[0].islower()
+        found = (
+            declared for declared in self.declared(self.reached(path))
+            if word in (declared.tf2 if conversion else declared.types)
+        )  # fmt: skip
         # tf2 has a Quaternion too.
-        return any(re.search(rb"\bnamespace\s+" + head.encode() + rb"\b", data) for data in found)
+        message = type_in(name) is not None
+        return any(head in declared.spaces for declared in found) if message else any(True for _ in found)
+
+    def declared(self, paths: Iterable[str]) -> Iterator[DeclaredCpp]:
+        """What C++ files of the package declare."""
+        return iter(self.look(paths, "declared_cpp").values())
 
     # -- what Python files need ------------------------------------------------------------------------------------
 
@@ -977,41 +1017,13 @@ def _spoken(facts: CppFile) -> frozenset[str]:
     return frozenset(found)
 
 
-_TYPE_AHEAD = re.compile(rb"\b(?:class|struct|enum|typedef|using)\b[^;{}=]*(?<!\w)\Z")
-_TYPE_BEHIND = re.compile(rb"\s*[;:{=<]")
 # Headers that nobody includes by themselves.
 _PART = re.compile(r"[_-](?:impl?|inl|details?)\.\w+\Z|/(?:impl|details?|internal)/|\.(?:hxx|ipp|tpp|txx)\Z")
-# The macro of ros/message_forward.h that announces a message.
-_MESSAGE_AHEAD = re.compile(rb"\bROS_DECLARE_MESSAGE\s*\(\s*\Z")
-
-
-def _declares_type(data: bytes, word: bytes) -> bool:
-    """True when the bytes of a file announce or define a type of this name."""
-    at = data.find(word)
-    while at >= 0:
-        end = at + len(word)
-        if _TYPE_BEHIND.match(data, end) and _TYPE_AHEAD.search(data, max(0, at - 300), at):
-            return True
-        if _MESSAGE_AHEAD.search(data, max(0, at - 40), at):
-            return True
-        at = data.find(word, end)
-    return False
-
-
 # What <iosfwd> announces, and with it most standard headers, so that references may be made to it.
 _ANNOUNCED = frozenset({"std::string"}).union(
     f"std::{name}{kind}" for name in ("i", "o", "io", "f", "if", "of", "string", "istring", "ostring")
     for kind in ("stream", "streambuf")
 )  # fmt: skip
-# tf2's namespace up to its end or that of the file, and a special form of one of its templates from outside.
-_OF_TF2 = re.compile(rb"\bnamespace\s+tf2\s*\{.*|\btemplate\s*<\s*>[^;{}]*", re.DOTALL)
-
-
-def _adds_conversion(data: bytes, word: bytes) -> bool:
-    """True when the bytes of a file may add a form of a function of tf2's."""
-    return any(word in found.group() for found in _OF_TF2.finditer(data))
-
-
 # Stands for a test of which only is known that one of several branches of it has to be taken.
 _ONE_OF_SEVERAL = Condition("cmake", "<one of several conditions>")
 
@@ -1025,10 +1037,3 @@ def _either(one: list[Condition], other: tuple[Condition, ...]) -> list[Conditio
 def is_header(path: str) -> bool:
     """True for C and C++ header names."""
     return path.endswith((".h", ".hpp", ".hh", ".hxx", ".h++", ".ipp", ".tpp", ".inl", ".cuh", ".h.in", ".hpp.in"))
-
-
-def place_of_word(data: bytes, word: str) -> tuple[int, int, tuple[Condition, ...]]:
-    """Line, column and preprocessor conditions of the first use of a bare word; (1, 0, ()): only in comments."""
-    from ..facts.cpp import places_of
-
-    return next(iter(places_of(data, word)), (1, 0, ()))

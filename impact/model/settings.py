@@ -11,12 +11,12 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import NamedTuple
 
-from ..facts import flow_launch
-from ..facts.flow_launch import Action, Entry, plain
+from ..facts.flow_launch import Action, LaunchFile, plain
+from ..facts.flow_parameters import Entry, ParameterFile
 from ..facts.launch import CLASS
 from ..facts.parameters import last_part
 
-Changing = Mapping[str, Collection[str]]
+Changing = Mapping[str, frozenset[str]]
 """Last parts of parameters' names, with the packages of which some versions declare one so called."""
 
 
@@ -42,27 +42,18 @@ class Named(NamedTuple):
     name: str
 
 
-def mentions_changing(data: bytes, changing: Changing) -> bool:
-    """Whether a file has the name of a parameter that changed and of a package that it changed in; quick."""
-    words = {word.decode() for word in _WORD.findall(data)}
-    return any(not words.isdisjoint(changing[word]) for word in words & changing.keys())
-
-
-_WORD = re.compile(rb"[A-Za-z_]\w*")
+def mentions_changing(words: Collection[str], changing: Changing) -> bool:
+    """Whether a file with these words may set a parameter that changed, of a package that it changed in."""
+    return any(not changing[word].isdisjoint(words) for word in changing.keys() & words)
 
 
 def in_parameters(
-    data: bytes, changing: Changing, named: Callable[[str, Collection[str]], Named | None]
+    file: ParameterFile, changing: Changing, named: Callable[[str, Collection[str]], Named | None]
 ) -> Iterator[Setting]:
     """What a file of ROS 2 parameters sets. named: the node that goes by a name, one of some packages first, None where
     no launch file tells."""
-    if b"ros__parameters" not in data:
-        return
-    words = {word.decode() for word in _WORD.findall(data)}
-    if words.isdisjoint(changing):
-        return
     nodes: dict[tuple[str, ...], list[tuple[list[str], Entry]]] = {}
-    for entry in flow_launch.parameters(data).entries:
+    for entry in file.entries:
         if "ros__parameters" in entry.path:
             place = entry.path.index("ros__parameters")
             key = ".".join(entry.path[place + 1 :]).split(".")
@@ -111,10 +102,9 @@ def _package(class_: str) -> str:
     return re.split(r"/|::", class_)[0]
 
 
-def in_launch(data: bytes, kind: str, changing: Changing) -> Iterator[Setting]:
-    """What a launch file itself sets for the nodes and components that it starts. kind: as of facts/launch.py, or
-    `launch_python`."""
-    for action in _actions(flow_launch.extract(data, kind).actions):
+def in_launch(file: LaunchFile, changing: Changing) -> Iterator[Setting]:
+    """What a launch file itself sets for the nodes and components that it starts."""
+    for action in _actions(file.actions):
         package = plain(action.get("package")) or ""
         plugin, program = plain(action.get("plugin")) or "", plain(action.get("executable")) or ""
         if not package or not (plugin or program):
@@ -125,10 +115,10 @@ def in_launch(data: bytes, kind: str, changing: Changing) -> Iterator[Setting]:
                 yield Setting(name.replace("/", "."), package, plugin, "" if plugin else program, child.line)
 
 
-def named_in(data: bytes, kind: str) -> Iterator[Named]:
+def named_in(file: LaunchFile) -> Iterator[Named]:
     """The nodes that a launch file starts, as far as they are told plainly; one that it gives no name goes by that of
     its program."""
-    for action in _actions(flow_launch.extract(data, kind).actions):
+    for action in _actions(file.actions):
         package, program = plain(action.get("package")), plain(action.get("executable"))
         if package and program:
             yield Named(package, program, plain(action.get("name")) or program)

@@ -16,7 +16,7 @@ from ..targets.providers.library import OPENCV_FUNCTIONS
 from ..targets.providers.standard import offering
 from ..targets.surface.fields import default_fields
 from ..targets.surface.store import shipped
-from ..targets.uses import all_uses, stamp
+from ..targets.uses import all_uses, looked_for, stamp
 from .package import Watched
 
 _KINDS = frozenset({"api-removed", "api-renamed", "api-changed", "python-removed", "python-api"})
@@ -75,6 +75,7 @@ def watched() -> Watched:
     return Watched(
         *(frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields, shipped()),
         parameters=parameters,
+        uses=looked_for,
     )
 
 

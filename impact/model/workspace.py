@@ -20,8 +20,9 @@ import msgspec
 from ...edges import processes
 from ...edges.limits import limits_stamp
 from ..facts.extract import Gathered
-from ..facts.kinds import EXTRACTORS
+from ..facts.kinds import version_of_all
 from ..facts.manifest import Manifest
+from ..source_keys import source_key
 from ..targets.surface.fields import snake
 from .cmake.build import Build
 from .cmake.interpret import extras_of, interpret
@@ -34,11 +35,8 @@ if TYPE_CHECKING:
     from .flow.join import Join
     from .flow.launches import Launch
 
-# Raise with every change of what a digest or the CMake interpreter says.
-DIGEST_VERSION = "37"
 # Starting processes costs about as much as joining packages with this many files here.
 _ALONE_FILES = 100
-_VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])
 
 
 class Package:
@@ -455,7 +453,8 @@ class _Linker:
         self.all_paths = frozenset(e.path for e in tree.entries())
         self.by_name = {p.name: p for p in discovered.packages}
         self._extras: dict[str, tuple[str, ...]] = {}
-        self.identity = hashlib.sha1(f"{DIGEST_VERSION} {ros}".encode())
+        self.code = f"{source_key(__name__)} {version_of_all()}"
+        self.identity = hashlib.sha1(f"{self.code} {ros}".encode())
 
     def digests(self, store) -> list[Digest]:
         places = [p for p in self.discovered.packages if _manifest(self.gathered, p.manifest_path) is not None]
@@ -501,6 +500,7 @@ class _Linker:
             return
         jobs = 1 if len(order) < 2 or files < _ALONE_FILES else self.jobs
         self.gathered.store.close()  # every process opens it for itself
+        _ = self.watched.in_cpp  # made once and for all processes
         decoder = msgspec.msgpack.Decoder(Digest)
         for path, result in processes.forked(_join, order, jobs, self, tasks):
             if isinstance(result, processes.Died):
@@ -545,7 +545,7 @@ class _Linker:
     def key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
-        versions = f"{_VERSIONS}{limits_stamp()} {self.watched.version}"
+        versions = f"{self.code}{limits_stamp()} {self.watched.version}"
         about = f"{versions} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n"
         digest = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
         digest.update(
@@ -615,6 +615,7 @@ class _Linker:
             gathered.kinds,
             files,
             gathered.facts,
+            gathered.look,
             self.tree.read,
             self.watched,
             self.home,

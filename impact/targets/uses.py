@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from ..facts.usage import Pattern, Table
+from ..facts.usage import Pattern
 from . import behaviour
 from .changes import reached, version_of
 from .snapshot import DATA, SnapshotError
@@ -94,13 +94,13 @@ def stamp() -> str:
 
 
 @cache
-def looked_for() -> Table:
-    """The uses of C++, and what behaves otherwise, as files are searched for them."""
+def looked_for() -> dict[str, list[tuple[str, Pattern]]]:
+    """The uses of C++, and what behaves otherwise, with their labels, by a word that stands in each."""
     found: dict[str, list[tuple[str, Pattern]]] = {}
     for row in (*all_uses(), *behaviour.all_behaviour().values()):
         if row.pattern.language == "cpp":
             found.setdefault(row.pattern.word, []).append((row.label, row.pattern))
-    return Table(found)
+    return found
 
 
 def standards_of(label: str) -> tuple[int, int]:

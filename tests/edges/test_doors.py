@@ -26,7 +26,6 @@ DOORS = {
     },
     ".read_bytes": {
         "impact/cache.py": "our own modules",
-        "impact/logic/states.py": "our own modules",
         "corpus/figures.py": "our own labels, and a picture just drawn",
         **dict.fromkeys(
             (f"impact/targets/{name}.py" for name in (

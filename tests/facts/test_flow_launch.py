@@ -6,15 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.impact.facts.flow_launch import (
     LaunchFile,
-    ParameterFile,
     Piece,
     extract,
-    parameters,
     plain,
-    scalar,
     substitutions,
     words,
 )
+from rosimpact.impact.facts.flow_parameters import ParameterFile, scalar
+from rosimpact.impact.facts.flow_parameters import extract as parameters
 
 
 def said(value):

@@ -41,6 +41,11 @@ PYTHON = [
     ("self.declare_parameter(f'{name}.rate', 1)", [("*.rate", "1")]),
     ("self.declare_parameter(name + '.rate', 1)", [("*.rate", "1")]),
     ("self.declare_parameters('arm', [('a', 1), ('b', None, d)])", [("arm.a", "1"), ("arm.b", "None")]),
+    ("RATE = 'rate'\nFAST = 20.0\nself.declare_parameter(RATE, FAST)", [("rate", "20.0")]),
+    ("ARM = 'arm'\nself.declare_parameter(f'{ARM}.rate', ARM + '_link')", [("arm.rate", '"arm_link"')]),
+    ("ARM = 'arm'\nself.declare_parameters(ARM, [(ARM + '_a', 1)])", [("arm.arm_a", "1")]),
+    ("RATE = 'rate'\nRATE = 'speed'\nself.declare_parameter(RATE, 1)", []),
+    ("RATE = 'rate'\ndef f(RATE):\n  self.declare_parameter(RATE, 1)", []),
     ("self.declare_parameter(name, 1)\n# self.declare_parameter('x', 1)", []),
 ]
 CFG = [

@@ -91,6 +91,7 @@ GIVEN = [
     ("setup(entry_points='''\n[console_scripts]\na = b.c:main\n''')", "entry_points", (("a", "b.c", 3),)),
     ("setup(entry_points={'gui_scripts': ['a=b:c [x]']})", "entry_points", (("a", "b", 1),)),
     ("setup(entry_points={'ros2cli.command': ['a=b:c']})", "entry_points", ()),
+    ("print 'a'\nsetup(packages=['b'])", "packages", ("b",)),  # as Python 2 has it
     ("setup(**read())", "unresolved", ("arguments are `read()`",)),
 ]  # fmt: skip
 
@@ -101,9 +102,8 @@ def test_literals(text, field, expected):
 
 
 PROBLEMS = [
-    ("setup_py", "print 'a'", 1, "not Python 3: "),
-    ("setup_py", "x = (\n", 1, "not Python 3: "),
-    ("setup_py", "\0", 1, "not Python 3: "),
+    ("setup_py", "x = (\n", 1, "not parsed: "),
+    ("setup_py", "\0", 1, "not parsed: "),
     ("setup_cfg", "[a]\nx=1\n no section\nfoo\n", 4, "not readable as a configuration: "),
     ("setup_cfg", "x = 1\n", 1, "not readable as a configuration: "),
     ("pyproject", "[a]\nx = \n", 2, "not readable as TOML: "),

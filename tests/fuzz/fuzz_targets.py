@@ -34,22 +34,24 @@ from rosimpact.impact.analysis import findings
 from rosimpact.impact.analysis import result_cache as memo
 from rosimpact.impact.analysis import revision_compare as base
 from rosimpact.impact.conditions import Environment, holds
-from rosimpact.impact.facts import allow, elf, flow_launch, kinds, store
+from rosimpact.impact.facts import allow, elf, flow_launch, flow_parameters, kinds, store
 from rosimpact.impact.facts.cmake import extract as extract_cmake
 from rosimpact.impact.facts.condition import Condition
+from rosimpact.impact.facts.usage import Rows
 from rosimpact.impact.model import discovery
 from rosimpact.impact.model.cmake import regex
 from rosimpact.impact.model.cmake.interpret import extras_of, interpret
 from rosimpact.impact.model.cmake.interpreter import MAX_STEPS
 from rosimpact.impact.model.launch import follow as launch
 from rosimpact.impact.model.launch import text as launch_text
+from rosimpact.impact.model.tracked_names import watched
 from rosimpact.impact.report import github, markdown_text
 from rosimpact.impact.targets import capture, resolve, version
 from rosimpact.impact.targets.distro.distro import TargetError
 from rosimpact.impact.targets.machine import unpacked_deb
 from rosimpact.impact.tree import Entry, ignore, working
 
-for _module, _, _ in kinds.EXTRACTORS.values():
+for _module, _ in kinds.EXTRACTORS.values():
     if _module:  # they are imported when they are first needed, which no check should pay for
         import_module(f"rosimpact.impact.facts.{_module}")
 
@@ -123,7 +125,11 @@ def extractor(kind: str) -> Callable[[bytes], None]:
     """Facts of a kind: extraction never raises and hides no exception; facts encode and decode to the same."""
 
     def check(data: bytes) -> None:
-        found = kinds.extract(kind, data)
+        if kind in kinds.SEARCHES:
+            first = {"searched_text": "python"}.get(kind, "cpp")
+            found = kinds.search(kind, data, kinds.extract(first, data).facts, _tables()[kind])
+        else:
+            found = kinds.extract(kind, data)
         for problem in getattr(found.facts, "problems", ()):
             if _FAILED.match(problem.message) and not _is_documented(kind, problem.message):
                 _raise_again(found.kind, data)
@@ -134,16 +140,21 @@ def extractor(kind: str) -> Callable[[bytes], None]:
     return check
 
 
+@cache
+def _tables() -> dict[str, object]:
+    """What searches are given to look for."""
+    names = watched()
+    rows = Rows([row for group in (*names.modules.values(), names.parameters) for row in group])
+    return {"searched_cpp": names.in_cpp, "searched_text": rows, "declared_cpp": None}
+
+
 def _raise_again(kind: str, data: bytes) -> None:
     """Runs an extractor without what catches its exceptions."""
     module = kinds.EXTRACTORS[kind][0]
+    if kind in kinds.SEARCHES:
+        return  # its problem alone says what failed
     read = import_module(f"rosimpact.impact.facts.{module}").extract
-    facts = read(data, kind) if module in kinds.WITH_KIND else read(data)
-    if kind == "cpp":
-        from rosimpact.impact.facts.usage import with_uses
-        from rosimpact.impact.targets.uses import looked_for
-
-        with_uses(facts, data, looked_for())
+    _ = read(data, kind) if module in kinds.WITH_KIND else read(data)
     if kind == "setup_py":
         _raise_again("python", data)
 
@@ -152,7 +163,7 @@ class _Sources:
     """Launch and parameter files, all of them the same one."""
 
     def __init__(self, data: bytes, kind: str):
-        self.file, self.values = flow_launch.extract(data, kind), flow_launch.parameters(data)
+        self.file, self.values = flow_launch.extract(data, kind), flow_parameters.extract(data)
 
     def launch(self, package: str, path: str) -> Any:
         return self.file
@@ -174,7 +185,7 @@ def launched(kind: str) -> Callable[[bytes], None]:
 
 
 def parameters(data: bytes) -> None:
-    flow_launch.parameters(data)
+    flow_parameters.extract(data)
 
 
 # CMake

@@ -3,11 +3,12 @@
 import msgspec
 import pytest
 import zstandard
+from rosimpact.impact.facts import python
 from rosimpact.impact.facts.cpp.code import Code
 from rosimpact.impact.model.cpp.resolver import Known, Resolver
 from rosimpact.impact.model.cpp.uses import MemberUses
-from rosimpact.impact.model.members import Scope, interface_named, interfaces_imported, interfaces_included
-from rosimpact.impact.model.python.members import PythonUses
+from rosimpact.impact.model.members import Scope, interface_named, interfaces_included
+from rosimpact.impact.model.python.members import changing_members, interfaces_used
 from rosimpact.impact.targets.surface.fields import Fields
 
 # Two states: of each pair, the first member is in the old one alone, the second in the new one.
@@ -165,15 +166,34 @@ IMPORTS = "from arm_msgs.msg import Arm\nfrom arm_msgs.srv import Start as Begin
         ("def f():\n  a = Arm()\ndef g(a):\n  a.mode\n", []),
         ("a = Arm()\na = other()\na.mode\n", []),
         ("a = Arm()\na.joints\n", []),
+        ("a = Arm()\nt = a.tool\nt.old_name\n", ["Joint.message.old_name"]),
+        ("def f(a: Arm):\n  for j in a.joints:\n    j.old_name\n", ["Joint.message.old_name"]),
+        ("def f(a: Arm):\n  return [j.old_name for j in a.joints]\n", ["Joint.message.old_name"]),
+        ("def f(a: 'Arm'):\n  g(lambda a: a.mode)\n", []),
+        ("def f(a: Arm, b):\n  if b:\n    a = b\n  a.mode\n", []),
+        ("if b:\n  a = Arm()\nelse:\n  a = Arm()\na.mode\n", ["Arm.message.mode"]),
+        ("if b:\n  a = Arm()\nelse:\n  a = 1\na.mode\n", []),
+        ("a = Arm()\nfor x in y:\n  a.mode\n  a = x\n", []),
+        ("a = Arm()\ntry:\n  a = f()\nfinally:\n  a.mode\n", []),
+        ("a = Arm()\nwith f() as a:\n  a.mode\n", []),
+        ("a = Arm()\na.mode()\n", []),
+        ("def Arm():\n  pass\na = Arm()\na.mode\n", []),
+        ("import arm_msgs.msg\na = arm_msgs.msg.Arm(mode=1)\n", ["Arm.message.mode"]),
+        ("import arm_msgs.msg as m\ndef f(a: m.Arm):\n  a.tool.new_name\n", ["Joint.message.new_name"]),
+        ("class N:\n  def s(self):\n    self.create_service(Begin, 'x', self.got)\n"
+         "  def got(self, q, r):\n    q.start_arms\n    r.done\n    r.arms[0].tool.old_name\n    return r\n",
+         ["Joint.message.old_name", "Start.request.start_arms", "Start.response.done"]),
+        ("class N:\n  def s(self):\n    self.create_subscription(Arm, 'x', partial(self.got, 1), 1)\n"
+         "  def got(self, n, m):\n    n.mode\n", []),
+        ("class N:\n  def f(self):\n    self.a = Arm()\n  def g(self, x):\n    self.a = x\n    self.a.mode\n", []),
+        ("class N:\n  a: Arm\n  def f(self):\n    self.b: Arm = x()\n    self.b.mode\n", ["Arm.message.mode"]),
     ],
 )  # fmt: skip
 def test_python(text, found, fields):
-    imported = interfaces_imported([("arm_msgs.msg", ("Arm",)), ("arm_msgs.srv", ("Start",))], fields)
-    scope = Scope([interface for interface in imported if interface.ros == 2], fields)
-    assert (
-        sorted(f"{f.interface.short}.{f.section}.{f.member}" for f in PythonUses(IMPORTS + text, scope).found())
-        == found
-    )
+    uses = python.extract((IMPORTS + text).encode()).members
+    scope = Scope([interface for interface in interfaces_used(uses, fields) if interface.ros == 2], fields)
+    members = {f"{f.interface.short}.{f.section}.{f.member}" for _, f in changing_members(uses, scope)}
+    assert sorted(members) == found
 
 
 def test_includes_that_are_not_known(fields):

@@ -1,13 +1,16 @@
 """Parameters that files set for nodes of other packages: one file in, whose parameters it sets out."""
 
 import pytest
+from rosimpact.impact.facts.flow_launch import extract
+from rosimpact.impact.facts.flow_parameters import extract as parameters
+from rosimpact.impact.facts.words import words_of
 from rosimpact.impact.model.settings import Named, Setting, in_launch, in_parameters, mentions_changing, named_in
 from rosimpact.impact.rules.api.removed_parameter import means
 
 CHANGING = {
-    "old_rate": ("base_driver",),
-    "old_gain": ("path_follower", "base_driver"),
-    "old_scale": ("path_follower",),
+    "old_rate": frozenset(("base_driver",)),
+    "old_gain": frozenset(("path_follower", "base_driver")),
+    "old_scale": frozenset(("path_follower",)),
 }
 DRIVE = """
 controller_server:
@@ -58,12 +61,12 @@ def nobody(name, packages):
 
 @pytest.mark.parametrize(("text", "expected"), TABLE)
 def test_what_a_file_of_parameters_sets(text, expected):
-    found = in_parameters(text.encode(), CHANGING, nobody)
+    found = in_parameters(parameters(text), CHANGING, nobody)
     assert [(one.name, one.package, one.plugin, one.node, one.line) for one in found] == expected
 
 
 def test_the_plugins_of_a_node_are_known_together():
-    assert {one.others for one in in_parameters(DRIVE.encode(), CHANGING, nobody)} == {
+    assert {one.others for one in in_parameters(parameters(DRIVE), CHANGING, nobody)} == {
         ("other_follower", "path_follower")
     }
 
@@ -72,13 +75,13 @@ def test_a_launch_file_tells_whose_name_a_node_has():
     def named(name, packages):
         return Named("base_driver", "driver", name) if (name, set(packages)) == ("base", {"base_driver"}) else None
 
-    text = b"base:\n  ros__parameters:\n    old_rate: 1.0\n"
-    assert list(in_parameters(text, CHANGING, named)) == [Setting("old_rate", "base_driver", "", "driver", 3)]
+    file = parameters(b"base:\n  ros__parameters:\n    old_rate: 1.0\n")
+    assert list(in_parameters(file, CHANGING, named)) == [Setting("old_rate", "base_driver", "", "driver", 3)]
 
 
 def test_a_name_that_another_package_has_is_not_guessed():
     text = b"base:\n  ros__parameters:\n    old_rate: 1.0\n"
-    assert list(in_parameters(text, CHANGING, lambda name, packages: Named("other", "driver", name))) == []
+    assert list(in_parameters(parameters(text), CHANGING, lambda name, packages: Named("other", "driver", name))) == []
 
 
 PYTHON = b"""
@@ -129,12 +132,12 @@ ROS1 = b"""<launch>
     ],
 )
 def test_what_a_launch_file_sets(kind, data, expected):
-    found = in_launch(data, kind, CHANGING)
+    found = in_launch(extract(data, kind), CHANGING)
     assert [(one.name, one.package, one.plugin, one.node) for one in found] == expected
 
 
 def test_nodes_and_their_names():
-    assert list(named_in(PYTHON, "launch_python"))[:2] == [
+    assert list(named_in(extract(PYTHON, "launch_python")))[:2] == [
         Named("base_driver", "driver", "base"),
         Named("other", "driver", "driver"),
     ]
@@ -150,7 +153,7 @@ def test_nodes_and_their_names():
     ],
 )
 def test_files_worth_reading(data, expected):
-    assert mentions_changing(data, CHANGING) is expected
+    assert mentions_changing(set(words_of(data).split(' ')), CHANGING) is expected
 
 
 @pytest.mark.parametrize(

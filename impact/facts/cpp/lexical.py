@@ -40,24 +40,12 @@ class Name(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...] = ()
 
 
-class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A use that a table describes, by the label it has there. types: the template arguments that are written."""
-
-    label: str
-    line: int
-    column: int
-    conditions: tuple[Condition, ...] = ()
-    types: str = ""
-
-
 class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """includes in order; qualified: distinct qualified names; words: distinct bare identifiers (not keywords) with at
     least four characters, space-joined and sorted (positions are found again in the bytes when a finding needs them);
     defined: macros and include guards the file defines; using: namespaces named by `using namespace` and `using a::b`.
     exports: classes given to pluginlib and rclcpp_components macros, as written without spaces; references: packages
     and files named by literals (`package://`, getPath, get_package_share_directory); main: defines a main function.
-    uses: of what the table of uses describes, the first of every label under the same conditions, called by its label;
-    functions: those that such uses call and that the file declares itself.
     """
 
     includes: tuple[Include, ...]
@@ -69,8 +57,6 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     exports: tuple[str, ...] = ()
     references: tuple[Reference, ...] = ()
     main: bool = False
-    uses: tuple[Use, ...] = ()
-    functions: tuple[str, ...] = ()
 
 
 # Conditions beyond these are one unknown condition: hostile input must not cost quadratic memory.

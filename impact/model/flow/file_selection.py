@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 
-from ...cache import code_stamp
 from ...facts.kinds import FLOW, kind_of
+from ...source_keys import code_stamp
 from ..package import role_of_folder
 from ..workspace import Workspace
 

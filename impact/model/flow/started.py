@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ...facts import flow_launch
-from ...facts.flow_launch import LaunchFile, ParameterFile
+from ...facts.flow_launch import LaunchFile
+from ...facts.flow_parameters import ParameterFile
 from ..launch.follow import Launched, Remap, Started, follow
 from ..workspace import Workspace
 from .names import NameRefused, Rule, ros1_remapped, ros2_remapped
@@ -21,8 +21,6 @@ class InWorkspace:
 
     def __init__(self, workspace: Workspace):
         self.workspace = workspace
-        self._launch: dict[str, LaunchFile] = {}
-        self._parameters: dict[str, ParameterFile] = {}
 
     def place(self, package: str, path: str) -> str:
         """The workspace path of an installed file, empty for what is not there."""
@@ -46,22 +44,15 @@ class InWorkspace:
         """The facts of a launch file; None for what is not there or is no launch file by its name."""
         place = self.place(package, path)
         kind = launch_kind(place)
-        if not place or not kind:
-            return None
-        known = self._launch.get(place)
-        if known is None:
-            known = self._launch[place] = flow_launch.extract(self.workspace.read(place), kind)
-        return known
+        return self._facts(place, f"flow_{kind}") if place and kind else None
 
     def parameters(self, package: str, path: str) -> ParameterFile | None:
         """The facts of a parameter file; None for what is not there."""
         place = self.place(package, path)
-        if not place:
-            return None
-        known = self._parameters.get(place)
-        if known is None:
-            known = self._parameters[place] = flow_launch.parameters(self.workspace.read(place))
-        return known
+        return self._facts(place, "flow_parameters") if place else None
+
+    def _facts(self, place: str, kind: str) -> Any:
+        return self.workspace.gathered.look((place,), kind).get(place)
 
 
 def launch_kind(path: str) -> str:

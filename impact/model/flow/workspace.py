@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from ...cache import code_stamp
 from ...facts.extract import Gathered, gather
 from ...facts.flow import FlowFile
 from ...facts.kinds import kind_of
 from ...facts.store import encodable
+from ...source_keys import code_stamp
 from ..package import Watched, role_of_folder
 from ..workspace import Package, Workspace, link
 from .callers import Callers, callers

@@ -8,7 +8,8 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ...facts.flow_launch import Action, Entry, Piece, Value, literal, scalar, substitutions
+from ...facts.flow_launch import Action, Piece, Value, literal, substitutions
+from ...facts.flow_parameters import Entry, scalar
 from .result import At, Remap, Setting, SettingFile, Sources, Unresolved
 from .text import (
     CannotTell,

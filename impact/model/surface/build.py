@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from ...facts import flow_launch
 from ...facts.cmake import CMakeFile
 from ...facts.flow_launch import Action, plain
 from ...facts.kinds import kind_of as kind_by_name
@@ -389,11 +388,8 @@ class _Surface:
                 yield LaunchFile(path, tuple(self.arguments(f"{self.prefix}{source}", kind)))
 
     def arguments(self, path: str, kind: str) -> Iterator[tuple[str, str | None]]:
-        try:
-            data = self.workspace.read(path)
-        except OSError:
-            return
-        yield from launch_arguments(flow_launch.extract(data, kind).actions)
+        for facts in self.workspace.gathered.look((path,), f"flow_{kind}").values():
+            yield from launch_arguments(facts.actions)
 
 
 def launch_arguments(actions: Iterable[Any]) -> Iterator[tuple[str, str | None]]:

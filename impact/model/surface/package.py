@@ -9,7 +9,6 @@ import hashlib
 import posixpath
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -18,6 +17,7 @@ from ...facts import kinds
 from ...facts.interface import Field, Interface, Section
 from ...facts.parameters import last_part
 from ...facts.store import encodable
+from ...source_keys import code_stamp
 from ...targets.surface.includes import compiled
 from ...targets.surface.surface import BuildSurface, Surface
 from ..package import role_of_folder
@@ -119,7 +119,7 @@ def _parameters(declared: Gathered, files: Iterable[str]) -> tuple[tuple[tuple[s
 def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:
     """The same as surfaces_of, remembered as a whole for trees that git names by one id. folder: that id, empty for a
     tree that has none."""
-    key = hashlib.sha1(f"{folder} {_stamp()}".encode()).digest()
+    key = hashlib.sha1(f"{folder} {code_stamp()}".encode()).digest()
     if folder:
         memory = store.memo("surface", key)
         if memory is not None:
@@ -134,14 +134,6 @@ def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None)
 
 
 _decoder = msgspec.msgpack.Decoder(dict[str, Surface])
-
-
-@cache
-def _stamp() -> str:
-    """Changes with the code that surfaces are made by."""
-    from ...cache import code_stamp
-
-    return code_stamp()
 
 
 def _kind_for_build(path: str) -> str | None:

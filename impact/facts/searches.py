@@ -1,0 +1,100 @@
+"""What is looked for in a file beyond its facts: made when the join of a package asks for it, and stored by content.
+
+Most files have nothing of what a table describes, and their facts tell so; those that may have it are read again.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+import msgspec
+
+from .condition import Condition
+from .cpp import CppFile, places_of
+from .place import Problem
+from .usage import Rows, Table, Use, find_uses, initialises, types_of_variables, uses_of
+
+
+class WordUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """The first use of a bare word outside of comments, with the preprocessor conditions around it; line 1, column 0
+    where it stands in directives alone. initialised: the file declares a variable of this name with a value."""
+
+    text: str
+    line: int
+    column: int
+    conditions: tuple[Condition, ...] = ()
+    initialised: bool = False
+
+
+class SearchedCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What a C++ file has of what a Table describes. uses: the first of every label under the same conditions.
+    functions: those that such uses call and that the file declares itself. words: the bare words, in order."""
+
+    uses: tuple[Use, ...] = ()
+    functions: tuple[str, ...] = ()
+    words: tuple[WordUse, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+def searched_cpp(data: bytes, facts: CppFile, table: Table) -> SearchedCpp:
+    """The uses, functions and words of a table that a C++ file has."""
+    words = sorted(table.words.intersection(facts.words.split(" ")))
+    uses, functions = find_uses(facts, data, table)
+    return SearchedCpp(uses, functions, tuple(_word_use(data, word) for word in words))
+
+
+def _word_use(data: bytes, word: str) -> WordUse:
+    line, column, conditions = next(iter(places_of(data, word)), (1, 0, ()))
+    return WordUse(word, line, column, conditions, initialises(data, word))
+
+
+class SearchedText(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """uses: what a Python file or one of parameters has of what Rows describe."""
+
+    uses: tuple[Use, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+def searched_text(data: bytes, facts: object, table: Rows) -> SearchedText:
+    """The uses of a table that a file has."""
+    rows = [(label, pattern) for label, pattern in table.rows if pattern.word.encode() in data]
+    return SearchedText(tuple(use for row in rows for use in uses_of(data, [row])))
+
+
+class DeclaredCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What a C++ file announces or defines. types: classes, enums, aliases and announced messages. variables: types of
+    which it has a variable or member itself. spaces: namespaces. tf2: words in namespace tf2, or in a special form of a
+    template."""
+
+    types: frozenset[str] = frozenset()
+    variables: frozenset[str] = frozenset()
+    spaces: frozenset[str] = frozenset()
+    tf2: frozenset[str] = frozenset()
+    problems: tuple[Problem, ...] = ()
+
+
+_TYPE = re.compile(rb"\b(?:class|struct|enum|typedef|using)\b([^;{}=]{0,300})")
+_NAMED = re.compile(rb"([A-Za-z_]\w*)\s*[;:{=<]")
+# The macro of ros/message_forward.h that announces a message.
+_MESSAGE = re.compile(rb"\bROS_DECLARE_MESSAGE\s*\(\s*(\w+)")
+_SPACE = re.compile(rb"\bnamespace\s+(\w+)")
+# tf2's namespace up to its end or that of the file, and a special form of one of its templates from outside.
+_OF_TF2 = re.compile(rb"\bnamespace\s+tf2\s*\{.*|\btemplate\s*<\s*>[^;{}]*", re.DOTALL)
+_WORD = re.compile(rb"\w+")
+
+
+def declared_cpp(data: bytes, facts: CppFile, table: None) -> DeclaredCpp:
+    """The names that a C++ file declares, as its text shows them."""
+    types = {name[1] for head in _TYPE.finditer(data) for name in _NAMED.finditer(data, head.start(1), head.end() + 1)}
+    types.update(_MESSAGE.findall(data))
+    return DeclaredCpp(
+        _decoded(types),
+        frozenset(types_of_variables(data)),
+        _decoded(_SPACE.findall(data)),
+        _decoded(word for part in _OF_TF2.finditer(data) for word in _WORD.findall(part[0])),
+    )
+
+
+def _decoded(words: Iterable[bytes]) -> frozenset[str]:
+    return frozenset(word.decode() for word in words)

@@ -1,0 +1,69 @@
+"""What is looked for in files beyond their facts: the places of words, uses that rows describe, what C++ declares."""
+
+import pytest
+from rosimpact.impact.facts import cpp
+from rosimpact.impact.facts.condition import Condition
+from rosimpact.impact.facts.kinds import decode, encode, search
+from rosimpact.impact.facts.searches import WordUse
+from rosimpact.impact.facts.usage import Pattern, Rows, Table
+
+TABLE = Table({"advertise": [("advertise(a)", Pattern("advertise", arguments="1"))]}, ["changed", "other"])
+CPP = [
+    ("// changed\nint changed;\n", (), (), [WordUse("changed", 2, 5)]),
+    ("int changed = 2;\n", (), (), [WordUse("changed", 1, 5, (), True)]),
+    (
+        "#ifdef NEW\nf(changed);\n#endif\n", (), (),
+        [WordUse("changed", 2, 3, (Condition("cpp", "defined(NEW)"),))],
+    ),
+    ("#define A changed\n", (), (), [WordUse("changed", 1, 11)]),
+    ("unchanged(1);\n", (), (), []),
+    ("n.advertise(1);\nn.advertise(2);\n", [("advertise(a)", 1, 3)], (), []),
+    ("n.advertise(1, 2);\n", (), (), []),
+    ("void advertise(int a);\nn.advertise(1);\n", [("advertise(a)", 2, 3)], ("advertise",), []),
+]  # fmt: skip
+
+
+def looked(kind, text, table):
+    found = search(kind, text.encode(), cpp.extract(text.encode()), table)
+    assert decode(kind, encode(found)) == found
+    assert not found.facts.problems
+    return found.facts
+
+
+@pytest.mark.parametrize(("text", "uses", "functions", "words"), CPP)
+def test_what_a_table_describes(text, uses, functions, words):
+    found = looked("searched_cpp", text, TABLE)
+    assert [(use.label, use.line, use.column) for use in found.uses] == list(uses)
+    assert found.functions == functions
+    assert found.words == tuple(words)
+
+
+def test_what_rows_describe_in_text():
+    rows = Rows([("spin_once", Pattern("spin_once", language="python", arguments="1"))])
+    found = looked("searched_text", "# spin_once(n)\nrclpy.spin_once(n)\nrclpy.spin_once()\n", rows)
+    assert [(use.label, use.line, use.column) for use in found.uses] == [("spin_once", 2, 7)]
+
+
+@pytest.mark.parametrize(
+    ("text", "types", "variables", "spaces", "tf2"),
+    [
+        ("class A;\n", {"A"}, set(), set(), set()),
+        ("struct A : B {};\n", {"A", "B"}, set(), set(), set()),
+        ("enum class A { X };\n", {"A"}, set(), set(), set()),
+        ("typedef a::B C;\n", {"a", "C"}, set(), set(), set()),
+        ("using C = a::B;\n", {"C"}, set(), set(), set()),
+        ("ROS_DECLARE_MESSAGE(Twist)\n", {"Twist"}, set(), set(), set()),
+        ("  static const a::B b = f();\n", set(), {"a::B"}, set(), set()),
+        ("a::B *b;\n", set(), set(), set(), set()),
+        ("namespace tf2 {\nvoid fromMsg();\n", set(), set(), {"tf2"}, {"namespace", "tf2", "void", "fromMsg"}),
+        ("template<> void doTransform(int);\n", set(), set(), set(), {"template", "void", "doTransform", "int"}),
+    ],
+)
+def test_what_a_file_declares(text, types, variables, spaces, tf2):
+    found = looked("declared_cpp", text, None)
+    assert (found.types, found.variables, found.spaces, found.tf2) == (types, variables, spaces, tf2)
+
+
+def test_tables_that_differ_have_other_stamps():
+    stamps = {Table({}).stamp, Table({}, ["a"]).stamp, TABLE.stamp, Table(TABLE.patterns).stamp, Rows([]).stamp}
+    assert len(stamps) == 5 and Table(TABLE.patterns, TABLE.words).stamp == TABLE.stamp
