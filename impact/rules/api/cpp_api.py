@@ -28,8 +28,9 @@ def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
     reviewed.update(change.new for change in view.changes(*_REVIEWED) if change.state == "absent")
     calls = {function_of(change.old) for change in view.changes("call-changed")}
     near = view.closure(package)
+    own = {name for one in view.workspace for name in one.digest.defined}
     for use in package.digest.cpp_api:
-        if use.package not in near or not view.active(use.conditions):
+        if use.package not in near or use.name in own or not view.active(use.conditions):
             continue
         head = use.name.partition("::")[0]
         if head != use.package and head in near:

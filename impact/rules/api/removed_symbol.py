@@ -98,6 +98,8 @@ def _reviewed(view: View) -> Iterator[Hit]:
         included = None
         coming: list[tuple[NameUse, Change, bool]] = []
         for use in package.digest.names:
+            if "::" in use.text and use.text in own:
+                continue  # the workspace defines it
             named = (python if use.language == "python" else cpp).get(use.text, ())
             if not named and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
                 named = cpp.get(use.text.rsplit("::", 1)[-1], ())
