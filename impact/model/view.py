@@ -78,12 +78,13 @@ def weight(need: Need) -> tuple:
 
 class Misnamed(NamedTuple):
     """Why an include path, or a name, cannot be right, and what to write. soon: it still is, until the distro's next
-    sync."""
+    sync. closed: it is said because nobody is known to have it, so that whatever brings unknown contents may."""
 
     message: str
     help: str
     evidence: Evidence | None = None
     soon: bool = False
+    closed: bool = False
 
 
 # How packages of interfaces are called, and what makes interfaces and runs with them.
@@ -449,7 +450,7 @@ class View:
         if self.providers.system_has(path, target.platform) is False and all(
             p.kind == "system" for p in self.header(path)
         ):
-            return Misnamed(f"no package of {target.platform} has `{path}`", "")
+            return Misnamed(f"no package of {target.platform} has `{path}`", "", closed=True)
         owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
         if not owners or any(p.kind != "ros" for p in self.header(path)):
             return None

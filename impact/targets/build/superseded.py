@@ -5,13 +5,13 @@ stored, each stored version tells whether the name is there. A row is
 
     answered        every stored version says what the row says, and there are versions on both sides of its bound
     contradicted    some stored version says otherwise, so that the row is wrong there or its bound is inexact
-    replaced        answered, but for the replacement that the row names
+    more            answered, but the row names a replacement, or a deprecation, that nothing stored names
     bare            it is a bare name of a function or method, which does not tell whose: it may be anybody's
     unknown         no version is stored, or none on one side of the bound, or the name is of no kind that is stored
 
-Of rows that were derived from release tags, which are what surfaces are made from too, only the unknown and replaced
-ones stay, and of reviewed rows all but the answered and bare ones. Platform libraries have no stored surfaces, and
-their rows stay.
+Of rows that were derived from release tags, which are what surfaces are made from too, only the unknown ones and those
+that say more stay, and of reviewed rows all but the answered and bare ones. Platform libraries have no stored surfaces,
+and their rows stay.
 
     python -P -m rosimpact.impact.targets.build.superseded [--write]
 """
@@ -43,8 +43,9 @@ _GOES = {True: ("answered", "contradicted", "bare"), False: ("answered", "bare")
 """Verdicts on rows that go: of derived files, and of reviewed ones."""
 
 
-def verdict(kind: str, package: str, old: str, new: str, removed_in: str, ros: int) -> str:
-    """What the stored data makes of a row; see the module. ros: as in changes.Row."""
+def verdict(kind: str, package: str, old: str, new: str, removed_in: str, ros: int, deprecated: bool = False) -> str:
+    """What the stored data makes of a row; see the module. ros: as in changes.Row. deprecated: the row says from when
+    on the name is deprecated."""
     side = kind.partition("-")[0]
     if not removed_in or (side not in _SIDES and side != "msg"):
         return "unknown"
@@ -56,10 +57,11 @@ def verdict(kind: str, package: str, old: str, new: str, removed_in: str, ros: i
         found = _compare(told, _gone_from(removed_in, package, generation))
         if found == "unknown":
             continue
-        if found == "answered" and new:
-            found = "answered" if new in _instead(side, package, old, generation) else "replaced"
+        instead, warns = _besides(side, package, old, generation)
+        if found == "answered" and ((new and new not in instead) or (deprecated and not warns)):
+            found = "more"
         answers.append(found)
-    for worst in ("contradicted", "replaced", "answered"):
+    for worst in ("contradicted", "more", "answered"):
         if worst in answers:
             return worst
     return "unknown"
@@ -165,14 +167,16 @@ def _names(package: str, ros: int) -> dict[str, tuple[str, ...]]:
     return history.names() if history is not None else {}
 
 
-def _instead(side: str, package: str, old: str, ros: int) -> set[str]:
-    """What the stored surfaces name as replacement."""
+def _besides(side: str, package: str, old: str, ros: int) -> tuple[set[str], bool]:
+    """What the stored surfaces name as replacement, and whether the name was deprecated in some version."""
     line = shipped().line(package, ros)
-    found: set[str] = set()
+    instead: set[str] = set()
+    warns = False
     for which in _SIDES.get(side, ()):
         events = line.events.get(which, {}).get(old, ()) if line is not None else ()
-        found.update(told.instead for event in events for told in event.told)
-    return found
+        instead.update(told.instead for event in events for told in event.told)
+        warns = warns or any(told.kind == "deprecated" for event in events for told in event.told)
+    return instead, warns
 
 
 def _fields(package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
@@ -211,7 +215,7 @@ def rewritten(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
             found = "unknown"
             if plain:
                 found = verdict(group["kind"], group["package"], old, new, group.get("removed_in", ""),
-                                group.get("ros", 0))  # fmt: skip
+                                group.get("ros", 0), bool(group.get("deprecated_in")))  # fmt: skip
             count[group["kind"], found] += 1
             if found not in _GOES[file.name in _DERIVED]:
                 names[old] = new
