@@ -16,6 +16,7 @@ from ..config import Config
 from ..facts.condition import Condition
 from ..facts.interface import Interface
 from ..targets import message_headers
+from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS
 from ..targets.distro import known_distros
 from ..targets.evidence import Evidence
@@ -77,13 +78,13 @@ def weight(need: Need) -> tuple:
 
 
 class Misnamed(NamedTuple):
-    """Why an include path, or a name, cannot be right, and what to write. soon: it still is, until the distro's next
-    sync. closed: it is said because nobody is known to have it, so that whatever brings unknown contents may."""
+    """Why an include path, or a name, cannot be right, and what to write. ahead: it still is, until then. closed: it is
+    said because nobody is known to have it, so that whatever brings unknown contents may."""
 
     message: str
     help: str
     evidence: Evidence | None = None
-    soon: bool = False
+    ahead: Horizon | None = None
     closed: bool = False
 
 
@@ -149,6 +150,8 @@ class View:
         self._made: dict[str, tuple[str, ...]] = {}
         self._interfaces: dict[str, dict[str, Interface]] = {}
         self._lost: dict[str, Misnamed | None] = {}
+        self._offers_ahead: dict[str, tuple[Offers, PythonOffers]] = {}
+        self._environments: dict[str, Environment] = {}
         # What rules worked out for each package and several of them ask for.
         self.worked_out: dict[tuple[str, str], Any] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
@@ -514,18 +517,12 @@ class View:
         state = history.state(version) if history is not None and version else None
         return None if history is None or state is None or not version else (history, state, version)
 
-    @cached_property
-    def _ahead(self) -> tuple[tuple[Target, bool], ...]:
-        """What this distro becomes, soonest first, and whether its next sync brings that."""
-        ahead = (self.target.in_testing(), True), (self.target.updated(), False)
-        return tuple((target, soon) for target, soon in ahead if target is not None)
-
     def coming_member(self, use: MemberUse) -> Misnamed | None:
         """What is wrong when the interface has a member here, and lacks it once this distro is updated."""
-        return next((c for target, soon in self._ahead if (c := self._coming_member(use, target, soon))), None)
+        return next((c for ahead in self.updates if (c := self._coming_member(use, ahead))), None)
 
-    def _coming_member(self, use: MemberUse, target: Target, soon: bool) -> Misnamed | None:
-        now, later = self._interfaces_of(use.package), self._interfaces_of(use.package, target)
+    def _coming_member(self, use: MemberUse, ahead: Horizon) -> Misnamed | None:
+        now, later = self._interfaces_of(use.package), self._interfaces_of(use.package, ahead.target)
         if use.ros != self.target.ros or not now or not later or now[1] >= later[1]:
             return None
         definition = now[0].definition(use.interface)
@@ -536,26 +533,26 @@ class View:
             return None
         spans = [span for row in rows for span in row.spans]
         lost = _field_lost(use.package, now[0], spans, later[1])._replace(name=use.member, ahead=True)
-        return self._goes(f"`{use.member}` of `{use.package}/{use.interface}`", use.package, later[2], soon, lost)
+        return self._goes(f"`{use.member}` of `{use.package}/{use.interface}`", use.package, later[2], ahead, lost)
 
     def coming_interface(self, path: str) -> Misnamed | None:
         """The same for the interface of a generated header."""
-        return next((c for target, soon in self._ahead if (c := self._coming_interface(path, target, soon))), None)
+        return next((c for ahead in self.updates if (c := self._coming_interface(path, ahead))), None)
 
-    def _coming_interface(self, path: str, target: Target, soon: bool) -> Misnamed | None:
+    def _coming_interface(self, path: str, ahead: Horizon) -> Misnamed | None:
         head, _, _, name = self._generated(path)
-        now, later = self._interfaces_of(head), self._interfaces_of(head, target)
+        now, later = self._interfaces_of(head), self._interfaces_of(head, ahead.target)
         if not name or not now or not later or now[1] >= later[1]:
             return None
         spans = now[0].spans(name)
         if spans is None or not there(spans, now[1]) or there(spans, later[1]):
             return None
         lost = _field_lost(head, now[0], spans, later[1])._replace(name=path, ahead=True)
-        return self._goes(f"`{path}`", head, later[2], soon, lost)
+        return self._goes(f"`{path}`", head, later[2], ahead, lost)
 
-    def _goes(self, what: str, package: str, version: str, soon: bool, evidence: Evidence) -> Misnamed:
-        where = f"the next sync of {self.target.distro}" if soon else self.target.distro
-        return Misnamed(f"{what} is there, and gone in {package} {version} of {where}", "", evidence, soon)
+    def _goes(self, what: str, package: str, version: str, ahead: Horizon, evidence: Evidence) -> Misnamed:
+        message = f"{what} will be removed: not in {package} {version} ({ahead.name})"
+        return Misnamed(message, "", evidence, ahead)
 
     def _generated(self, path: str) -> tuple[str, str, str, str]:
         """Package, rest, stem and interface (empty: none known) of the include path of a generated header."""
@@ -720,34 +717,66 @@ class View:
         return [c for kind in kinds for c in self._changes.get(kind, ())]
 
     @cached_property
-    def later(self) -> dict[str, Change]:
-        """Changes of platform libraries and Python that the newest distro of this generation has and the target has not
-        yet: what breaks when this machine, or a colleague's, is updated. By old name."""
-        horizon = self.newest
-        if horizon is None:
-            return {}
-        here = {(c.kind, c.package, c.old) for c in self.target.changes() if c.state == "removed"}
-        return {
-            c.old: c for c in horizon.changes()
-            if c.state == "removed" and c.library and (c.kind, c.package, c.old) not in here
-        }  # fmt: skip
-
-    def later_active(self, conditions: Iterable[Condition]) -> bool:
-        """False when a statement under these conditions surely does not count on the newest distro."""
-        conditions = tuple(conditions)
-        return not conditions or all_hold(conditions, self._later_environment) is not False
+    def horizons(self) -> tuple[Horizon, ...]:
+        """What the target is going to be, soonest first; distros that are asked for themselves left out."""
+        return horizons(self.target, self.asked)
 
     @cached_property
-    def _later_environment(self) -> Environment:
-        newest = self.newest or self.target
+    def updates(self) -> tuple[Horizon, ...]:
+        """Those of them that an update of this distro brings."""
+        return tuple(ahead for ahead in self.horizons if not ahead.platform)
 
+    @cached_property
+    def availabilities(self) -> Availabilities:
+        """What of released packages and platform libraries is there."""
+        return Availabilities(self.target, self.offers, self.providers, self.horizons)
+
+    def availability(self, symbol: Symbol) -> Availability:
+        """How the target stands to something outside the workspace; what the workspace brings itself is there."""
+        if any(package in self.workspace.packages for package in symbol.packages):
+            return Availability(symbol, "present")
+        return self.availabilities.on_horizon(symbol)
+
+    @cached_property
+    def coming(self) -> dict[str, tuple[Change, Horizon]]:
+        """Reviewed changes that are not in force here and will be, by old name, each with the nearest horizon: what
+        breaks when this machine, or a colleague's, is updated."""
+        found: dict[str, tuple[Change, Horizon]] = {}
+        for ahead in self.horizons:
+            for change in coming_changes(self.target, ahead):
+                found.setdefault(change.old, (change, ahead))
+        return found
+
+    def offers_on(self, ahead: Horizon) -> tuple[Offers, PythonOffers]:
+        """What released packages offer on a horizon."""
+        known = self._offers_ahead.get(ahead.name)
+        if known is None:
+            offers = Offers(ahead.target)
+            known = self._offers_ahead[ahead.name] = offers, PythonOffers(offers)
+        return known
+
+    def active_on(self, ahead: Horizon, conditions: Iterable[Condition]) -> bool:
+        """False when a statement under these conditions surely does not count on a horizon."""
+        conditions = tuple(conditions)
+        if not conditions:
+            return True
+        environment = self._environments.get(ahead.name)
+        if environment is None:
+            environment = self._environments[ahead.name] = self._environment_on(ahead.target)
+        return all_hold(conditions, environment) is not False
+
+    def later_active(self, conditions: Iterable[Condition]) -> bool:
+        """The same on the newest distro."""
+        return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
+
+    def _environment_on(self, target: Target) -> Environment:
         def version(name: str) -> str | None:
-            return newest.version(name) or newest.library(name.lower())
+            return target.version(name) or target.library(name.lower())
 
         return Environment(
-            ros_distro=newest.distro, ros_version=str(newest.ros), python=(3, newest.python) if newest.python else None,
-            codename=newest.platform.split(" ")[-1], versions=version,
-            packages=lambda name: self._has_package(name, newest), testing=True,
+            ros_distro=target.distro, ros_version=str(target.ros), python=(3, target.python) if target.python else None,
+            codename=target.platform.split(" ")[-1], versions=version,
+            packages=lambda name: self._has_package(name, target), testing=True,
         )  # fmt: skip
 
     @property

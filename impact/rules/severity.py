@@ -33,6 +33,7 @@ class Doubt(enum.Enum):
     # Of the evidence
     INCOMPLETE = "what decides is not known completely: a type, a version, the contents of a package", "warning"
     AMBIGUOUS = "something else of the same name may be meant", "warning"
+    OWN = "the workspace has something of this name itself", "note"
     # Of what follows
     UPCOMING = "it holds only after an update of the distro, or on a newer one", "warning"
     DISTURBS = "builds and programs go on, and others that use it may not", "warning"
