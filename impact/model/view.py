@@ -440,6 +440,14 @@ class View:
             known = self._standard[header] = any(not p.name for p in self.providers.header(header))
         return known
 
+    def header_availability(self, path: str) -> Availability | None:
+        """How the target stands to a header of released packages; None where something else may have it."""
+        providers = self.header(path)
+        owners = [p.name for p in providers if p.kind == "ros" and p.name not in self.workspace.packages]
+        if not owners or len(owners) < len(providers) or any(self.nested_header(owner, path) for owner in owners):
+            return None
+        return self.availability(Symbol("header", path, tuple(owners)))
+
     def lost_header(self, path: str) -> Misnamed | None:
         """What is wrong when every released package that has, or had, a header lacks it in its version here."""
         if path not in self._lost:

@@ -45,6 +45,7 @@ from ...targets.target import Change
 from ...targets.version import at_least
 from ..rule import Hit, rule
 from ..severity import Doubt, Repeats, doubts_of_place, severity
+from .build_api import hit_of, rate
 from .moved_header import respelt
 from .upcoming import Upcoming, rated
 
@@ -121,6 +122,17 @@ def removed_header(view: View):
                 and view.active_on(ahead, include.conditions)
             ):
                 coming.append(_will_go(view, package, include, change, ahead, doubts))
+                continue
+            found = view.header_availability(path)
+            if found is not None and (found.is_missing or found.state == "upcoming"):
+                advice = f"include `{found.replacement}`" if found.replacement else ""
+                hit = hit_of(found, include.at, path, package.name, advice)
+                moved = Change("header-renamed", found.package, path, found.replacement, "", found.version, "", "")
+                rating = rate(found, hit._replace(fix=respelt(view, package, include, moved)), doubts)
+                if isinstance(rating, Upcoming):
+                    coming.append(rating)
+                else:
+                    yield rating
                 continue
             lost = view.lost_header(path)
             if lost is not None and lost.closed and (view.sealed(package) or view.blind(package)):
