@@ -16,11 +16,11 @@ from typing import Literal, NamedTuple
 
 from .changes import DISTROS, changes_in_force, version_of
 from .evidence import Evidence, evidence_of, of_offered
-from .fields import before, default_fields, there
-from .offers import Offer, Offered, Offers
-from .providers import Providers, default_providers
-from .surface_build import BuildSurface
-from .surface_changes import PARAMETER
+from .providers.providers import Providers, default_providers
+from .surface.changes import PARAMETER
+from .surface.fields import before, default_fields, there
+from .surface.offers import Offer, Offered, Offers
+from .surface.surface import BuildSurface
 from .target import Change, Target
 from .uses import uses_in_force
 

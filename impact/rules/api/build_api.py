@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.view import View
 from ...targets.availability import Availability, Symbol
 from ...targets.changes import DISTROS

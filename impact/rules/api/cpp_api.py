@@ -8,7 +8,7 @@ from ...model.package import CppApiUse
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.availability import Horizon
-from ...targets.offers_cpp import Judged, judged
+from ...targets.surface.offers_cpp import Judged, judged
 from ...targets.uses import function_of
 from ..rule import Hit
 from ..severity import Doubt, doubts_of_place

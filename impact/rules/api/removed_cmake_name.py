@@ -24,7 +24,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.availability import Symbol

@@ -40,7 +40,7 @@ from ...model.workspace import Package
 from ...targets.availability import Horizon
 from ...targets.changes import removed_in
 from ...targets.evidence import evidence_of
-from ...targets.library import Folder, versioned_folder
+from ...targets.providers.library import Folder, versioned_folder
 from ...targets.target import Change
 from ...targets.version import at_least
 from ..rule import Hit, rule

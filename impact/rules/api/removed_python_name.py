@@ -28,7 +28,7 @@ Not reported
 
 from ...model.package import PythonApiUse
 from ...model.view import View
-from ...targets.offers_python import Lost
+from ...targets.surface.offers_python import Lost
 from ..rule import SEVERITIES, Hit, rule
 from ..severity import severity
 from .python_api import doubts_of, evidence_of, uses_coming, uses_lost

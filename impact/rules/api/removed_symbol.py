@@ -38,8 +38,8 @@ from ...model.workspace import Package
 from ...targets.availability import Horizon, Symbol
 from ...targets.changes import excuses, removed_in
 from ...targets.evidence import evidence_of, of_offered
-from ...targets.library import include_roots
-from ...targets.stdlib import stood_in_for
+from ...targets.providers.library import include_roots
+from ...targets.providers.stdlib import stood_in_for
 from ...targets.target import Change
 from ...targets.version import parts
 from ..rule import Hit, rule
