@@ -18,7 +18,6 @@ from ..facts.condition import Condition
 from ..facts.interface import Interface
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS
-from ..targets.distro.distro import known_distros
 from ..targets.evidence import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.includes import Machine, machine, machine_of
@@ -215,7 +214,12 @@ class View:
             self.providers.has_header(p.name, path, self.target.distro, version)
             for p in self.header(path) if p.kind == "ros" and (version := self.target.version(p.name))
         }  # fmt: skip
-        return True if True in known else False if known == {False} else None
+        if True in known or known == {False}:
+            return True in known
+        found = self.header_availability(path)
+        if found is None or found.state == "unknown" or (found.is_missing and not found.sure):
+            return None
+        return not found.is_missing
 
     def active(self, conditions: Iterable[Condition]) -> bool:
         """False only when a statement under these conditions surely does not count on the target."""
@@ -709,10 +713,6 @@ class View:
     def _library_names(self) -> frozenset[str]:
         return self.target.library_names()
 
-    def left_python(self, module: str) -> bool:
-        """True for modules that Python's standard library once had and the target's has no longer."""
-        return ever_stdlib(module) and not stdlib(module, self.target.python, self.target.python_major)
-
     @cached_property
     def _changes(self) -> dict[str, list[Change]]:
         found: dict[str, list[Change]] = {}
@@ -792,13 +792,6 @@ class View:
         """Name of the newest distro of this generation, see newest."""
         newest = self.newest
         return newest.distro if newest is not None else ""
-
-    @cached_property
-    def horizon_is_near(self) -> bool:
-        """True when the newest distro is at most two long-term ones ahead."""
-        released = {known.name: known.released for known in known_distros()}
-        here = released.get(self.target.distro, "")
-        return sum(k.lts and k.ros == self.target.ros and k.released > here for k in known_distros()) <= 2
 
     def concerned(self, package: Package, change: Change, path: str) -> bool:
         """True when a file can mean the changed package by a name: the package declares or includes something of it,

@@ -36,6 +36,7 @@ class Doubt(enum.Enum):
     OWN = "the workspace has something of this name itself", "note"
     # Of what follows
     UPCOMING = "it holds only after an update of the distro, or on a newer one", "warning"
+    FAR = "it holds only some long-term distros later", "note"
     DISTURBS = "builds and programs go on, and others that use it may not", "warning"
     CHANGED = "it is built and runs, and does something else", "note"
     DEPRECATED = "it is there, and produces a warning", "note"

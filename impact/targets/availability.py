@@ -14,7 +14,8 @@ from collections.abc import Callable, Iterable
 from functools import cache, cached_property
 from typing import Literal, NamedTuple
 
-from .changes import DISTROS, changes_in_force, version_of
+from .changes import DISTROS, Row, all_rows, changes_in_force, reached, version_of
+from .distro.distro import known_distros
 from .evidence import Evidence, evidence_of, of_offered
 from .providers.providers import Providers, default_providers
 from .surface.changes import PARAMETER
@@ -72,12 +73,14 @@ class Symbol(NamedTuple):
 class Horizon(NamedTuple):
     """What a target is going to be. name: as a message has it. soon: with the next sync, which the distro's build farm
     builds against already. platform: the newest distro, of which only the platform counts: libraries and Python. What
-    its packages change is told by `rosimpact upgrade`, since nobody gets them without moving on."""
+    its packages change is told by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two
+    long-term distros ahead, which is worth no warning."""
 
     target: Target
     name: str
     soon: bool = False
     platform: bool = False
+    far: bool = False
 
 
 class Availability(NamedTuple):
@@ -120,8 +123,18 @@ def horizons(target: Target, asked: Iterable[str] = ()) -> tuple[Horizon, ...]:
         found.append(Horizon(updated, f"{target.distro} of {updated.date}"))
     newest = target.newest()
     if newest is not None and newest.distro not in asked:
-        found.append(Horizon(newest, newest.distro, platform=True))
+        found.append(Horizon(newest, newest.distro, platform=True, far=_steps(target) > _NEAR))
     return tuple(found)
+
+
+_NEAR = 2
+
+
+def _steps(target: Target) -> int:
+    """How many long-term distros of a target's generation are newer than it."""
+    known = known_distros()
+    here = next((one.released for one in known if one.name == target.distro), "")
+    return sum(one.lts and one.ros == target.ros and one.released > here for one in known)
 
 
 def coming_changes(target: Target, ahead: Horizon) -> tuple[Change, ...]:
@@ -258,7 +271,7 @@ class Availabilities:
         return Availability(
             symbol, state, package, offer.version, offered.first, offered.instead, offered.moved_to,
             _alike(offer, side, name) if state in ("removed", "not yet") and side in _WITH_ALIKE else "",
-            sure=sure, evidence=of_offered(offered),
+            sure=sure, evidence=_with_other(offer, offered),
         )  # fmt: skip
 
     def _has(self, offer: Offer, side: str, name: str) -> bool:
@@ -312,6 +325,12 @@ class Availabilities:
             for change in self._rows.get((kind, name), ()):
                 if not symbol.packages or change.library or change.package in symbol.packages:
                     return of_row(symbol, change)
+        for row in _removals().get(name, ()):
+            if not row.library or row.kind not in _ROWS[symbol.kind]:
+                continue
+            version = version_of(row.package, True, self.target)
+            if version and not reached(row.removed_in, version, self.target):
+                return Availability(symbol, "present", row.package, version, library=True)
         return None
 
     @cached_property
@@ -322,6 +341,16 @@ class Availabilities:
             name = name.lower() if change.kind.startswith("cmake") and "::" not in name else name
             found.setdefault((change.kind, name), []).append(change)
         return found
+
+
+@cache
+def _removals() -> dict[str, list[Row]]:
+    """Reviewed rows by the name that they say is removed."""
+    found: dict[str, list[Row]] = {}
+    for row in all_rows():
+        if row.removed_in and not row.new_since and not row.back_in:
+            found.setdefault(row.old, []).append(row)
+    return found
 
 
 def of_row(symbol: Symbol, change: Change) -> Availability:
@@ -343,6 +372,17 @@ def decides(offer: Offer, offered: Offered) -> bool:
     if any(version in line.approximate for version in (offer.stored, offered.last, offered.first)):
         return False
     return offer.exact or all(e.place != offer.place + 1 for e in line.events[offered.side][offered.name])
+
+
+def _with_other(offer: Offer, offered: Offered) -> Evidence:
+    """The evidence for what surfaces say of a name, with that for what stands for it."""
+    evidence = of_offered(offered)
+    new = offer.get(offered.side, offered.instead) if offered.instead else None
+    if new is None or not new.first:
+        return evidence
+    return evidence._replace(
+        other=Evidence(offered.package, "added", new.name, offered.name, offered.side, first=new.first, stored=True)
+    )
 
 
 _ALIKE = 0.75

@@ -157,7 +157,7 @@ def test_a_version_belongs_to_the_generations_of_ros_that_had_it(tmp_path, monke
 
 
 def test_one_version_of_two_repositories_is_two_states(tmp_path, monkeypatch):
-    """ros_control of Kinetic and ros2_control of Foxy have released the same numbers of packages of the same name."""
+    """ros_control of Indigo and ros2_control of Foxy have released the same numbers of packages of the same name."""
     monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
     folder = tmp_path / "clones"
     for repository, made_by, code in (
@@ -165,7 +165,7 @@ def test_one_version_of_two_repositories_is_two_states(tmp_path, monkeypatch):
         ("ros2_control", "ament_cmake", "void two();"),
     ):
         release(folder / f"ros-controls+{repository}", "hardware_interface", "0.8.0", code, made_by)
-    (job,), _ = plan(Clones(folder), ("kinetic", "foxy"), ("hardware_interface",), "all")
+    (job,), _ = plan(Clones(folder), ("indigo", "foxy"), ("hardware_interface",), "all")
     assert sorted((one.clone, one.version, one.generations) for one in job.states if not one.approximate) == [
         ("ros-controls/ros2_control", "0.8.0", (2,)),
         ("ros-controls/ros_control", "0.8.0", (1,)),

@@ -135,8 +135,6 @@ def _reviewed(view: View) -> Iterator[Hit]:
             if ahead is None:
                 yield hit._replace(severity=severity(*doubts))
                 continue
-            if ahead.platform and not view.horizon_is_near:
-                doubts = (*doubts, Doubt.REPEATED)
             hit = hit._replace(message=f"{message} ({ahead.name})")
             soon.append(Upcoming(hit, change.package, ahead, doubts, _place(use.at)))
         yield from rated(soon)

@@ -14,11 +14,11 @@ Why it breaks
 Severity
     error for compiled code that is not guarded, tests of ROS 2 included, and for what goes with the next sync (which
     the build farm builds against already); warning for tests of ROS 1, under CMake conditions that are not known, for
-    the first include of each package or library whose headers go with a later update or on the newest distro's
-    platform, for headers of C where nothing else brings the C++ types, for installed headers that include what is not
-    installed, and once in a package for a path through the folder of a version that is there, since another machine may
-    have it elsewhere; note for its other includes, for examples, for installed headers that the package does not
-    compile itself, and under other tests of the code itself.
+    the first include of each header that goes with a later update or on the newest distro's platform, for headers of C
+    where nothing else brings the C++ types, for installed headers that include what is not installed, and once in a
+    package for a path through the folder of a version that is there, since another machine may have it elsewhere; note
+    for its other includes, for examples, for installed headers that the package does not compile itself, and under
+    other tests of the code itself.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -174,7 +174,7 @@ def _will_go(
     advice = f"include `{change.new}`" if change.new else ""
     hit = Hit(include.at, include.path, message, advice, package.name, fix=respelt(view, package, include, change),
               evidence=evidence_of(change))  # fmt: skip
-    return Upcoming(hit, change.package, ahead, doubts, _rank(include))
+    return Upcoming(hit, f"{change.package} {include.path}", ahead, doubts, _rank(include))
 
 
 def _in_folder(package: Package, include: IncludeUse, folder: Folder, bad: str) -> Hit:

@@ -156,10 +156,11 @@ def _reviewed(view: View) -> Iterator[Hit]:
                     included = _by_file(package)
                 if any(_brings_back(view, change, endings, path) for path in included.get(use.at.path, included[""])):
                     continue
-            doubts = [*doubts_of_place(view, use.role, use.conditions)]
+            role = "run" if use.language == "python" and _is_run(package, use) else use.role
+            doubts = [*doubts_of_place(view, role, use.conditions)]
             if use.text in own:
                 doubts.append(Doubt.OWN)
-            if use.language == "python" and Doubt.EXAMPLE not in doubts and not _is_run(package, use):
+            if use.language == "python" and role == "test":
                 doubts.append(Doubt.TEST)
             if (use.language == "python" and stood_in_for(use.text)) or change.kind == "api-changed":
                 doubts.append(Doubt.INCOMPLETE)

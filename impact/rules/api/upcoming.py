@@ -1,8 +1,8 @@
 """Findings about what is there and will be gone: one treatment for all rules.
 
 What goes with the next sync breaks in the build farm already, and counts as if it were gone. What goes with a later
-update, or on the newest platform, is worth one warning for each package or library that changes: its first place by
-what breaks first; the rest are notes.
+update, or on the newest platform, is worth one warning for each thing that changes (a package or library, or a header
+of it): its first place by what breaks first. The rest are notes, and so is what only a distro further ahead lacks.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ..severity import Doubt, Repeats, severity
 
 
 class Upcoming(NamedTuple):
-    """A finding without its severity. changed: the package or library that changes. order: what breaks first comes
+    """A finding without its severity. changed: what one warning is enough of. order: what breaks first comes
     first. doubts: about the place and the evidence."""
 
     hit: Hit
@@ -46,7 +46,8 @@ def rated(package: Iterable[Upcoming]) -> Iterator[Hit]:
         if one.horizon.soon:
             severities[number] = severity(*one.doubts)
         else:
-            severities[number] = repeats.severity(one.changed, *one.doubts, Doubt.UPCOMING)
+            late = Doubt.FAR if one.horizon.far else Doubt.UPCOMING
+            severities[number] = repeats.severity(one.changed, *one.doubts, late)
     for number, one in enumerate(every):
         evidence = one.hit.evidence._replace(ahead=True) if one.hit.evidence is not None else None
         yield one.hit._replace(severity=severities[number], evidence=evidence)
