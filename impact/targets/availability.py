@@ -168,6 +168,7 @@ class Availabilities:
         self.providers = providers or default_providers()
         self._given = ahead
         self._known: dict[Symbol, Availability] = {}
+        self._made_by: dict[str, frozenset[str]] = {}
 
     def of(self, symbol: Symbol) -> Availability:
         """How the target stands to a symbol, what is to come left out."""
@@ -230,6 +231,16 @@ class Availabilities:
         version = self.target.version(package)
         if version is None:
             return Availability(symbol, "unknown", package)
+        found = self._header_of(symbol, package, version)
+        offer = self.offers.package(package)
+        if offer is None or not found.is_missing:
+            return found
+        if symbol.name in self._made(offer):
+            return Availability(symbol, "present", package, version)
+        closed = all(part != "headers" for part, _ in offer.build.unknown)
+        return found if closed else Availability(symbol, "unknown", package, version)
+
+    def _header_of(self, symbol: Symbol, package: str, version: str) -> Availability:
         by_surface = self._offered(symbol, package)
         has = self.providers.has_header(package, symbol.name, self.target.distro, version)
         if has is None or has == (by_surface.state in ("present", "deprecated")):
@@ -247,6 +258,19 @@ class Availabilities:
         early = any(DISTROS[span.distro] <= place for span in mine)
         evidence = Evidence(package, "removed" if early else "added", symbol.name, side="header", header=symbol.name)
         return Availability(symbol, "removed" if early else "not yet", package, version, evidence=evidence)
+
+    def _made(self, offer: Offer) -> frozenset[str]:
+        """Headers of the stored version that its tree does not have: those that its build makes, and whatever its own
+        headers include."""
+        known = self._made_by.get(offer.package)
+        if known is None:
+            found = {header.include for header in offer.build.headers}
+            included = self.offers.surfaces.included(offer.package, self.target.ros)
+            if included is not None:
+                for header in included.headers:
+                    found.update(one.path for one in included.written(header, offer.stored) or ())
+            known = self._made_by[offer.package] = frozenset(found)
+        return known
 
     # What surfaces hold
 

@@ -15,6 +15,9 @@ TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
         ("jazzy", Symbol("header", OLD, TF2), "removed", "0.36.0", NEW),
         ("foxy", Symbol("header", NEW, TF2), "not yet", "0.18.0", ""),
         ("jazzy", Symbol("header", "cv_bridge/cv_bridge.hpp", ("cv_bridge",)), "present", "", ""),
+        # Headers that a build makes are in no source tree.
+        ("jazzy", Symbol("header", "rclcpp/logging.hpp", ("rclcpp",)), "present", "", ""),
+        ("humble", Symbol("header", "message_filters/connection.hpp", ("message_filters",)), "present", "", ""),
         ("jazzy", Symbol("header", "cv_bridge/no_such.hpp", ("cv_bridge",)), "unknown", "", ""),
         ("jazzy", Symbol("package", "nav2_recoveries"), "removed", "", "nav2_behaviors"),
         ("jazzy", Symbol("package", "rclcpp"), "present", "", ""),
