@@ -233,7 +233,7 @@ class Availabilities:
             return Availability(symbol, "unknown", package)
         found = self._header_of(symbol, package, version)
         offer = self.offers.package(package)
-        if offer is None or not found.is_missing:
+        if offer is None or not (found.is_missing or found.state == "unknown"):
             return found
         if symbol.name in self._made(offer):
             return Availability(symbol, "present", package, version)

@@ -78,3 +78,7 @@ def test_a_date_has_a_next_sync_and_an_update():
     assert (soon.name, soon.soon) == ("the next sync of iron", True)
     assert later.name.startswith("iron of 20") and not later.soon and not later.platform
     assert newest.platform
+
+
+def test_a_target_answers_itself():
+    assert DistroTarget("jazzy").availability(Symbol("package", "rclcpp")).state == "present"
