@@ -400,9 +400,9 @@ def _of_ros_packages() -> frozenset[str]:
     """Headers and C++ names that any stored version of any ROS package has."""
     stored, found = shipped(), set()
     for package in stored.packages:
-        history = stored.history(package)
-        if history is not None:
-            found |= history.names().keys()
+        for ros in stored.generations(package):
+            if (history := stored.history(package, ros)) is not None:
+                found |= history.names().keys()
     return frozenset(found)
 
 

@@ -19,7 +19,7 @@ import argparse
 import json
 import re
 from collections import defaultdict
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator, Sequence
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -501,20 +501,21 @@ def beside(surfaces: Surfaces, table: includes.Table) -> includes.Table:
     names = {name: dict.fromkeys(headers) for name, headers in table.names.items()}
     announced = {name: dict.fromkeys(headers) for name, headers in table.announced.items()}
     for owner, headers in table.owners.items():
-        included = None if owner in table.libraries else surfaces.included(owner)
-        kept = headers if included is None else _before(included, headers)
+        each = [] if owner in table.libraries else [surfaces.included(owner, n) for n in surfaces.generations(owner)]
+        kept = _before([one for one in each if one is not None], headers) if each else headers
         if kept:
             owners[owner] = {header: _numbered(states, table.paths, numbers) for header, states in kept.items()}
     for package in sorted(surfaces.packages):
-        history = surfaces.history(package)
-        if history is None:
-            continue
-        for name, where in history.types().items():
-            if name in names:
-                names[name].update(dict.fromkeys(where))
-        for name, where in history.included.announcing().items():
-            if name in names:
-                announced.setdefault(name, {}).update(dict.fromkeys(where))
+        for ros in surfaces.generations(package):
+            history = surfaces.history(package, ros)
+            if history is None:
+                continue
+            for name, where in history.types().items():
+                if name in names:
+                    names[name].update(dict.fromkeys(where))
+            for name, where in history.included.announcing().items():
+                if name in names:
+                    announced.setdefault(name, {}).update(dict.fromkeys(where))
     versions = {
         distro: {owner: version for owner, version in known.items() if owner == "gcc" or owner in owners}
         for distro, known in table.versions.items()
@@ -529,14 +530,15 @@ def beside(surfaces: Surfaces, table: includes.Table) -> includes.Table:
     )
 
 
-def _before(included: Included, headers: dict[str, str]) -> dict[str, str]:
-    """The states of headers that no stored version stands for: of those that surfaces never have, all."""
-    firsts = [next(included.read(ros), None) for ros in (1, 2)]
+def _before(each: Sequence[Included], headers: dict[str, str]) -> dict[str, str]:
+    """The states of headers that no stored version stands for: of those that surfaces never have, all. each: of the
+    ROS generations that have the package."""
+    firsts = [next(included.read(), None) for included in each]
     known = [parts(first) for first in firsts if first is not None]
     found = {}
     for header, states in headers.items():
         runs = states.split(";")
-        if header in included.headers and known:
+        if known and any(header in included.headers for included in each):
             runs = [run for run in runs if parts(run.partition(" ")[0]) < max(known)]
         if runs:
             found[header] = ";".join(runs)

@@ -13,8 +13,21 @@ from ..impact.model.surface.package import surfaces_of
 from ..impact.targets.surface.compare import State
 from ..impact.targets.surface.includes import Including
 from ..impact.targets.surface.store import Packed, Packer, Stored
+from ..impact.targets.surface.surface import Surface
 from ..impact.tree import TreeError
 from .surface_changes import Lines
+
+
+class Wanted(NamedTuple):
+    """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it there."""
+
+    version: str
+    place: str
+    clone: str
+    revision: str
+    approximate: bool
+    packages: tuple[str, ...]
+    generations: tuple[int, ...]
 
 
 class Job(NamedTuple):
@@ -33,9 +46,9 @@ class Job(NamedTuple):
 
 
 class Result(NamedTuple):
-    """packages: packed versions by package. failed: what could not be read, a line each."""
+    """packages: packed versions by package and ROS generation. failed: what could not be read, a line each."""
 
-    packages: dict[str, Packed]
+    packages: dict[tuple[str, int], Packed]
     failed: tuple[str, ...]
 
 
@@ -43,8 +56,8 @@ class Packing:
     """Packs the versions of packages as they come, oldest first."""
 
     def __init__(self) -> None:
-        self._packers: dict[str, Packer] = {}
-        self._including: dict[str, Including] = {}
+        self._packers: dict[tuple[str, int], Packer] = {}
+        self._including: dict[tuple[str, int], Including] = {}
         self._lines = Lines()
 
     def add(
@@ -53,16 +66,18 @@ class Packing:
         """The next version of a package, and the state that it belongs to. generations: of ROS that have it, 1, 2 or
         both. approximate: a branch stands for it."""
         surface = state.surfaces[package]
-        self._packers.setdefault(package, Packer()).add(Stored(version, approximate, surface))
-        self._including.setdefault(package, Including()).add(version, surface.headers, generations, approximate)
+        for ros in generations:
+            key = package, ros
+            self._packers.setdefault(key, Packer()).add(Stored(version, approximate, surface))
+            self._including.setdefault(key, Including()).add(version, surface.headers, approximate)
         self._lines.add(package, version, generations, state, approximate)
 
-    def packed(self) -> dict[str, Packed]:
-        """The packages as they are stored."""
+    def packed(self) -> dict[tuple[str, int], Packed]:
+        """The packages of each ROS generation as they are stored."""
         changes = self._lines.packed()
         return {
-            package: Packed(packer.packed(), changes[package], self._including[package].packed())
-            for package, packer in self._packers.items()
+            key: Packed(packer.packed(), changes[key], self._including[key].packed())
+            for key, packer in self._packers.items()
         }
 
 
@@ -83,19 +98,16 @@ def run(job: Job) -> Result:
                     continue
             for package in state.packages:
                 if package in read[tree].surfaces:
-                    packing.add(package, state.version, state.generations, read[tree], state.approximate)
+                    whose = _of_its_generation(read[tree].surfaces[package], state.generations)
+                    packing.add(package, state.version, whose, read[tree], state.approximate)
+                    if whose != state.generations:
+                        failed.append(f"{package} {state.version}: {state.clone} has a ROS 1 package at its tag")
                 elif not state.approximate:
                     failed.append(f"{package} {state.version}: not in {state.clone} at its tag")
     return Result(packing.packed(), tuple(failed))
 
 
-class Wanted(NamedTuple):
-    """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it there."""
-
-    version: str
-    place: str
-    clone: str
-    revision: str
-    approximate: bool
-    packages: tuple[str, ...]
-    generations: tuple[int, ...]
+def _of_its_generation(surface: Surface, generations: tuple[int, ...]) -> tuple[int, ...]:
+    """Those of some ROS generations that a package as it was read can be of: one that only catkin builds is none of
+    ROS 2, whatever its tag is called."""
+    return tuple(ros for ros in generations if ros == 1 or surface.build.build_type != "catkin")

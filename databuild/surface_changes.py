@@ -50,17 +50,17 @@ class Lines:
                 self._approximate.setdefault(key, []).append(version)
             self._before[key] = state
 
-    def packed(self) -> dict[str, bytes]:
-        """Package to its lines as they are stored."""
-        found: dict[str, dict[int, Line]] = {}
+    def packed(self) -> dict[tuple[str, int], bytes]:
+        """Package and ROS generation to its line as it is stored."""
+        found: dict[tuple[str, int], bytes] = {}
         for (package, generation), versions in self._versions.items():
             events: dict[str, dict[str, tuple[Event, ...]]] = {}
             for (side, name), told in sorted(self._events.get((package, generation), {}).items()):
                 events.setdefault(side, {})[name] = tuple(told)
             bases = _bases(package, self._before[package, generation])
             approximate = tuple(self._approximate.get((package, generation), ()))
-            found.setdefault(package, {})[generation] = Line(tuple(versions), events, bases, approximate)
-        return {package: pack(lines) for package, lines in found.items()}
+            found[package, generation] = pack(Line(tuple(versions), events, bases, approximate))
+        return found
 
 
 def _may_have_been(thing: tuple[str, str], event: Event) -> bool:

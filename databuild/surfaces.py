@@ -49,8 +49,8 @@ def plan(
     version distro`). Without packages all that the distros released. Raises TargetError for an unknown distro."""
     data = data or default()
     asked = frozenset(packages)
-    found: dict[tuple[str, str], Version] = {}
-    generations: dict[tuple[str, str], set[int]] = {}
+    # A package of ROS 1 and one of ROS 2 may have the same name and version, and come from two repositories.
+    found: dict[tuple[str, str, int], Version] = {}
     missing: list[str] = []
     for distro in distros:
         target = DistroTarget(distro, data=data)
@@ -58,7 +58,7 @@ def plan(
         for package, release in (_released if versions == "all" else _newest)(target, data):
             if asked and package not in asked:
                 continue
-            key = package, release.version
+            key = package, release.version, target.ros
             state = found.get(key)
             if state is None or state.approximate:
                 state = next(clones.standing_for(package, release), state)
@@ -70,8 +70,7 @@ def plan(
                 tagged.add(package)
             if key not in found or not state.approximate:
                 found[key] = state
-            generations.setdefault(key, set()).add(target.ros)
-    return _jobs(found, generations), tuple(missing)
+    return _jobs(found), tuple(missing)
 
 
 def _newest(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
@@ -109,17 +108,22 @@ def _released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Relea
                 yield package, release
 
 
-def _jobs(found: Mapping[tuple[str, str], Version], generations: Mapping[tuple[str, str], set[int]]) -> list[Job]:
-    """States of packages with their versions, each as often as it differs in who has it; one job has all states of a
-    package, and those of all that is in one of them."""
+def _jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
+    """States of packages, by name, version and ROS generation, each as often as it differs in who has it; one job has
+    all states of a package, and those of all that is in one of them."""
     import networkx as nx
 
     clones: dict[str, Clone] = {}
     states: dict[Wanted, list[str]] = {}
     together = nx.Graph()
-    for (package, version), (clone, revision, _, approximate) in found.items():
+    sharing: dict[tuple[str, str, str, str], list[int]] = {}
+    for (package, version, ros), (clone, revision, *_) in found.items():
+        sharing.setdefault((package, version, clone.name, revision), []).append(ros)
+    for (package, version, ros), (clone, revision, _, approximate) in found.items():
         clones[clone.name] = clone
-        whose = tuple(sorted(generations[package, version]))
+        whose = tuple(sorted(sharing[package, version, clone.name, revision]))
+        if ros != whose[0]:
+            continue  # the same state for both, which is read once
         state = Wanted(version, os.path.abspath(clone.place), clone.name, revision, approximate, (), whose)
         states.setdefault(state, []).append(package)
         together.add_edge((clone.name, revision), package)
@@ -166,7 +170,8 @@ def build(
         db.execute("CREATE TABLE IF NOT EXISTS done(key TEXT PRIMARY KEY, failed TEXT)")
         db.execute(
             "CREATE TABLE IF NOT EXISTS part"
-            "(key TEXT, package TEXT, data BLOB, changes BLOB, includes BLOB, PRIMARY KEY(key, package))"
+            "(key TEXT, package TEXT, ros INTEGER, data BLOB, changes BLOB, includes BLOB,"
+            " PRIMARY KEY(key, package, ros))"
         )
         keys = {job.key(): job for job in todo}
         done = {key for (key,) in db.execute("SELECT key FROM done") if key in keys}
@@ -174,25 +179,25 @@ def build(
         left.sort(key=lambda job: -len(job.states))
         with closing(_results(left, jobs, dask)) as ended:
             for number, (job, result) in enumerate(ended, len(done) + 1):
-                rows = ((job.key(), package, *packed) for package, packed in result.packages.items())
-                db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?, ?, ?)", rows)
+                rows = ((job.key(), *whose, *packed) for whose, packed in result.packages.items())
+                db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?, ?, ?, ?)", rows)
                 db.execute("INSERT OR REPLACE INTO done VALUES(?, ?)", (job.key(), "\n".join(result.failed)))
                 db.commit()
                 if progress is not None:
                     progress(job.name, number, len(todo))
-        written: dict[str, Packed] = {}
+        written: dict[tuple[str, int], Packed] = {}
         for key in keys:
-            for package, *packed in db.execute(
-                "SELECT package, data, changes, includes FROM part WHERE key = ?", (key,)
+            for package, ros, *packed in db.execute(
+                "SELECT package, ros, data, changes, includes FROM part WHERE key = ?", (key,)
             ):
-                written[package] = Packed(*packed)
+                written[package, ros] = Packed(*packed)
             (why,) = db.execute("SELECT failed FROM done WHERE key = ?", (key,)).fetchone()
             failed += why.split("\n") if why else []
     about = write(output, written, distros, default().date)
     work.unlink()
-    histories = (History(package, packed.data, packed.includes) for package, packed in written.items())
-    approximate = sum(bool(history.approximate) for history in histories)
-    return Built(about.packages, about.versions, missing, approximate, tuple(failed))
+    histories = (History(package, packed.data, packed.includes) for (package, _), packed in written.items())
+    approximate = {history.package for history in histories if history.approximate}
+    return Built(about.packages, about.versions, missing, len(approximate), tuple(failed))
 
 
 def _results(todo: list[Job], jobs: int | None, dask: str | None) -> Generator[tuple[Job, Result], None, None]:

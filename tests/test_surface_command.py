@@ -181,7 +181,7 @@ def test_build(repos, tmp_path):
     assert result.exit_code == 0, result.stderr
     assert result.stdout.startswith(f"{file}: 1 package, 1 version, ")
     assert result.stdout.endswith("; 1 with a branch for a missing tag, 0 without a clone\n")
-    assert Surfaces(file).history("rclcpp").names()["rclcpp::Node"]
+    assert Surfaces(file).history("rclcpp", 2).names()["rclcpp::Node"]
 
 
 @pytest.mark.parametrize(

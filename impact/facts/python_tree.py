@@ -3,6 +3,7 @@
 import ast
 import re
 import sys
+from collections.abc import Iterator
 
 import msgspec
 
@@ -105,6 +106,7 @@ class Reader(Objects):
         self.imports: list[Import] = []
         # Line, offset, and whether only functions that may not run have it.
         self.uses: dict[tuple[Scope, str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
+        self.assigned: set[tuple[Scope, str]] = set()
         self.imported_names: list[Attribute] = []
         self.references: dict[Reference, None] = {}
         # What the include around gives.
@@ -211,6 +213,8 @@ class Reader(Objects):
             self.use_member(head, parts, call, node)
         if head == "self" or head == "cls":
             return
+        if node.ctx.__class__ is ast.Store:
+            self.assigned.add((self.scope, f"{head}.{'.'.join(parts)}"))
         key = (self.scope, f"{head}.{'.'.join(parts)}", self.use_conditions)
         known = self.uses.get(key)
         if known is None:
@@ -218,7 +222,14 @@ class Reader(Objects):
         elif known[2] and not self.may_not_run:
             self.uses[key] = (*known[:2], False)
 
+    def dotted(self, scope: Scope, text: str) -> Iterator[str]:
+        """What a name with parts stands for, import aliases resolved."""
+        head, _, rest = text.partition(".")
+        return (f"{dotted}.{rest}" for dotted, _ in self.imported(head, scope))
+
     def attributes(self) -> tuple[Attribute, ...]:
+        """Names of other modules that the file uses. What it assigns itself (`sys.maxint = sys.maxsize`) is there."""
+        own = {dotted for scope, text in self.assigned for dotted in self.dotted(scope, text)}
         found: dict[tuple[str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
         for attribute in self.imported_names:
             found.setdefault((attribute.text, attribute.conditions), (attribute.line, attribute.column, attribute.lazy))
@@ -226,6 +237,8 @@ class Reader(Objects):
             head, _, rest = text.partition(".")
             for dotted, extra in self.imported(head, scope):
                 if dotted.startswith("."):
+                    continue
+                if f"{dotted}.{rest}" in own:
                     continue
                 both = conditions if not extra else (*extra, *(c for c in conditions if c not in extra))
                 key = (f"{dotted}.{rest}", both)

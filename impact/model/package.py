@@ -467,12 +467,7 @@ class _Join:
             files=self.files,
             mains=tuple(p for p, f in self.cpp.items() if getattr(f, "main", False)),
             scripts=tuple(p for p, f in python.items() if f.interpreter),
-            defined=tuple(
-                sorted(
-                    {n for f in self.cpp.values() for n in f.defined}
-                    & (self.watched.words | self.watched.headers_of.keys())
-                )
-            ),
+            defined=tuple(sorted(self.defined_names())),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
             uses=tuple(uses),
             functions=tuple(sorted({name for found in self.searched.values() for name in found.functions})),
@@ -611,6 +606,15 @@ class _Join:
                     if not any(h in reach for h in headers):
                         needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
         return includes, names, needed
+
+    def defined_names(self) -> Iterator[str]:
+        """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
+        namespace that is called like another package whose versions are stored."""
+        asked = self.watched.words | self.watched.qualified | self.watched.headers_of.keys()
+        others = (self.watched.surfaces.packages if self.watched.surfaces is not None else frozenset()) - {self.name}
+        for name in {name for facts in self.cpp.values() for name in (*facts.defined, *facts.types)}:
+            if name in asked or name.partition("::")[0] in others:
+                yield name
 
     def uses(self, roles) -> Iterator[NameUse]:
         """Every use that some table row is about, in files that something compiles."""

@@ -16,8 +16,8 @@ from ..conditions import Environment, all_hold
 from ..config import Config
 from ..facts.condition import Condition
 from ..facts.interface import Interface
+from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
 from ..targets.changes import DISTROS
-from ..targets.distro.distro import known_distros
 from ..targets.evidence import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.includes import Machine, machine, machine_of
@@ -77,13 +77,14 @@ def weight(need: Need) -> tuple:
 
 
 class Misnamed(NamedTuple):
-    """Why an include path, or a name, cannot be right, and what to write. soon: it still is, until the distro's next
-    sync."""
+    """Why an include path, or a name, cannot be right, and what to write. ahead: it still is, until then. closed: it is
+    said because nobody is known to have it, so that whatever brings unknown contents may."""
 
     message: str
     help: str
     evidence: Evidence | None = None
-    soon: bool = False
+    ahead: Horizon | None = None
+    closed: bool = False
 
 
 # How packages of interfaces are called, and what makes interfaces and runs with them.
@@ -148,6 +149,8 @@ class View:
         self._made: dict[str, tuple[str, ...]] = {}
         self._interfaces: dict[str, dict[str, Interface]] = {}
         self._lost: dict[str, Misnamed | None] = {}
+        self._offers_ahead: dict[str, tuple[Offers, PythonOffers]] = {}
+        self._environments: dict[str, Environment] = {}
         # What rules worked out for each package and several of them ask for.
         self.worked_out: dict[tuple[str, str], Any] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
@@ -211,7 +214,12 @@ class View:
             self.providers.has_header(p.name, path, self.target.distro, version)
             for p in self.header(path) if p.kind == "ros" and (version := self.target.version(p.name))
         }  # fmt: skip
-        return True if True in known else False if known == {False} else None
+        if True in known or known == {False}:
+            return True in known
+        found = self.header_availability(path)
+        if found is None or found.state == "unknown" or (found.is_missing and not found.sure):
+            return None
+        return not found.is_missing
 
     def active(self, conditions: Iterable[Condition]) -> bool:
         """False only when a statement under these conditions surely does not count on the target."""
@@ -436,6 +444,14 @@ class View:
             known = self._standard[header] = any(not p.name for p in self.providers.header(header))
         return known
 
+    def header_availability(self, path: str) -> Availability | None:
+        """How the target stands to a header of released packages; None where something else may have it."""
+        providers = self.header(path)
+        owners = [p.name for p in providers if p.kind == "ros" and p.name not in self.workspace.packages]
+        if not owners or len(owners) < len(providers) or any(self.nested_header(owner, path) for owner in owners):
+            return None
+        return self.availability(Symbol("header", path, tuple(owners)))
+
     def lost_header(self, path: str) -> Misnamed | None:
         """What is wrong when every released package that has, or had, a header lacks it in its version here."""
         if path not in self._lost:
@@ -449,7 +465,7 @@ class View:
         if self.providers.system_has(path, target.platform) is False and all(
             p.kind == "system" for p in self.header(path)
         ):
-            return Misnamed(f"no package of {target.platform} has `{path}`", "")
+            return Misnamed(f"no package of {target.platform} has `{path}`", "", closed=True)
         owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.packages]
         if not owners or any(p.kind != "ros" for p in self.header(path)):
             return None
@@ -513,18 +529,12 @@ class View:
         state = history.state(version) if history is not None and version else None
         return None if history is None or state is None or not version else (history, state, version)
 
-    @cached_property
-    def _ahead(self) -> tuple[tuple[Target, bool], ...]:
-        """What this distro becomes, soonest first, and whether its next sync brings that."""
-        ahead = (self.target.in_testing(), True), (self.target.updated(), False)
-        return tuple((target, soon) for target, soon in ahead if target is not None)
-
     def coming_member(self, use: MemberUse) -> Misnamed | None:
         """What is wrong when the interface has a member here, and lacks it once this distro is updated."""
-        return next((c for target, soon in self._ahead if (c := self._coming_member(use, target, soon))), None)
+        return next((c for ahead in self.updates if (c := self._coming_member(use, ahead))), None)
 
-    def _coming_member(self, use: MemberUse, target: Target, soon: bool) -> Misnamed | None:
-        now, later = self._interfaces_of(use.package), self._interfaces_of(use.package, target)
+    def _coming_member(self, use: MemberUse, ahead: Horizon) -> Misnamed | None:
+        now, later = self._interfaces_of(use.package), self._interfaces_of(use.package, ahead.target)
         if use.ros != self.target.ros or not now or not later or now[1] >= later[1]:
             return None
         definition = now[0].definition(use.interface)
@@ -535,26 +545,26 @@ class View:
             return None
         spans = [span for row in rows for span in row.spans]
         lost = _field_lost(use.package, now[0], spans, later[1])._replace(name=use.member, ahead=True)
-        return self._goes(f"`{use.member}` of `{use.package}/{use.interface}`", use.package, later[2], soon, lost)
+        return self._goes(f"`{use.member}` of `{use.package}/{use.interface}`", use.package, later[2], ahead, lost)
 
     def coming_interface(self, path: str) -> Misnamed | None:
         """The same for the interface of a generated header."""
-        return next((c for target, soon in self._ahead if (c := self._coming_interface(path, target, soon))), None)
+        return next((c for ahead in self.updates if (c := self._coming_interface(path, ahead))), None)
 
-    def _coming_interface(self, path: str, target: Target, soon: bool) -> Misnamed | None:
+    def _coming_interface(self, path: str, ahead: Horizon) -> Misnamed | None:
         head, _, _, name = self._generated(path)
-        now, later = self._interfaces_of(head), self._interfaces_of(head, target)
+        now, later = self._interfaces_of(head), self._interfaces_of(head, ahead.target)
         if not name or not now or not later or now[1] >= later[1]:
             return None
         spans = now[0].spans(name)
         if spans is None or not there(spans, now[1]) or there(spans, later[1]):
             return None
         lost = _field_lost(head, now[0], spans, later[1])._replace(name=path, ahead=True)
-        return self._goes(f"`{path}`", head, later[2], soon, lost)
+        return self._goes(f"`{path}`", head, later[2], ahead, lost)
 
-    def _goes(self, what: str, package: str, version: str, soon: bool, evidence: Evidence) -> Misnamed:
-        where = f"the next sync of {self.target.distro}" if soon else self.target.distro
-        return Misnamed(f"{what} is there, and gone in {package} {version} of {where}", "", evidence, soon)
+    def _goes(self, what: str, package: str, version: str, ahead: Horizon, evidence: Evidence) -> Misnamed:
+        message = f"{what} will be removed: not in {package} {version} ({ahead.name})"
+        return Misnamed(message, "", evidence, ahead)
 
     def _generated(self, path: str) -> tuple[str, str, str, str]:
         """Package, rest, stem and interface (empty: none known) of the include path of a generated header."""
@@ -703,10 +713,6 @@ class View:
     def _library_names(self) -> frozenset[str]:
         return self.target.library_names()
 
-    def left_python(self, module: str) -> bool:
-        """True for modules that Python's standard library once had and the target's has no longer."""
-        return ever_stdlib(module) and not stdlib(module, self.target.python, self.target.python_major)
-
     @cached_property
     def _changes(self) -> dict[str, list[Change]]:
         found: dict[str, list[Change]] = {}
@@ -719,34 +725,66 @@ class View:
         return [c for kind in kinds for c in self._changes.get(kind, ())]
 
     @cached_property
-    def later(self) -> dict[str, Change]:
-        """Changes of platform libraries and Python that the newest distro of this generation has and the target has not
-        yet: what breaks when this machine, or a colleague's, is updated. By old name."""
-        horizon = self.newest
-        if horizon is None:
-            return {}
-        here = {(c.kind, c.package, c.old) for c in self.target.changes() if c.state == "removed"}
-        return {
-            c.old: c for c in horizon.changes()
-            if c.state == "removed" and c.library and (c.kind, c.package, c.old) not in here
-        }  # fmt: skip
-
-    def later_active(self, conditions: Iterable[Condition]) -> bool:
-        """False when a statement under these conditions surely does not count on the newest distro."""
-        conditions = tuple(conditions)
-        return not conditions or all_hold(conditions, self._later_environment) is not False
+    def horizons(self) -> tuple[Horizon, ...]:
+        """What the target is going to be, soonest first; distros that are asked for themselves left out."""
+        return horizons(self.target, self.asked)
 
     @cached_property
-    def _later_environment(self) -> Environment:
-        newest = self.newest or self.target
+    def updates(self) -> tuple[Horizon, ...]:
+        """Those of them that an update of this distro brings."""
+        return tuple(ahead for ahead in self.horizons if not ahead.platform)
 
+    @cached_property
+    def availabilities(self) -> Availabilities:
+        """What of released packages and platform libraries is there."""
+        return Availabilities(self.target, self.offers, self.providers, self.horizons)
+
+    def availability(self, symbol: Symbol) -> Availability:
+        """How the target stands to something outside the workspace; what the workspace brings itself is there."""
+        if any(package in self.workspace.packages for package in symbol.packages):
+            return Availability(symbol, "present")
+        return self.availabilities.on_horizon(symbol)
+
+    @cached_property
+    def coming(self) -> dict[str, tuple[Change, Horizon]]:
+        """Reviewed changes that are not in force here and will be, by old name, each with the nearest horizon: what
+        breaks when this machine, or a colleague's, is updated."""
+        found: dict[str, tuple[Change, Horizon]] = {}
+        for ahead in self.horizons:
+            for change in coming_changes(self.target, ahead):
+                found.setdefault(change.old, (change, ahead))
+        return found
+
+    def offers_on(self, ahead: Horizon) -> tuple[Offers, PythonOffers]:
+        """What released packages offer on a horizon."""
+        known = self._offers_ahead.get(ahead.name)
+        if known is None:
+            offers = Offers(ahead.target)
+            known = self._offers_ahead[ahead.name] = offers, PythonOffers(offers)
+        return known
+
+    def active_on(self, ahead: Horizon, conditions: Iterable[Condition]) -> bool:
+        """False when a statement under these conditions surely does not count on a horizon."""
+        conditions = tuple(conditions)
+        if not conditions:
+            return True
+        environment = self._environments.get(ahead.name)
+        if environment is None:
+            environment = self._environments[ahead.name] = self._environment_on(ahead.target)
+        return all_hold(conditions, environment) is not False
+
+    def later_active(self, conditions: Iterable[Condition]) -> bool:
+        """The same on the newest distro."""
+        return not self.newest or self.active_on(Horizon(self.newest, self.newest.distro, platform=True), conditions)
+
+    def _environment_on(self, target: Target) -> Environment:
         def version(name: str) -> str | None:
-            return newest.version(name) or newest.library(name.lower())
+            return target.version(name) or target.library(name.lower())
 
         return Environment(
-            ros_distro=newest.distro, ros_version=str(newest.ros), python=(3, newest.python) if newest.python else None,
-            codename=newest.platform.split(" ")[-1], versions=version,
-            packages=lambda name: self._has_package(name, newest), testing=True,
+            ros_distro=target.distro, ros_version=str(target.ros), python=(3, target.python) if target.python else None,
+            codename=target.platform.split(" ")[-1], versions=version,
+            packages=lambda name: self._has_package(name, target), testing=True,
         )  # fmt: skip
 
     @property
@@ -754,13 +792,6 @@ class View:
         """Name of the newest distro of this generation, see newest."""
         newest = self.newest
         return newest.distro if newest is not None else ""
-
-    @cached_property
-    def horizon_is_near(self) -> bool:
-        """True when the newest distro is at most two long-term ones ahead."""
-        released = {known.name: known.released for known in known_distros()}
-        here = released.get(self.target.distro, "")
-        return sum(k.lts and k.ros == self.target.ros and k.released > here for k in known_distros()) <= 2
 
     def concerned(self, package: Package, change: Change, path: str) -> bool:
         """True when a file can mean the changed package by a name: the package declares or includes something of it,

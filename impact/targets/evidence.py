@@ -179,7 +179,7 @@ def from_surfaces(evidence: Evidence, target: Target) -> Evidence:
     """The evidence with what the stored surfaces tell of the name: declarations, and the versions between which it
     changed as a target sees it. As it was where they know nothing of such a change."""
     version = None if evidence.library or evidence.ahead else target.version(evidence.package)
-    line = surfaces().lines(evidence.package).get(target.ros) if version and evidence.side else None
+    line = surfaces().line(evidence.package, target.ros) if version and evidence.side else None
     place = line.place(version) if line is not None and version else None
     if line is None or place is None:
         return evidence
@@ -189,7 +189,7 @@ def from_surfaces(evidence: Evidence, target: Target) -> Evidence:
         if event is not None and event.place:
             last, first = line.versions[event.place - 1], line.versions[event.place]
             found = evidence._replace(side=side, last=last, first=first, new_in=(), stored=True)
-            found = found if evidence.change == "deprecated" else _declared(found)
+            found = found if evidence.change == "deprecated" else _declared(found, target.ros)
             guessed = not evidence.stored and (last in line.approximate or first in line.approximate)
             if guessed or evidence.new_in or evidence.first[:1].isdigit():
                 # A branch stood for one of them; or a person found out the very version, and not all are stored.
@@ -200,10 +200,11 @@ def from_surfaces(evidence: Evidence, target: Target) -> Evidence:
     return evidence
 
 
-def _declared(evidence: Evidence) -> Evidence:
+def _declared(evidence: Evidence, ros: int) -> Evidence:
     """The evidence with the declarations before and since."""
+    history = surfaces().history(evidence.package, ros)
     old, new = (
-        declarations(surfaces(), evidence.package, evidence.side, evidence.name, version)
+        declarations(history, evidence.side, evidence.name, version)
         for version in (evidence.last, evidence.first)
     )
     # What only changed beneath, such as a base, is declared as before.
@@ -268,7 +269,7 @@ def _on(evidence: Evidence, target: Target, providers: Providers) -> OnTarget | 
 def _holds(evidence: Evidence, version: str, target: Target, providers: Providers) -> bool | None:
     """Whether a change is in force in a version that a target has, or had; None when that is not known."""
     if evidence.stored:
-        line = surfaces().lines(evidence.package).get(target.ros)
+        line = surfaces().line(evidence.package, target.ros)
         return _holds_by(line, evidence, version) if line is not None else None
     if evidence.header:
         there = providers.has_header(evidence.package, evidence.header, target.distro, version)

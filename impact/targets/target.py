@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+if TYPE_CHECKING:
+    from .availability import Availability, Symbol
 
 
 class Provider(NamedTuple):
@@ -165,6 +168,10 @@ class Target(Protocol):
 
     def set_changes(self, changes: tuple[Change, ...]) -> None:
         """What changes() is to answer, worked out by an earlier run on the same data."""
+        ...
+
+    def availability(self, symbol: Symbol) -> Availability:
+        """How the target stands to a package, header, name, CMake name, program, plugin, field or parameter."""
         ...
 
     def changes(self) -> tuple[Change, ...]:

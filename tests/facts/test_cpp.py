@@ -111,6 +111,21 @@ def test_columns_count_characters():
     assert (name.line, name.column) == (1, 11)
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("struct A { };", ()),
+        ("namespace n { struct A { }; class B : public x::C<D> { }; class Announced; }", ("n::A", "n::B")),
+        ("namespace n { struct EIGEN_ALIGN16 A final : B { }; enum class E : int { x }; union U { };}",
+         ("n::A", "n::E", "n::U")),
+        ("namespace n::m { using A = B; typedef std::vector<int> C; using namespace o; }", ("n::m::A", "n::m::C")),
+        ("namespace n { void f(struct A * a); struct A b; }", ()),
+    ],
+)  # fmt: skip
+def test_types_that_are_defined_in_namespaces(text, expected):
+    assert extract(text.encode()).types == expected
+
+
 def test_words_are_bare_identifiers_of_four_letters():
     facts = extract(b"int32_t memcpy(std::size_t count); ::close(1); for (auto abc : list) return 0x1234; // word\n")
     assert facts.words == "close count int32_t list memcpy"

@@ -73,6 +73,10 @@ def test_places_and_laziness_of_imports():
         ("def f():\n  import a\n  a.b\ndef g():\n  a.c", [("a.b",)]),
         ("def f():\n  global a\n  import a\ndef g():\n  a.c", [("a.c",)]),
         ("import a\na.b\na.b", [("a.b",)]),
+        # What the file assigns is there.
+        ("import sys\nif not hasattr(sys, 'maxint'):\n  sys.maxint = sys.maxsize\nsys.maxint",
+         [("sys.maxsize", "not hasattr(sys, 'maxint')")]),
+        ("import a as z\ndef f():\n  z.b.c = 1\nz.b.c\nz.b.d", [("a.b.d",)]),
         ("import a\na.b().c", [("a.b",)]),
         ("import a\nif a.ok:\n  a.b", [("a.ok",), ("a.b",)]),
         ("import sys\nif sys.version_info > (3,):\n  sys.b",

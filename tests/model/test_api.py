@@ -51,7 +51,7 @@ def changes_of(packages: dict[str, tuple[str, str]]) -> Changes:
         for package in surfaces:
             lines.add(package, version, (2,), state)
     packed = lines.packed()
-    return Changes(lambda package: unpack(packed[package]) if package in packed else {})
+    return Changes(lambda package: {2: unpack(packed[package, 2])} if (package, 2) in packed else {})
 
 
 @pytest.fixture(scope="module")

@@ -13,13 +13,13 @@ from rosimpact.impact.targets.surface.changes import unpack
 from rosimpact.impact.targets.surface.store import History, Surfaces
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
-<maintainer email="a@b.c">m</maintainer><license>l</license><buildtool_depend>ament_cmake</buildtool_depend>
-<export><build_type>ament_cmake</build_type></export></package>"""
+<maintainer email="a@b.c">m</maintainer><license>l</license><buildtool_depend>{made_by}</buildtool_depend>
+<export><build_type>{made_by}</build_type></export></package>"""
 CMAKE = """cmake_minimum_required(VERSION 3.16)
 project({name})
-find_package(ament_cmake REQUIRED)
+find_package({made_by} REQUIRED)
 install(DIRECTORY include/ DESTINATION include)
-ament_package()
+{ending}
 """
 
 
@@ -28,14 +28,15 @@ def git(folder, *arguments):
     subprocess.run(["git", "-C", str(folder), *identity, *arguments], check=True, capture_output=True)
 
 
-def release(folder, name, tag, code):
+def release(folder, name, tag, code, made_by="ament_cmake"):
     """Commits a package with one header as a release, and tags it."""
     if not (folder / ".git").exists():
         folder.mkdir(parents=True)
         git(folder, "init", "-q", "-b", "rolling")
+    ending = "ament_package()" if made_by.startswith("ament") else "catkin_package(INCLUDE_DIRS include)"
     (folder / name / "include" / name).mkdir(parents=True, exist_ok=True)
-    (folder / name / "package.xml").write_text(MANIFEST.format(name=name, version=tag))
-    (folder / name / "CMakeLists.txt").write_text(CMAKE.format(name=name))
+    (folder / name / "package.xml").write_text(MANIFEST.format(name=name, version=tag, made_by=made_by))
+    (folder / name / "CMakeLists.txt").write_text(CMAKE.format(name=name, made_by=made_by, ending=ending))
     (folder / name / "include" / name / "a.hpp").write_text(code)
     git(folder, "add", "-A")
     git(folder, "commit", "-qm", "x")
@@ -73,7 +74,7 @@ def test_what_is_written(clones, tmp_path):
     built = build(clones, ("humble", "jazzy"), file, jobs=1, progress=lambda *told: seen.append(told))
     assert (built.packages, built.versions, built.approximate) == (2, 4, 0)
     assert [told[1:] for told in seen] == [(1, 2), (2, 2)]
-    history = Surfaces(file).history("rclcpp")
+    history = Surfaces(file).history("rclcpp", 2)
     old, new = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
     assert history.names() == {"of_humble": (old,), "of_jazzy": (new,), "rclcpp/a.hpp": (old, new)}
     assert [path.name for path in file.parent.iterdir()] == ["surfaces.sqlite"]
@@ -109,7 +110,7 @@ def test_a_moved_tag_is_read_again(clones, tmp_path):
     version = DistroTarget("humble").version("rclcpp")
     git(clones.folder / "ros2+rclcpp", "tag", "-f", version, "HEAD")
     build(Clones(clones.folder), ("humble",), file, ("rclcpp",), 1)
-    assert "of_jazzy" in Surfaces(file).history("rclcpp").names()
+    assert "of_jazzy" in Surfaces(file).history("rclcpp", 2).names()
 
 
 def test_versions_of_one_package_in_two_clones_are_one_job(clones, tmp_path):
@@ -120,9 +121,9 @@ def test_versions_of_one_package_in_two_clones_are_one_job(clones, tmp_path):
         ("ros2/rclcpp", older),
         ("ros2-gbp/any-release", newer),
     ]
-    packed = run(job).packages["rclcpp"]
+    packed = run(job).packages["rclcpp", 2]
     assert History("rclcpp", packed.data, packed.includes).versions == (older, newer)
-    assert list(unpack(packed.changes)[2].events["c++"]) == ["of_jazzy", "of_kilted"]
+    assert list(unpack(packed.changes).events["c++"]) == ["of_jazzy", "of_kilted"]
     assert missing == ()
 
 
@@ -154,6 +155,35 @@ def test_a_version_belongs_to_the_generations_of_ros_that_had_it(tmp_path, monke
         release(tmp_path / "clones" / "ros+angles", "angles", DistroTarget(distro).version("angles"), "void f();")
     (job,), _ = plan(Clones(tmp_path / "clones"), ("noetic", "jazzy"), ("angles",))
     assert [state.generations for state in job.states] == [(1,), (2,)]
+
+
+def test_one_version_of_two_repositories_is_two_states(tmp_path, monkeypatch):
+    """ros_control of Indigo and ros2_control of Foxy have released the same numbers of packages of the same name."""
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
+    folder = tmp_path / "clones"
+    for repository, made_by, code in (
+        ("ros_control", "catkin", "void one();"),
+        ("ros2_control", "ament_cmake", "void two();"),
+    ):
+        release(folder / f"ros-controls+{repository}", "hardware_interface", "0.8.0", code, made_by)
+    (job,), _ = plan(Clones(folder), ("indigo", "foxy"), ("hardware_interface",), "all")
+    assert sorted((one.clone, one.version, one.generations) for one in job.states if not one.approximate) == [
+        ("ros-controls/ros2_control", "0.8.0", (2,)),
+        ("ros-controls/ros_control", "0.8.0", (1,)),
+    ]
+    packages = run(job).packages
+    has = {ros: History("", packed.data, packed.includes).names().keys() for (_, ros), packed in packages.items()}
+    assert ["one" in has[1], "two" in has[1], "one" in has[2], "two" in has[2]] == [True, False, False, True]
+
+
+def test_a_package_of_ros_1_is_no_state_of_a_ros_2_version(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
+    version = DistroTarget("jazzy").version("angles")
+    release(tmp_path / "clones" / "ros+angles", "angles", version, "void f();", "catkin")
+    (job,), _ = plan(Clones(tmp_path / "clones"), ("jazzy",), ("angles",))
+    result = run(job)
+    assert result.packages == {}
+    assert result.failed == (f"angles {version}: ros/angles has a ROS 1 package at its tag",)
 
 
 def test_an_unknown_distro():

@@ -68,11 +68,6 @@ def test_state_of_a_change(distro, versions, old, expected):
         ("iron", None, "tf2/time.h", {"absent"}),
         ("kilted", None, "tf2/time.h", {"deprecated"}),
         ("jazzy", "2024-06-30", "message_filters/subscriber.h", {"absent"}),
-        ("jazzy", None, "tf2_geometry_msgs/tf2_geometry_msgs.h", {"removed"}),
-        ("humble", None, "tf2_geometry_msgs/tf2_geometry_msgs.h", {"deprecated"}),
-        ("galactic", None, "tf2_geometry_msgs/tf2_geometry_msgs.h", {"absent"}),
-        ("humble", None, "cv_bridge/cv_bridge.h", {"absent"}),
-        ("jazzy", None, "cv_bridge/cv_bridge.h", {"removed"}),
         # The old names of xmlrpcpp stay on its include path
         ("noetic", None, "XmlRpcException.h", {"deprecated"}),
         ("indigo", None, "XmlRpcException.h", {"absent"}),

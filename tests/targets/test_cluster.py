@@ -268,4 +268,4 @@ def test_what_is_done_needs_no_cluster(clones, tmp_path):
     with pytest.raises(KeyboardInterrupt):
         build(clones, *asked, 1, stop)
     assert build(clones, *asked, dask="tcp://127.0.0.1:1").packages == 8
-    assert "of_rclcpp" in Surfaces(tmp_path / "surfaces").history("rclcpp").names()
+    assert "of_rclcpp" in Surfaces(tmp_path / "surfaces").history("rclcpp", 2).names()

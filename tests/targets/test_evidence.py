@@ -110,10 +110,10 @@ class Store:
     def __init__(self, one):
         self.one = one
 
-    def lines(self, package):
-        return {2: self.one}
+    def line(self, package, ros):
+        return self.one if ros == 2 else None
 
-    def history(self, package):
+    def history(self, package, ros):
         return None
 
 

@@ -49,9 +49,9 @@ def _header(code):
 
 def test_each_version_includes_what_it_did():
     including = Including()
-    including.add("1.0.0", [("arm/a.h", _header("#include <x>\n#include <y>")), ("arm/b.h", _header("class B;"))], (1,))
-    including.add("2.0.0", [("arm/a.h", _header("#include <y>\n#include <x>"))], (2,))
-    including.add("3.0.0", [("arm/a.h", _header("#include <x>\n#include <y>"))], (2,), True)
+    including.add("1.0.0", [("arm/a.h", _header("#include <x>\n#include <y>")), ("arm/b.h", _header("class B;"))])
+    including.add("2.0.0", [("arm/a.h", _header("#include <y>\n#include <x>"))])
+    including.add("3.0.0", [("arm/a.h", _header("#include <x>\n#include <y>"))], True)
     included = unpack(including.packed())
     written = {version: included.written("arm/a.h", version) for version in ("1.0.0", "2.0.0", "3.0.0", "4.0.0")}
     assert {version: None if told is None else [one.path for one in told] for version, told in written.items()} == {
@@ -62,9 +62,9 @@ def test_each_version_includes_what_it_did():
     }
     assert included.written("arm/b.h", "1.0.0") == () and included.written("arm/b.h", "2.0.0") is None
     assert included.announced("arm/b.h", "1.0.0") == ("B",) and included.announced("arm/b.h", "2.0.0") == ()
-    # A branch stands for no other version, and a generation has versions of its own.
-    stands = {(version, ros): included.stands_for(version, ros) for version in ("1.5.0", "3.5.0") for ros in (1, 2)}
-    assert stands == {("1.5.0", 1): "1.0.0", ("1.5.0", 2): None, ("3.5.0", 1): "1.0.0", ("3.5.0", 2): "2.0.0"}
+    # A branch stands for no other version.
+    stands = {version: included.stands_for(version) for version in ("0.5.0", "1.5.0", "3.5.0")}
+    assert stands == {"0.5.0": None, "1.5.0": "1.0.0", "3.5.0": "2.0.0"}
 
 
 def _surface(package, version, headers, messages):

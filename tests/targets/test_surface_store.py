@@ -59,7 +59,7 @@ def packed(*surfaces, approximate=False):
     packing = Packing()
     for one in surfaces:
         packing.add("arm", one.version, (2,), State({"arm": one}), approximate)
-    return packing.packed()["arm"]
+    return packing.packed()["arm", 2]
 
 
 def stored(*surfaces):
@@ -117,19 +117,35 @@ def test_statements_and_long_messages_are_not_stored():
 def test_a_file_of_packages(tmp_path):
     file = tmp_path / "surfaces.sqlite"
     arm = packed(surface("1.0.0"), approximate=True)
-    about = write(file, {"arm": arm}, ("humble", "jazzy"), "2026-08-22")
+    about = write(file, {("arm", 2): arm}, ("humble", "jazzy"), "2026-08-22")
     surfaces = Surfaces(file)
     assert surfaces.about == about == (1, 1, "humble jazzy", "2026-08-22")
     assert surfaces.packages == {"arm"}
-    assert surfaces.history("arm").approximate == {"1.0.0"}
+    assert surfaces.history("arm", 2).approximate == {"1.0.0"}
     assert {generation: line.versions for generation, line in surfaces.lines("arm").items()} == {2: ("1.0.0",)}
-    assert surfaces.included("arm").generations == (2,)
+    assert surfaces.included("arm", 2).versions == ("1.0.0",)
     assert surfaces.lines("leg") == {}
-    assert surfaces.history("leg") is surfaces.included("leg") is None
+    assert surfaces.history("leg", 2) is surfaces.included("arm", 1) is surfaces.line("arm", 1) is None
+
+
+def test_a_package_of_each_generation_answers_for_its_own(tmp_path):
+    """Two packages of one name and version, as ros_control and ros2_control have them."""
+    packing = Packing()
+    for ros, code in ((1, "void one();"), (2, "void two();")):
+        one = surface("0.11.0", code)
+        packing.add("arm", "0.11.0", (ros,), State({"arm": one}))
+    write(tmp_path / "x", packing.packed())
+    surfaces = Surfaces(tmp_path / "x")
+    assert surfaces.generations("arm") == (1, 2)
+    for ros, has in ((1, "one"), (2, "two")):
+        history = surfaces.history("arm", ros)
+        assert [name for name in ("one", "two") if history.has(name, "0.11.0")] == [has]
+        assert surfaces.line("arm", ros).events == {}
+    assert surfaces.about.packages == surfaces.about.versions == 1
 
 
 def test_which_package_may_have_a_header(tmp_path):
-    surfaces = write(tmp_path / "x", {"arm": packed(surface("1.0.0"))}) and Surfaces(tmp_path / "x")
+    surfaces = write(tmp_path / "x", {("arm", 2): packed(surface("1.0.0"))}) and Surfaces(tmp_path / "x")
     assert [surfaces.holders(header) for header in ("a.hpp", "arm/any.hpp", "b.hpp")] == [("arm",), ("arm",), ()]
 
 
@@ -149,10 +165,10 @@ def test_which_parameters_surely_came_or_went(tmp_path):
         version("2.0.0", "kept", mentioned=("hidden",)),
         version("3.0.0", "kept", "base.fresh"),
     )
-    surfaces = write(tmp_path / "x", {"arm": arm}) and Surfaces(tmp_path / "x")
+    surfaces = write(tmp_path / "x", {("arm", 2): arm}) and Surfaces(tmp_path / "x")
     assert surfaces.changing_parameters == {"fresh": {"arm"}, "gone": {"arm"}}
-    assert [name for name, _ in surfaces.history("arm").parameters("1.0.0")] == ["*.gone", "hidden", "kept"]
+    assert [name for name, _ in surfaces.history("arm", 2).parameters("1.0.0")] == ["*.gone", "hidden", "kept"]
     unknown = packed(
         *(msgspec.structs.replace(surface(v), parameters=p) for v, p in (("1", (("a", None),)), ("2", ())))
     )
-    assert (write(tmp_path / "y", {"arm": unknown}) and Surfaces(tmp_path / "y")).changing_parameters == {}
+    assert (write(tmp_path / "y", {("arm", 2): unknown}) and Surfaces(tmp_path / "y")).changing_parameters == {}

@@ -46,6 +46,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     defined: macros and include guards the file defines; using: namespaces named by `using namespace` and `using a::b`.
     exports: classes given to pluginlib and rclcpp_components macros, as written without spaces; references: packages
     and files named by literals (`package://`, getPath, get_package_share_directory); main: defines a main function.
+    types: those that it defines in namespaces, with each namespace that the file opens, since which one encloses which
+    is not followed.
     """
 
     includes: tuple[Include, ...]
@@ -57,6 +59,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     exports: tuple[str, ...] = ()
     references: tuple[Reference, ...] = ()
     main: bool = False
+    types: tuple[str, ...] = ()
 
 
 # Conditions beyond these are one unknown condition: hostile input must not cost quadratic memory.
@@ -383,7 +386,27 @@ def extract(data: bytes) -> CppFile:
         main=any(
             _BEFORE_MAIN.search(visible, max(0, match.start() - 60), match.start()) for match in _MAIN.finditer(visible)
         ),
+        types=types_of(visible),
     )
+
+
+_NAMESPACE = re.compile(r"\bnamespace\s+([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*\{")
+_TYPE = re.compile(
+    r"\b(?:struct|class|union|enum(?:\s+class|\s+struct)?)\s{1,20}(?:[A-Z_][A-Z_0-9]{1,40}\s{1,20})?([^\W\d]\w*)\s{0,20}"
+    r"(?:final\s{0,20})?(?::[^:;{}()][^;{}()]{0,400})?\{"
+    r"|\busing\s{1,20}([^\W\d]\w*)\s{0,20}=|\btypedef\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};"
+)
+_MOST_TYPES = 400
+
+
+def types_of(visible: str) -> tuple[str, ...]:
+    """The types that a file defines, with each of the namespaces that it opens."""
+    spaces = dict.fromkeys(_SPACE.sub("", match) for match in _NAMESPACE.findall(visible))
+    if not spaces:
+        return ()
+    names = dict.fromkeys(next(filter(None, match)) for match in _TYPE.findall(visible))
+    found = (f"{space}::{name}" for space in spaces for name in names)
+    return tuple(sys.intern(name) for _, name in zip(range(_MOST_TYPES), found, strict=False))
 
 
 def _by_line(item: Problem | Reference) -> int:

@@ -15,11 +15,12 @@ from .clones import VersionError, newest_with, release_of
 
 class StoredVersion(NamedTuple):
     """version: as released. stored: the version in the file that stands for it. approximate: it is another one, or a
-    branch stood for its tag when it was read."""
+    branch stood for its tag when it was read. ros: the generation that it is of."""
 
     version: str
     stored: str
     approximate: bool
+    ros: int
 
 
 class StoredVersions:
@@ -34,17 +35,19 @@ class StoredVersions:
 
     def find(self, package: str, asked: str) -> StoredVersion:
         """What stands for a version or a distro's version: of the latter the newest one before it, when it is not
-        there itself, at a tag. Raises VersionError when there is none."""
+        there itself, at a tag; of a version that both ROS generations have, ROS 2's. Raises VersionError when there is
+        none."""
         lines = self.surfaces.lines(package)
+        stored = None
         if asked[:1].isdigit():
             version = asked
-            stored = version if any(version in line.versions for line in lines.values()) else None
+            ros = max((ros for ros, line in lines.items() if version in line.versions), default=0)
+            stored = version if ros else None
         else:
             release = release_of(package, asked, self._data)
-            version = release.version
-            line = lines.get(DistroTarget(release.distro, data=self._data).ros)
-            place = None if line is None else line.place(version)
-            stored = None if line is None or place is None else line.versions[place]
+            version, ros = release.version, DistroTarget(release.distro, data=self._data).ros
+            place = lines[ros].place(version) if ros in lines else None
+            stored = lines[ros].versions[place] if place is not None else None
         if not lines:
             raise VersionError(f"surfaces of `{package}` are not shipped; read them from a clone: --repos DIR")
         if stored is None:
@@ -53,8 +56,7 @@ class StoredVersions:
                 f"`{package}` {version} is not shipped, others from {' and '.join(having)} are; read it from a clone:"
                 " --repos DIR"
             )
-        branch = any(stored in line.approximate for line in lines.values())
-        return StoredVersion(version, stored, branch or stored != version)
+        return StoredVersion(version, stored, stored in lines[ros].approximate or stored != version, ros)
 
     def surface(self, package: str, asked: str) -> tuple[StoredVersion, State]:
         """What stands for a version of a package, with the packages that its repository released along with it. Raises
@@ -62,7 +64,7 @@ class StoredVersions:
         found = self.find(package, asked)
         surfaces = {}
         for name in (package, *self._beside(package, found.stored)):
-            history = self.surfaces.history(name)
+            history = self.surfaces.history(name, found.ros)
             surface = history.surface(found.stored) if history is not None else None
             if surface is not None:
                 surfaces[name] = surface
@@ -76,7 +78,7 @@ class StoredVersions:
             found = self.find(package, distro)
         except VersionError:
             return None
-        history = self.surfaces.history(package)
+        history = self.surfaces.history(package, found.ros)
         return history.interfaces(found.stored).get(f"msg/{short}") if history is not None else None
 
     def _beside(self, package: str, version: str) -> Iterator[str]:

@@ -25,7 +25,9 @@ Not reported
 
 from ...model.view import View
 from ..rule import Hit, rule
-from .python_api import evidence_of, severity_of, uses_lost
+from ..severity import severity
+from .python_api import doubts_of, evidence_of, uses_coming, uses_lost
+from .upcoming import Upcoming, rated
 
 
 @rule(severity="error")
@@ -33,21 +35,28 @@ def changed_python_signature(view: View):
     # What parameters are called now, where a reviewed table knows: by `function.parameter`.
     renamed = {change.old: change.new.rpartition(".")[2] for change in view.changes("python-api") if change.new}
     for package in view:
-        for found, lost in uses_lost(view, package):
-            where = f"{lost.package} {lost.version}"
-            severity = severity_of(found, lost)
+        uses = [(found, lost, None) for found, lost in uses_lost(view, package)] + uses_coming(view, package)
+        coming: list[Upcoming] = []
+        for found, lost, ahead in uses:
+            where = f"{lost.package} {lost.version}" + (f" ({ahead.name})" if ahead is not None else "")
             given = found.use.given.keywords if found.use.given is not None else ()
             cure = ""
             if lost.state == "refused":
-                message = f"`{lost.name}` of {where} no longer takes this call: {lost.why}"
+                message = f"`{lost.name}` of {where} no longer accepts this call: {lost.why}"
                 names = [f"`{renamed[key]}` for `{one}`" for one in given if (key := f"{lost.name}.{one}") in renamed]
                 cure = f"write {' and '.join(names)}" if names else ""
             elif lost.state == "early":
-                message = f"`{lost.name}` of {where} does not take this call yet: {lost.why}"
+                message = f"`{lost.name}` of {where} does not accept this call yet: {lost.why}"
             elif lost.state == "override":
                 message = f"`{lost.name}`, overridden here, has changed in {where}: {lost.why}"
                 cure = f"it is called as `{lost.new}`"
-                severity = "warning" if severity == "error" else severity
             else:
                 continue
-            yield Hit(found.at, lost.name, message, cure, package.name, severity=severity, evidence=evidence_of(lost))
+            doubts = doubts_of(view, found, lost)
+            hit = Hit(found.at, lost.name, message, cure, package.name, evidence=evidence_of(lost))
+            if ahead is None:
+                yield hit._replace(severity=severity(*doubts))
+            else:
+                order = found.at.path, found.at.line, found.at.column
+                coming.append(Upcoming(hit, lost.package, ahead, doubts, order))
+        yield from rated(coming)

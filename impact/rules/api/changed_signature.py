@@ -43,7 +43,9 @@ from ...targets.target import Change
 from ...targets.uses import function_of, standards_of
 from ...targets.version import at_least
 from ..rule import Hit, rule
-from .cpp_api import line_of, severity_of, uses_judged, when
+from ..severity import Doubt, doubts_of_place, severity
+from .cpp_api import doubts_of, line_of, uses_coming, uses_judged, when
+from .upcoming import Upcoming, rated
 
 # What every C++ file is compiled with, whatever its package declares.
 _COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
@@ -62,18 +64,24 @@ def changed_signature(view: View):
         for use, found in uses_judged(view, package):
             if found.kind not in _KINDS or (use.at.path, use.at.line) in told:
                 continue
-            severity = severity_of(view, use, found)
-            if found.kind == "override" and severity == "error" and "override" not in use.given:
-                severity = "warning"  # it compiles, and nobody calls it
             yield Hit(
                 use.at,
                 use.name,
                 f"{_what(use, found)} in {found.offered.package} {found.offered.version}",
                 f"use `{found.offered.instead}`" if found.offered.instead else when(found),
                 package.name,
-                severity=severity,
+                severity=severity(*doubts_of(view, use, found)),
                 evidence=of_offered(found.offered),
             )
+        yield from rated(
+            Upcoming(
+                Hit(use.at, use.name, f"{_what(use, found)} in {found.offered.package} {found.offered.version} "
+                    f"({ahead.name})", when(found), package.name, evidence=of_offered(found.offered)),
+                found.offered.package, ahead, doubts_of(view, use, found), _place(use.at),
+            )
+            for use, found, ahead in uses_coming(view, package)
+            if found.kind != "removed" and (use.at.path, use.at.line) not in told
+        )  # fmt: skip
 
 
 def _what(use: CppApiUse, found: Judged) -> str:
@@ -95,75 +103,53 @@ def _reviewed(view: View) -> Iterator[Hit]:
     """What the tables of known changes tell."""
     # What the workspace itself brings is as it brings it, whatever a release did.
     refused = {c.old: c for c in view.changes("call-changed") if c.package not in view.workspace.packages}
-    coming = {label: c for label, c in view.later.items() if c.kind == "call-changed" and c.package not in _COMPILER}
+    coming = {
+        label: (change, ahead)
+        for label, (change, ahead) in view.coming.items()
+        if change.kind == "call-changed" and change.package not in _COMPILER
+        and change.package not in view.workspace.packages
+    }  # fmt: skip
     if not refused and not coming:
         return
     for package in view:
         # A method that the package or what it is built with declares may be meant wherever its name is called.
         within = [view.workspace.packages[name] for name in view.closure(package) if name in view.workspace.packages]
         own = {function for each in within for function in each.digest.functions}
-        soon: list[tuple[NameUse, Change, bool]] = []
+        soon: list[Upcoming] = []
         for use in package.digest.uses:
             if function_of(use.text) in own:
                 continue
             change = refused.get(use.text)
-            later = None if change is not None else coming.get(use.text)
-            change = change or later
+            ahead = None
+            if change is None:
+                change, ahead = coming.get(use.text, (None, None))
             if (
                 change is None
                 or not view.active(use.conditions)
                 or not (change.package in _COMPILER or view.concerned(package, change, use.at.path))
-                or (later is not None and not view.later_active(use.conditions))
+                or (ahead is not None and not view.active_on(ahead, use.conditions))
             ):
                 continue
             where = _under_standard(view, package, use, change)
             if where is None:
                 continue
             shown = use.shown or use.text
-            certain = use.language == "cpp" and view.certain(use.conditions)
-            if later is not None:
-                soon.append((use, later, view.horizon_is_near and certain and use.role != "aside"))
+            doubts = doubts_of_place(view, use.role, use.conditions)
+            if use.language != "cpp":
+                doubts = (*doubts, Doubt.LATE)
+            accepted = f"`{shown}` is {'no longer' if change.state == 'removed' else 'not yet'} accepted by"
+            message = f"{accepted} {change.package} {change.version}{where}"
+            hit = Hit(use.at, shown, message, change.new, package.name, evidence=evidence_of(change))
+            if ahead is None:
+                yield hit._replace(severity=severity(*doubts))
                 continue
-            when = "is no longer" if change.state == "removed" else "is not yet"
-            yield Hit(
-                use.at,
-                shown,
-                f"`{shown}` {when} taken by {change.package} {change.version}{where}",
-                change.new,
-                package.name,
-                severity=_how_bad(view, use, certain),
-                evidence=evidence_of(change),
-            )
-        yield from _what_is_coming(view, package, soon)
-
-
-def _what_is_coming(view: View, package: Package, soon: list[tuple[NameUse, Change, bool]]) -> Iterator[Hit]:
-    """Of each library the first place loudly, the rest as notes."""
-    first: dict[str, At] = {}
-    for use, later, loud in soon:
-        if loud:
-            first[later.package] = min(first.get(later.package, use.at), use.at, key=_place)
-    for use, later, loud in soon:
-        shown = use.shown or use.text
-        yield Hit(
-            use.at,
-            shown,
-            f"`{shown}` is taken, and no longer by {later.package} {later.version} of {view.horizon}",
-            later.new,
-            package.name,
-            severity="warning" if loud and first[later.package] == use.at else "note",
-            evidence=evidence_of(later, ahead=True),
-        )
+            hit = hit._replace(message=f"{message} ({ahead.name})")
+            soon.append(Upcoming(hit, change.package, ahead, doubts, _place(use.at)))
+        yield from rated(soon)
 
 
 def _place(at: At) -> tuple[str, int, int]:
     return at.path, at.line, at.column
-
-
-def _how_bad(view: View, use: NameUse, certain: bool) -> str:
-    if use.role == "aside" or (not certain and any(c.language in ("cpp", "macro") for c in use.conditions)):
-        return "note"  # an #if around it most likely tells the versions apart
-    return "error" if certain and view.built(use.role) else "warning"
 
 
 def _raised_to(view: View) -> int:

@@ -7,9 +7,11 @@ from collections.abc import Iterator
 from ...model.package import CppApiUse
 from ...model.view import View
 from ...model.workspace import Package
+from ...targets.availability import Horizon
 from ...targets.surface.offers_cpp import Judged, judged
 from ...targets.uses import function_of
 from ..rule import Hit
+from ..severity import Doubt, doubts_of_place
 
 _REVIEWED = ("api-removed", "api-renamed", "api-changed")
 
@@ -17,13 +19,25 @@ _REVIEWED = ("api-removed", "api-renamed", "api-changed")
 def uses_judged(view: View, package: Package) -> list[tuple[CppApiUse, Judged]]:
     """What a package uses that is not on the target as the use needs it, in the order of the digest. What the target
     does not compile, and what reviewed tables speak of is left out."""
+    return [(use, found) for use, found, ahead in _worked_out(view, package) if ahead is None]
+
+
+def uses_coming(view: View, package: Package) -> list[tuple[CppApiUse, Judged, Horizon]]:
+    """The same of what the target takes and an update of its distro does not, each with the nearest horizon."""
+    return [(use, found, ahead) for use, found, ahead in _worked_out(view, package) if ahead is not None]
+
+
+def _worked_out(view: View, package: Package) -> list[tuple[CppApiUse, Judged, Horizon | None]]:
     key = "C++ uses", package.name
     if key not in view.worked_out:
         view.worked_out[key] = list(_judged(view, package)) if package.digest.cpp_api else []
     return view.worked_out[key]
 
 
-def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
+_BREAKS = frozenset(("removed", "arguments", "types", "override"))
+
+
+def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged, Horizon | None]]:
     reviewed = {change.old for change in view.changes(*_REVIEWED)}
     reviewed.update(change.new for change in view.changes(*_REVIEWED) if change.state == "absent")
     calls = {
@@ -32,8 +46,9 @@ def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
         if view.offers.package(change.package) is None  # else its surfaces know more
     }
     near = view.closure(package)
+    own = {name for one in view.workspace for name in one.digest.defined}
     for use in package.digest.cpp_api:
-        if use.package not in near or not view.active(use.conditions):
+        if use.package not in near or use.name in own or not view.active(use.conditions):
             continue
         head = use.name.partition("::")[0]
         if head != use.package and head in near:
@@ -42,7 +57,16 @@ def _judged(view: View, package: Package) -> Iterator[tuple[CppApiUse, Judged]]:
             continue
         found = judged(view.offers, use.package, use.name, use.how, use.arguments, use.given, use.templated)
         if found is not None:
-            yield use, found
+            yield use, found, None
+        if found is not None and found.kind in _BREAKS:
+            continue
+        for ahead in view.updates:
+            if ahead.target.version(use.package) == view.target.version(use.package):
+                continue
+            found = judged(view.offers_on(ahead)[0], use.package, use.name, use.how, use.arguments, use.given)
+            if found is not None and found.kind in _BREAKS and found.earlier and view.active_on(ahead, use.conditions):
+                yield use, found, ahead
+                break
 
 
 def _tails(name: str) -> Iterator[str]:
@@ -53,14 +77,14 @@ def _tails(name: str) -> Iterator[str]:
         yield name
 
 
-def severity_of(view: View, use: CppApiUse, found: Judged) -> str:
-    """How bad a use is that the compiler refuses."""
-    if use.role == "aside":
-        return "note"
-    if not view.certain(c for c in use.conditions if c.language in ("cpp", "macro")):
-        return "note"  # a test of the code itself most likely tells the versions apart
-    sure = use.sure and found.sure and not any(p in view.workspace.packages for p in use.through)
-    return "error" if sure and view.built(use.role) and view.certain(use.conditions) else "warning"
+def doubts_of(view: View, use: CppApiUse, found: Judged) -> tuple[Doubt, ...]:
+    """What speaks against an error where a use is refused by the compiler."""
+    doubts = doubts_of_place(view, use.role, use.conditions)
+    if not (use.sure and found.sure) or any(package in view.workspace.packages for package in use.through):
+        doubts = (*doubts, Doubt.INCOMPLETE)
+    if found.kind == "override" and "override" not in use.given:
+        doubts = (*doubts, Doubt.DISTURBS)  # it compiles, and nobody calls it
+    return doubts
 
 
 def when(found: Judged) -> str:

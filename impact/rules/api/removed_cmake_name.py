@@ -27,9 +27,11 @@ from collections.abc import Iterator
 from ...model.cmake.build import At
 from ...model.view import View
 from ...model.workspace import Package
-from ...targets.evidence import evidence_of, of_offered
+from ...targets.availability import Symbol
 from ..rule import Hit, rule
-from .build_api import lacking
+from ..severity import Doubt, doubts_of_place, severity
+from .build_api import hit_of, missing, rate
+from .upcoming import Upcoming, rated_all
 
 
 @rule(severity="error")
@@ -44,24 +46,20 @@ def removed_cmake_name(view: View):
             for t in package.build.targets
             for link in t.links
         ]
-        yield from _by_surfaces(view, package, [name for name in names if name[0] not in gone])
+        yield from rated_all(_by_surfaces(view, package, [name for name in names if name[0] not in gone]))
         for name, at, conditions, kind in names:
             change = gone.get(name) or (folded.get(name.lower()) if kind == "command" else None)
             if change is None or name in told or not view.active(conditions):
                 continue
+            found = view.availability(Symbol(kind, name, (change.package,)))
+            if not found.is_missing:
+                continue  # what is stored of the very release contradicts the row
             told.add(name)
-            yield Hit(
-                at,
-                name,
-                f"`{name}` is gone in {change.package} {change.version}".strip(),
-                f"use `{change.new}`" if change.new else "",
-                package.name,
-                severity="warning" if kind == "variable" or not view.certain(conditions) else "error",
-                evidence=evidence_of(change),
-            )
+            doubts = (*doubts_of_place(view, "build", conditions), kind != "variable" or Doubt.INCOMPLETE)
+            yield hit_of(found, at, name, package.name)._replace(severity=severity(*doubts))
 
 
-def _by_surfaces(view: View, package: Package, names: list[tuple]) -> Iterator[Hit]:
+def _by_surfaces(view: View, package: Package, names: list[tuple]) -> Iterator[Hit | Upcoming]:
     """What the stored versions of the packages that are found do not export alike."""
     found = dict.fromkeys(one.name for one in package.build.found if one.how != "pkg_check_modules")
     own = {target.name for one in view.workspace for target in one.build.targets}
@@ -78,9 +76,6 @@ def _by_surfaces(view: View, package: Package, names: list[tuple]) -> Iterator[H
             places[key] = at, certain
     for (kind, name), (at, certain) in places.items():
         packages = [name.partition("::")[0]] if kind == "target" else list(found)
-        lost = lacking(view, kind, name, packages)
+        lost = missing(view, kind, name, packages)
         if lost is not None:
-            severity = "error" if certain and lost.sure else "warning"
-            yield Hit(
-                at, name, lost.message, lost.help, package.name, severity=severity, evidence=of_offered(lost.offered)
-            )
+            yield rate(lost, hit_of(lost, at, name, package.name), (certain or Doubt.CONDITIONAL,))

@@ -29,38 +29,43 @@ from collections.abc import Iterator
 
 from ...model.package import ReferenceUse
 from ...model.view import View
-from ...targets.evidence import of_offered
+from ...model.workspace import Package
 from ..rule import Hit, rule
-from .build_api import lacking, of_another_distro, severity_of
+from ..severity import Doubt, doubts_of_place, severity
+from .build_api import hit_of, missing, of_another_distro, rate
+from .upcoming import Upcoming, rated_all
 
 
 @rule(severity="error")
 def removed_executable(view: View):
     for package in view:
-        files = frozenset(package.digest.files)
-        for use in package.digest.references:
-            reference = use.reference
-            if of_another_distro(view, use.at.path, files) or (view.target.ros == 2 and use.at.path.endswith(".test")):
-                continue
-            if reference.package and reference.package != package.name and "$" not in reference.name:
-                if reference.kind == "executable":
-                    yield from _lost(view, package.name, use, "executable", reference.name)
-                elif reference.kind == "file":
-                    path = _launch_file(view, reference.package, reference.name)
-                    yield from _lost(view, package.name, use, "launch file", path)
-                    yield from _arguments(view, package.name, use, path)
+        yield from rated_all(_of_package(view, package))
 
 
-def _lost(view: View, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Hit]:
-    found = lacking(view, side, name, (use.reference.package,))
+def _of_package(view: View, package: Package) -> Iterator[Hit | Upcoming]:
+    files = frozenset(package.digest.files)
+    for use in package.digest.references:
+        reference = use.reference
+        if of_another_distro(view, use.at.path, files) or (view.target.ros == 2 and use.at.path.endswith(".test")):
+            continue
+        if reference.package and reference.package != package.name and "$" not in reference.name:
+            if reference.kind == "executable":
+                yield from _lost(view, package.name, use, "executable", reference.name)
+            elif reference.kind == "file":
+                path = _launch_file(view, reference.package, reference.name)
+                yield from _lost(view, package.name, use, "launch file", path)
+                yield from _arguments(view, package.name, use, path)
+
+
+def _lost(view: View, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Hit | Upcoming]:
+    found = missing(view, side, name, (use.reference.package,))
     if found is not None:
-        certain = view.target.ros == 2 and not use.reference.conditional
-        severity = severity_of(use.role, certain=certain, sure=found.sure)
+        doubts = [*doubts_of_place(view, use.role), view.target.ros == 2 or Doubt.LATE]
+        if use.reference.conditional or use.role == "test":
+            doubts.append(Doubt.LATE)
         if view.target.ros == 2 and name.endswith((".launch", ".launch.xml")):
-            severity = "note"
-        yield Hit(
-            use.at, name, found.message, found.help, package, severity=severity, evidence=of_offered(found.offered)
-        )
+            doubts.append(Doubt.UNCOMPILED)
+        yield rate(found, hit_of(found, use.at, name, package), tuple(doubts))
 
 
 def _launch_file(view: View, package: str, name: str) -> str:
@@ -75,16 +80,14 @@ def _arguments(view: View, package: str, use: ReferenceUse, path: str) -> Iterat
     """Arguments given to an included launch file that no launch file of the target's version declares."""
     reference = use.reference
     for name in reference.arguments or ():
-        found = lacking(view, "launch argument", f"{path} {name}", (reference.package,))
+        found = missing(view, "launch argument", f"{path} {name}", (reference.package,))
         offer = view.offers.package(reference.package) if found is not None else None
-        if found is None or offer is None:
+        if found is None or offer is None or found.state == "upcoming":
             continue
         if any(name == known for launch in offer.build.launches for known, _ in launch.arguments):
             continue
-        lost = found.offered
-        have = f"no longer has an argument `{name}`" if lost.state != "absent" else f"has no argument `{name}` yet"
-        severity = severity_of(use.role, certain=False, sure=found.sure)
+        have = f"no longer has an argument `{name}`" if found.state == "removed" else f"has no argument `{name}` yet"
         yield Hit(
-            use.at, f"{path} {name}", f"`{path}` of {lost.package} {lost.version} {have}",
-            package=package, severity=severity, evidence=of_offered(lost),
+            use.at, f"{path} {name}", f"`{path}` of {found.package} {found.version} {have}", package=package,
+            severity=severity(*doubts_of_place(view, use.role), Doubt.LATE), evidence=found.evidence,
         )  # fmt: skip

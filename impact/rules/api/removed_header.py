@@ -12,13 +12,13 @@ Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
-    error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for the first
-    include of each header that only the newest distro lacks, for interfaces that go when a dated target's distro is
-    updated, after its next sync (which its build farm builds against already), for headers of C where nothing else
-    brings the C++ types, for installed headers that include what is not installed, and once in a package for a path
-    through the folder of a version that is there, since another machine may have it elsewhere; note for its other
-    includes, for examples, for installed headers that the package does not compile itself, and under conditions that
-    are not known.
+    error for compiled code that is not guarded, tests of ROS 2 included, and for what goes with the next sync (which
+    the build farm builds against already); warning for tests of ROS 1, under CMake conditions that are not known, for
+    the first include of each header that goes with a later update or on the newest distro's platform, for headers of C
+    where nothing else brings the C++ types, for installed headers that include what is not installed, and once in a
+    package for a path through the folder of a version that is there, since another machine may have it elsewhere; note
+    for its other includes, for examples, for installed headers that the package does not compile itself, and under
+    other tests of the code itself.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -28,21 +28,26 @@ Use instead
 
 Not reported
     Includes under `#if __has_include(...)` or a version test that excludes the target; headers of the workspace itself;
+    headers that no known package has, where something that the package depends on has unknown contents;
     ROS 1 names in a package that also includes ROS 1 headers, as bridges do.
 """
 
 import re
-from collections.abc import Iterator
 
 from ...model.package import IncludeUse, is_header
 from ...model.view import Misnamed, View
 from ...model.workspace import Package
+from ...targets.availability import Horizon
+from ...targets.changes import removed_in
 from ...targets.evidence import evidence_of
 from ...targets.providers.library import Folder, versioned_folder
 from ...targets.target import Change
 from ...targets.version import at_least
 from ..rule import Hit, rule
+from ..severity import Doubt, Repeats, doubts_of_place, severity
+from .build_api import hit_of, rate
 from .moved_header import respelt
+from .upcoming import Upcoming, rated
 
 
 @rule(severity="error")
@@ -57,8 +62,8 @@ def removed_header(view: View):
     parameters = _Parameters(view)
     for package in view:
         dual = view.target.ros == 2 and any(i.path.startswith("ros/") for i in package.digest.includes)
-        coming: list[tuple[IncludeUse, Change, bool]] = []
-        named: set[str] = set()  # paths through a library's folder that are told loudly already
+        coming: list[Upcoming] = []
+        repeats = Repeats()
         for include in package.digest.includes:
             path = include.path
             if path in quiet or not view.active(include.conditions):
@@ -69,35 +74,29 @@ def removed_header(view: View):
             if view.workspace.provides_header(path):
                 quiet.add(path)
                 continue
-            if include.role == "aside" or not include.targets:
-                severity = "note"
-            else:
-                severity = (
-                    "note"
-                    if not view.certain(include.conditions)
-                    else "error"
-                    if view.built(include.role)
-                    else "warning"
-                )
+            doubts = doubts_of_place(view, include.role, include.conditions)
+            if not include.targets:
+                doubts = (*doubts, Doubt.UNCOMPILED)
+            bad = severity(*doubts)
             folder = versioned_folder(view.target, path)
             if folder is not None:
                 if folder.there:
-                    severity = "warning" if severity == "error" and path not in named else "note"
-                    named.update((path,) if severity == "warning" else ())
-                yield _in_folder(package, include, folder, severity)
+                    bad = repeats.severity(path, *doubts, Doubt.DISTURBS)
+                yield _in_folder(package, include, folder, bad)
                 continue
             change = gone.get(path)
             if change is not None and not view.nested_header(change.package, path):
                 where = f"{change.package} {change.version}".strip()
+                since = removed_in(change)
                 yield Hit(
                     include.at,
                     path,
-                    f"`{path}` is gone in {where}",
-                    f"include `{change.new}`" + (f", there since {change.since}" if change.since else "")
+                    f"`{path}` is not available in {where}" + (f" (removed in {since})" if since else ""),
+                    f"include `{change.new}`" + (f", available since {change.since}" if change.since else "")
                     if change.new
                     else "",
                     package.name,
-                    severity=severity,
+                    severity=bad,
                     fix=respelt(view, package, include, change),
                     evidence=evidence_of(change),
                 )
@@ -108,40 +107,52 @@ def removed_header(view: View):
                 yield Hit(
                     include.at,
                     path,
-                    f"`{path}` is not there yet in {where}",
+                    f"`{path}` is not available in {where}" + (f" (added in {change.since})" if change.since else ""),
                     f"include `{change.old}`, or choose with __has_include",
                     package.name,
-                    severity=severity,
+                    severity=bad,
                     evidence=evidence_of(change),
                 )
                 continue
-            change = view.later.get(path)
-            if change is not None and change.kind.startswith("header") and view.later_active(include.conditions):
-                coming.append((include, change, severity == "error"))
+            change, ahead = view.coming.get(path, (None, None))
+            if (
+                change is not None
+                and ahead is not None
+                and change.kind.startswith("header")
+                and view.active_on(ahead, include.conditions)
+            ):
+                coming.append(_will_go(view, package, include, change, ahead, doubts))
+                continue
+            found = view.header_availability(path)
+            if found is not None and (found.is_missing or found.state == "upcoming"):
+                advice = f"include `{found.replacement}`" if found.replacement else ""
+                hit = hit_of(found, include.at, path, package.name, advice)
+                moved = Change("header-renamed", found.package, path, found.replacement, "", found.version, "", "")
+                rating = rate(found, hit._replace(fix=respelt(view, package, include, moved)), doubts)
+                if isinstance(rating, Upcoming):
+                    coming.append(rating)
+                else:
+                    yield rating
                 continue
             lost = view.lost_header(path)
+            if lost is not None and lost.closed and (view.sealed(package) or view.blind(package)):
+                continue  # something that comes along has contents that are not known
             if lost is not None:
                 yield Hit(
-                    include.at, path, lost.message, lost.help, package.name, severity=severity, evidence=lost.evidence
+                    include.at, path, lost.message, lost.help, package.name, severity=bad, evidence=lost.evidence
                 )
                 continue
             wrong = view.misnamed_interface(path) or view.lost_interface(path)
-            if wrong is None and (soon := view.coming_interface(path)) is not None:
-                yield Hit(
-                    include.at,
-                    path,
-                    soon.message,
-                    soon.help,
-                    package.name,
-                    severity=severity if soon.soon else "warning" if severity == "error" else "note",
-                    evidence=soon.evidence,
-                )
+            soon = view.coming_interface(path) if wrong is None else None
+            if soon is not None and soon.ahead is not None:
+                hit = Hit(include.at, path, soon.message, soon.help, package.name, evidence=soon.evidence)
+                coming.append(Upcoming(hit, path.partition("/")[0], soon.ahead, doubts, _rank(include)))
                 continue
             if wrong is None and (in_c := _in_c(view, path)) is not None:
                 if include.role != "aside" and (of_cpp := _of_cpp(view, package, include)) is not None:
                     yield Hit(include.at, path, in_c.message, in_c.help, package.name, severity=of_cpp)
                 continue
-            if wrong is None and path not in gone and path not in early and path not in view.later:
+            if wrong is None and path not in gone and path not in early and path not in view.coming:
                 quiet.add(path)
             if wrong and not dual:
                 yield Hit(
@@ -150,13 +161,23 @@ def removed_header(view: View):
                     wrong.message,
                     wrong.help,
                     package.name,
-                    severity=severity,
+                    severity=bad,
                     evidence=wrong.evidence,
                 )
-        yield from _what_is_coming(view, package, coming)
+        yield from rated(coming)
 
 
-def _in_folder(package: Package, include: IncludeUse, folder: Folder, severity: str) -> Hit:
+def _will_go(
+    view: View, package: Package, include: IncludeUse, change: Change, ahead: Horizon, doubts: tuple[Doubt, ...]
+) -> Upcoming:
+    message = f"`{include.path}` will be removed: not in {change.package} {change.version} ({ahead.name})"
+    advice = f"include `{change.new}`" if change.new else ""
+    hit = Hit(include.at, include.path, message, advice, package.name, fix=respelt(view, package, include, change),
+              evidence=evidence_of(change))  # fmt: skip
+    return Upcoming(hit, f"{change.package} {include.path}", ahead, doubts, _rank(include))
+
+
+def _in_folder(package: Package, include: IncludeUse, folder: Folder, bad: str) -> Hit:
     """What is wrong with the folder of one version of a library in a path."""
     where = include.path.partition("/")[0]
     text = (
@@ -164,7 +185,7 @@ def _in_folder(package: Package, include: IncludeUse, folder: Folder, severity: 
         if folder.there
         else f"`{include.path}` is not there with {folder.library} {folder.version}"
     )
-    return Hit(include.at, include.path, text, f"include `{folder.path}`", package.name, severity=severity)
+    return Hit(include.at, include.path, text, f"include `{folder.path}`", package.name, severity=bad)
 
 
 _C_HEADER = re.compile(r"(?P<stem>(?P<package>\w+)/(?:msg|srv|action)/[a-z0-9_]+)\.h\Z")
@@ -218,36 +239,17 @@ class _Parameters:
             return None
         new = f"{owner}/{file}"
         if head and not at_least(self.version, "0.4.0"):
-            return self._hit(package, include, f"`{new}` is not made by", f"include `{file}`", "error")
+            return self._hit(package, include, f"`{new}` is not made by", f"include `{file}`", severity())
         if not head and at_least(self.version, "1.0.0"):
-            return self._hit(package, include, f"`{file}` is no longer made by", f"include `{new}`", "error")
+            return self._hit(package, include, f"`{file}` is no longer made by", f"include `{new}`", severity())
         if not head and include.public and at_least(self.version, "0.4.0"):
             text = f"an installed header includes `{file}`, which is installed as `{new}` by"
-            return self._hit(package, include, text, f"include `{new}`", "warning")
+            return self._hit(package, include, text, f"include `{new}`", severity(Doubt.DISTURBS))
         return None
 
-    def _hit(self, package: Package, include: IncludeUse, text: str, cure: str, severity: str) -> Hit:
+    def _hit(self, package: Package, include: IncludeUse, text: str, cure: str, bad: str) -> Hit:
         message = f"{text} generate_parameter_library {self.version}"
-        return Hit(include.at, include.path, message, cure, package.name, severity=severity)
-
-
-def _what_is_coming(view: View, package: Package, coming: list[tuple[IncludeUse, Change, bool]]) -> Iterator[Hit]:
-    """Of each header the first place loudly, one in a header before those in sources; the rest as notes."""
-    first: dict[str, IncludeUse] = {}
-    for include, _, loud in coming:
-        if loud and (include.path not in first or _rank(include) < _rank(first[include.path])):
-            first[include.path] = include
-    for include, change, _ in coming:
-        yield Hit(
-            include.at,
-            include.path,
-            f"`{include.path}` is there, and gone in {change.package} {change.version} of {view.horizon}",
-            f"include `{change.new}`" if change.new else "",
-            package.name,
-            severity="warning" if first.get(include.path) is include else "note",
-            fix=respelt(view, package, include, change),
-            evidence=evidence_of(change, ahead=True),
-        )
+        return Hit(include.at, include.path, message, cure, package.name, severity=bad)
 
 
 def _rank(include: IncludeUse) -> tuple[bool, str, int]:

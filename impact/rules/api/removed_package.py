@@ -24,6 +24,7 @@ Not reported
 
 from ...model.view import View
 from ..rule import Hit, rule
+from ..severity import Doubt, doubts_of_place, severity
 
 
 @rule(severity="error")
@@ -51,7 +52,7 @@ def gone_packages(view: View, kind: str):
                 _message(view, change, dependency.name),
                 f"depend on `{change.new}`" if change.new else "remove the dependency",
                 package.name,
-                severity="error" if dependency.kind in ("build", "buildtool", "exec") else "warning",
+                severity=severity(dependency.kind in ("build", "buildtool", "exec") or Doubt.TEST),
             )
         for found in package.build.found:
             change = gone.get(found.name)
@@ -64,7 +65,7 @@ def gone_packages(view: View, kind: str):
                 _message(view, change, found.name),
                 f"find `{change.new}`" if change.new else "",
                 package.name,
-                severity="error" if found.required and view.certain(found.conditions) else "warning",
+                severity=severity(*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL),
             )
 
 

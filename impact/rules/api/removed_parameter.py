@@ -30,12 +30,13 @@ from ...facts.parameters import last_part
 from ...model.package import SettingUse
 from ...model.view import View
 from ...model.workspace import Package
+from ...targets.availability import decides
 from ...targets.evidence import of_offered
 from ...targets.parameters import renamed_parameters
 from ...targets.surface.changes import PARAMETER
 from ...targets.surface.offers import Offer, Offered
 from ..rule import Hit, rule
-from .build_api import guessed, of_another_distro
+from .build_api import of_another_distro
 
 _FEW = 3
 """So many of one owner are told one by one; of more the first is told, and how many there are."""
@@ -146,7 +147,7 @@ def _offered(view: View, offer: Offer, use: SettingUse) -> Offered | None:
             offered = offer.get(PARAMETER, declared)
             if offered is None or offered.state not in ("removed", "moved", "absent"):
                 return None
-            if offered.sure and not guessed(offer, offered):
+            if offered.sure and decides(offer, offered):
                 found = found or offered
     if found is None or _declared_by(view, (offer.package, *use.others), last):
         return None

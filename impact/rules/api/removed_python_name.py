@@ -30,11 +30,13 @@ from ...model.package import PythonApiUse
 from ...model.view import View
 from ...targets.surface.offers_python import Lost
 from ..rule import SEVERITIES, Hit, rule
-from .python_api import evidence_of, severity_of, uses_lost
+from ..severity import severity
+from .python_api import doubts_of, evidence_of, uses_coming, uses_lost
+from .upcoming import Upcoming, rated
 
 _STATES = {
-    "removed": "is gone in {}",
-    "absent": "is not yet in {}",
+    "removed": "is not available in {} (removed in {})",
+    "absent": "is not available in {} (added in {})",
     "unknown": "is not in {}, nor in any other version of it that was read",
 }
 
@@ -46,12 +48,22 @@ def removed_python_name(view: View):
         worst: dict[tuple[str, str], tuple[int, PythonApiUse, Lost]] = {}
         for found, lost in uses_lost(view, package):
             if lost.state in _STATES:
-                key, rank = (found.at.path, lost.name), SEVERITIES.index(severity_of(found, lost))
+                key, rank = (found.at.path, lost.name), SEVERITIES.index(severity(*doubts_of(view, found, lost)))
                 if key not in worst or rank > worst[key][0]:
                     worst[key] = rank, found, lost
         for rank, found, lost in worst.values():
-            state = _STATES[lost.state].format(f"{lost.package} {lost.version}")
+            state = _STATES[lost.state].format(f"{lost.package} {lost.version}", lost.first)
             cure = f"use `{lost.instead}`" if lost.instead else ""
             evidence = None if lost.state == "unknown" else evidence_of(lost)
             yield Hit(found.at, lost.name, f"`{lost.name}` {state}", cure, package.name, severity=SEVERITIES[rank],
                       evidence=evidence)  # fmt: skip
+        coming: dict[tuple[str, str], Upcoming] = {}
+        for found, lost, ahead in uses_coming(view, package):
+            if lost.state == "removed":
+                message = f"`{lost.name}` will be removed: not in {lost.package} {lost.version} ({ahead.name})"
+                advice = f"use `{lost.instead}`" if lost.instead else ""
+                hit = Hit(found.at, lost.name, message, advice, package.name, evidence=evidence_of(lost))
+                order = found.at.path, found.at.line, found.at.column
+                one = Upcoming(hit, lost.package, ahead, doubts_of(view, found, lost), order)
+                coming.setdefault((found.at.path, lost.name), one)
+        yield from rated(coming.values())

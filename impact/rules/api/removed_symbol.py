@@ -10,9 +10,11 @@ Why it breaks
     The compiler stops with "was not declared in this scope", or Python with an AttributeError or ImportError.
 
 Severity
-    error for unguarded names in code that is built or run, tests in Python that CMake runs and ROS 2's in C++ included;
-    warning in other tests, under conditions that are not known, where the name stays and changed its meaning, and for
-    the first name of a library that only the newest distro lacks; note in examples and for the rest of those.
+    error for unguarded names in code that is built or run, tests in Python that CMake runs and ROS 2's in C++ included,
+    and for what goes with the next sync; warning in other tests, under conditions of CMake that are not known, where
+    the name stays and changed its meaning, and for the first name of each package or library that goes with a later
+    update, or on the newest distro's platform; note under other tests of the code itself, in examples, and for the rest
+    of those.
 
 Example
     cv::imread(path, CV_LOAD_IMAGE_ANYDEPTH)    // gone in OpenCV 4
@@ -33,6 +35,7 @@ from ...facts.condition import Condition
 from ...model.package import NameUse, is_header
 from ...model.view import View
 from ...model.workspace import Package
+from ...targets.availability import Horizon, Symbol
 from ...targets.changes import excuses, removed_in
 from ...targets.evidence import evidence_of, of_offered
 from ...targets.providers.library import include_roots
@@ -40,7 +43,9 @@ from ...targets.providers.stdlib import stood_in_for
 from ...targets.target import Change
 from ...targets.version import parts
 from ..rule import Hit, rule
-from .cpp_api import line_of, severity_of, uses_judged, when
+from ..severity import Doubt, doubts_of_place, severity
+from .cpp_api import doubts_of, line_of, uses_coming, uses_judged, when
+from .upcoming import Upcoming, rated
 
 _KINDS = ("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
 
@@ -62,16 +67,29 @@ def removed_symbol(view: View):
             if found.kind not in ("removed", "absent") or (use.at.path, use.at.line) in told:
                 continue
             offered = found.offered
-            state = "is gone" if found.kind == "removed" else "is not there yet"
+            since = f"{'removed' if found.kind == 'removed' else 'added'} in {offered.first}" if offered.first else ""
             yield Hit(
                 use.at,
                 use.name,
-                f"`{use.name}` {state} in {offered.package} {offered.version}",
+                f"`{use.name}` is not available in {offered.package} {offered.version}{f' ({since})' if since else ''}",
                 f"use `{offered.instead}`" if offered.instead else when(found),
                 package.name,
-                severity=severity_of(view, use, found),
+                severity=severity(*doubts_of(view, use, found)),
                 evidence=of_offered(offered),
             )
+        yield from rated(
+            Upcoming(_will_go(use.at, use.name, found.offered.package, found.offered.version, ahead,
+                              found.offered.instead, package.name, of_offered(found.offered)),
+                     found.offered.package, ahead, doubts_of(view, use, found),
+                     (use.at.path, use.at.line, use.at.column))
+            for use, found, ahead in uses_coming(view, package)
+            if found.kind == "removed" and (use.at.path, use.at.line) not in told
+        )  # fmt: skip
+
+
+def _will_go(at, name, package, version, ahead: Horizon, instead, owner, evidence) -> Hit:
+    message = f"`{name}` will be removed: not in {package} {version} ({ahead.name})"
+    return Hit(at, name, message, f"use `{instead}`" if instead else "", owner, evidence=evidence)
 
 
 def _reviewed(view: View) -> Iterator[Hit]:
@@ -96,29 +114,32 @@ def _reviewed(view: View) -> Iterator[Hit]:
     own.update(name for package in view.workspace for name in package.digest.defined)
     for package in view:
         included = None
-        coming: list[tuple[NameUse, Change, bool]] = []
+        coming: list[Upcoming] = []
         for use in package.digest.names:
+            if "::" in use.text and use.text in own:
+                continue  # the workspace defines it
             named = (python if use.language == "python" else cpp).get(use.text, ())
             if not named and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
                 named = cpp.get(use.text.rsplit("::", 1)[-1], ())
             change = next((c for c in named if view.concerned(package, c, use.at.path)), None)
-            later = None
+            ahead = None
             if change is None and use.text in early and use.text not in own and view.certain(use.conditions):
                 change = next((c for c in early[use.text] if view.concerned(package, c, use.at.path)), None)
                 if change is not None and use.role in ("build", "run"):
                     yield Hit(
                         use.at,
                         use.text,
-                        f"`{use.text}` is not there yet in {change.package} {change.version}".strip(),
+                        f"`{use.text}` is not available in {change.package} {change.version}".strip()
+                        + (f" (added in {change.since})" if change.since else ""),
                         f"use `{change.old}`" if change.old else "",
                         package.name,
-                        severity="warning",
+                        severity=severity(Doubt.AMBIGUOUS),
                         evidence=evidence_of(change),
                     )
                 continue
             if change is None:
-                change = later = view.later.get(use.text)
-                if later is not None and later.kind.startswith("header"):
+                change, ahead = view.coming.get(use.text, (None, None))
+                if change is not None and change.kind not in _KINDS:
                     continue
             if (
                 change is None
@@ -126,6 +147,7 @@ def _reviewed(view: View) -> Iterator[Hit]:
                 or (use.language == "python" and _TRIED.intersection(use.conditions))
                 or not view.active(use.conditions)
                 or not view.concerned(package, change, use.at.path)
+                or (ahead is None and _is_there(view, use, change))
             ):
                 continue
             endings = excuses(change)
@@ -134,36 +156,47 @@ def _reviewed(view: View) -> Iterator[Hit]:
                     included = _by_file(package)
                 if any(_brings_back(view, change, endings, path) for path in included.get(use.at.path, included[""])):
                     continue
-            guarded = use.role == "aside" or use.text in own or not view.certain(use.conditions)
-            built = view.built(use.role) if use.language == "cpp" else _is_run(package, use)
-            brought_back = use.language == "python" and stood_in_for(use.text)
-            sure = built and not brought_back and not guarded and change.kind != "api-changed"
-            if endings and sure and included is not None:
-                # It only moved to another header, which the headers of whatever uses the library may include.
-                sure = not any(_may_bring(view, change, path) for path in included.get(use.at.path, included[""]))
-            if later is not None and not view.later_active(use.conditions):
+            role = "run" if use.language == "python" and _is_run(package, use) else use.role
+            doubts = [*doubts_of_place(view, role, use.conditions)]
+            if use.text in own:
+                doubts.append(Doubt.OWN)
+            if use.language == "python" and role == "test":
+                doubts.append(Doubt.TEST)
+            if (use.language == "python" and stood_in_for(use.text)) or change.kind == "api-changed":
+                doubts.append(Doubt.INCOMPLETE)
+            # It only moved to another header, which the headers of whatever uses the library may include.
+            paths = included.get(use.at.path, included[""]) if endings and included is not None else ()
+            if not doubts and any(_may_bring(view, change, path) for path in paths):
+                doubts.append(Doubt.INCOMPLETE)
+            if ahead is not None:
+                if view.active_on(ahead, use.conditions):
+                    hit = _will_go(use.at, use.text, change.package, change.version, ahead, change.new, package.name,
+                                   evidence_of(change))  # fmt: skip
+                    order = (parts(removed_in(change)), use.at.path, use.at.line, use.at.column)
+                    coming.append(Upcoming(hit, change.package, ahead, tuple(doubts), order))
                 continue
-            if later is not None:
-                loud = (
-                    use.language == "cpp"
-                    and use.role == "build"
-                    and view.certain(use.conditions)
-                    and later.kind != "api-changed"
-                    and later.package != "python"
-                )
-                coming.append((use, later, loud))
-                continue
-            verb = "changed" if change.kind == "api-changed" else "is gone"
+            changed = change.kind == "api-changed"
+            where = f"{change.package} {change.version}".strip()
+            since = f" (removed in {bound})" if (bound := removed_in(change)) and not changed else ""
+            available = f", available since {change.since}" if change.since else ""
             yield Hit(
                 use.at,
                 use.text,
-                f"`{use.text}` {verb} in {change.package} {change.version}".strip(),
-                f"use `{change.new}`" + (f", there since {change.since}" if change.since else "") if change.new else "",
+                f"`{use.text}` {'has changed' if changed else 'is not available'} in {where}{since}",
+                f"use `{change.new}`{available}" if change.new else "",
                 package.name,
-                severity="error" if sure else "note" if guarded else "warning",
+                severity=severity(*doubts),
                 evidence=evidence_of(change),
             )
-        yield from _what_is_coming(view, package.name, coming)
+        yield from rated(coming)
+
+
+def _is_there(view: View, use: NameUse, change: Change) -> bool:
+    """Whether what is stored of the very release contradicts a reviewed row."""
+    if change.library or change.kind == "api-changed":
+        return False
+    kind = "python" if use.language == "python" else "c++"
+    return view.availability(Symbol(kind, change.old, (change.package,))).state in ("present", "deprecated")
 
 
 def _is_run(package: Package, use: NameUse) -> bool:
@@ -171,26 +204,6 @@ def _is_run(package: Package, use: NameUse) -> bool:
     if use.role != "test":
         return use.role in ("build", "run")
     return any(use.at.path in target.sources for target in package.build.targets if target.kind == "test")
-
-
-def _what_is_coming(view: View, package: str, coming: list[tuple[NameUse, Change, bool]]) -> Iterator[Hit]:
-    """Enough to see it: of each library the first place of what breaks first loudly, the rest as notes."""
-    first: dict[str, tuple] = {}
-    for use, later, loud in coming:
-        rank = (parts(removed_in(later)), use.at.path, use.at.line, use.at.column)
-        if loud and (later.package not in first or rank < first[later.package]):
-            first[later.package] = rank
-    for use, later, loud in coming:
-        rank = (parts(removed_in(later)), use.at.path, use.at.line, use.at.column)
-        yield Hit(
-            use.at,
-            use.text,
-            f"`{use.text}` is there, and gone in {later.package} {later.version} of {view.horizon}",
-            f"use `{later.new}`" if later.new else "",
-            package,
-            severity="warning" if loud and first.get(later.package) == rank else "note",
-            evidence=evidence_of(later, ahead=True),
-        )
 
 
 _CMAKE_NAME = {"opencv": "OpenCV", "boost": "Boost", "pcl": "PCL"}

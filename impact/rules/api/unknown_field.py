@@ -30,6 +30,8 @@ Not reported
 from ...model.package import MemberUse
 from ...model.view import View
 from ..rule import Hit, rule
+from ..severity import Doubt, doubts_of_place, severity
+from .upcoming import Upcoming, rated
 
 
 @rule(severity="error")
@@ -48,6 +50,7 @@ def unknown_field(view: View):
         if c.state == "removed"
     }
     for package in view:
+        upcoming: list[Upcoming] = []
         for use in package.digest.members:
             if (not use.sure and use.member in own) or not named.isdisjoint(_spellings(use)):
                 continue
@@ -55,20 +58,15 @@ def unknown_field(view: View):
             if not view.active(use.conditions) or not view.certain(c for c in use.conditions if c.language == "cpp"):
                 continue
             lacking = view.lacking_member(use)
-            built = view.built(use.role) and view.certain(use.conditions)
+            doubts = doubts_of_place(view, use.role, use.conditions)
+            if not use.sure:
+                doubts = (*doubts, Doubt.INCOMPLETE)
             if lacking is None:
                 coming = view.coming_member(use)
-                if coming is not None:
-                    loud = use.sure and use.role != "aside"
-                    yield Hit(
-                        use.at,
-                        use.member,
-                        coming.message,
-                        coming.help,
-                        package.name,
-                        severity="error" if loud and built and coming.soon else "warning" if loud else "note",
-                        evidence=coming.evidence,
-                    )
+                if coming is not None and coming.ahead is not None:
+                    hit = Hit(use.at, use.member, coming.message, coming.help, package.name, evidence=coming.evidence)
+                    order = use.at.path, use.at.line, use.at.column
+                    upcoming.append(Upcoming(hit, f"{use.package}/{use.interface}", coming.ahead, doubts, order))
                 continue
             yield Hit(
                 use.at,
@@ -76,9 +74,10 @@ def unknown_field(view: View):
                 lacking.message,
                 lacking.help,
                 package.name,
-                severity="note" if use.role == "aside" else "error" if built and use.sure else "warning",
+                severity=severity(*doubts),
                 evidence=lacking.evidence,
             )
+        yield from rated(upcoming)
         for imported in package.digest.imports:
             for name in imported.names:
                 lost = view.lost_interface_module(imported.module, name)
@@ -90,7 +89,7 @@ def unknown_field(view: View):
                     lost.message,
                     lost.help,
                     package.name,
-                    severity="note" if imported.role == "aside" or imported.conditions else "warning",
+                    severity=severity(*doubts_of_place(view, imported.role, imported.conditions), Doubt.LATE),
                     evidence=lost.evidence,
                 )
 

@@ -42,6 +42,7 @@ from ...targets.providers.message_headers import package_of, type_in
 from ...targets.providers.standard import bit_of, named_by, offering, oldest
 from ..fix_actions import Insert
 from ..rule import Hit, rule
+from ..severity import Doubt, Repeats
 
 # Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache
 # Portable Runtime, which needs no other library, or of Boost, whose own headers are all known as far as they are there.
@@ -59,6 +60,7 @@ def missing_include(view: View):
     for package in view:
         reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
         told, year = set(), view.language(package)
+        repeats = Repeats()
         built = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
         compiled = {path for path, targets in package.digest.source_targets if built.intersection(targets)}
         offered_to_others = {path for path, _ in package.digest.source_targets}.intersection(
@@ -87,13 +89,12 @@ def missing_include(view: View):
                 or (lost.sure and not lost.plain and need.at.path in package.digest.public_headers)
             )
             sure = (
-                need.at.path in compiled
-                and now
-                and lost.sure
-                and need.role == "build"
-                and view.certain(need.conditions)
+                need.at.path in compiled and lost.sure and need.role == "build" and view.certain(need.conditions)
             )
-            if lost.plain and not lost.once and not sure:
+            bad = "error" if sure and now else "warning" if here else "note"
+            if sure and not now:
+                bad = repeats.severity(lost.by, Doubt.UPCOMING)
+            if lost.plain and not lost.once and not (sure and now):
                 continue
             told.add((need.at.path, lost.header))
             where = "" if now else f" of {view.horizon}"
@@ -108,7 +109,7 @@ def missing_include(view: View):
                 f"`{need.name}` is used without `<{lost.header}>`{how}",
                 f"#include <{lost.header}>",
                 package.name,
-                severity="error" if sure else "warning" if here else "note",
+                severity=bad,
                 fix=_included(view, package, need, lost.header) if lost.by == "gcc" else (),
             )
 

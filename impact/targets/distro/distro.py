@@ -12,7 +12,7 @@ import functools
 import operator
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
@@ -23,6 +23,9 @@ from ..snapshot import KINDS, Snapshot
 from ..target import Change, ReleasedDependency, Resolution, Target
 from ..version import number_of
 from .rosdep import decode_rule, resolve_rule, split_platform
+
+if TYPE_CHECKING:
+    from ..availability import Availabilities, Availability, Symbol
 
 
 class TargetError(UserError):
@@ -187,6 +190,7 @@ class DistroTarget(Target):
         self._by_debian: dict[str, tuple[str, ...]] | None = None
         self._with_manifests: bool | None = None
         self._changes: tuple[Change, ...] | None = None
+        self._availabilities: Availabilities | None = None
 
     def __reduce__(self):
         # A target travels to worker processes as its recipe; each opens the shared cache file itself.
@@ -726,6 +730,13 @@ class DistroTarget(Target):
     def set_changes(self, changes: tuple[Change, ...]) -> None:
         """What changes() is to answer, worked out by an earlier run on the same data."""
         self._changes = changes
+
+    def availability(self, symbol: Symbol) -> Availability:
+        if self._availabilities is None:
+            from ..availability import Availabilities
+
+            self._availabilities = Availabilities(self)
+        return self._availabilities.on_horizon(symbol)
 
     def changes(self) -> tuple[Change, ...]:
         if self._changes is None:

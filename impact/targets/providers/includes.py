@@ -217,8 +217,12 @@ class Machine:
         """True when some version of a header was read, be it here or not."""
         if header in self._data.owners_of:
             return True
-        every = map(self.surfaces.included, self.surfaces.holders(header))
-        return any(header in included.headers for included in every if included is not None)
+        return any(
+            header in included.headers
+            for package in self.surfaces.holders(header)
+            for ros in self.surfaces.generations(package)
+            if (included := self.surfaces.included(package, ros)) is not None
+        )
 
     def _find(self, header: str) -> _Found | None:
         if header.startswith(_INCLUDE_FOLDERS):
@@ -263,8 +267,8 @@ class Machine:
     def _standing_for(self, package: str) -> tuple[Included, str, str] | None:
         """What a package's headers include, the stored version that stands for the one here, and that one."""
         if package not in self._stored:
-            version, included = self._version(package, False), self.surfaces.included(package)
-            standing = included.stands_for(version, self.ros) if version and included is not None else None
+            version, included = self._version(package, False), self.surfaces.included(package, self.ros)
+            standing = included.stands_for(version) if version and included is not None else None
             self._stored[package] = (included, standing, version) if included and standing and version else None
         return self._stored[package]
 
@@ -327,7 +331,7 @@ class Machine:
     def _interfaces_of(self, package: str) -> dict[str, Interface]:
         if package not in self._interfaces:
             stored = self._standing_for(package)
-            history = self.surfaces.history(package) if stored is not None else None
+            history = self.surfaces.history(package, self.ros) if stored is not None else None
             found = history.interfaces(stored[1]) if stored is not None and history is not None else {}
             self._interfaces[package] = found
         return self._interfaces[package]

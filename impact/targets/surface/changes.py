@@ -7,8 +7,6 @@ little. The line of versions is one for each ROS generation, since nothing is go
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import msgspec
 import zstandard
 
@@ -92,15 +90,15 @@ def brief(message: str) -> str:
 _SENTENCE = 160
 
 
-def pack(lines: Mapping[int, Line]) -> bytes:
-    """Lines by generation as they are stored."""
-    return zstandard.ZstdCompressor(level=19).compress(_encoder.encode(lines))
+def pack(line: Line) -> bytes:
+    """A line as it is stored."""
+    return zstandard.ZstdCompressor(level=19).compress(_encoder.encode(line))
 
 
-def unpack(data: bytes) -> dict[int, Line]:
-    """Stored lines by generation."""
+def unpack(data: bytes) -> Line:
+    """A stored line."""
     return _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
 
 
 _encoder = msgspec.msgpack.Encoder()
-_decoder = msgspec.msgpack.Decoder(dict[int, Line])
+_decoder = msgspec.msgpack.Decoder(Line)

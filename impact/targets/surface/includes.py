@@ -39,26 +39,23 @@ class Row(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """versions: oldest first. approximate: those that a branch stood for. generations: of ROS that have each, as 1, 2,
-    or 3 for both. headers: by the path that dependants write; those that are generated are not among them."""
+    """versions: of one ROS generation, oldest first. approximate: those that a branch stood for. headers: by the path
+    that dependants write; those that are generated are not among them."""
 
     versions: tuple[str, ...]
     approximate: tuple[str, ...]
-    generations: tuple[int, ...]
     every: tuple[Include, ...]
     types: tuple[str, ...]
     headers: dict[str, tuple[Row, ...]]
 
-    def stands_for(self, version: str, ros: int) -> str | None:
-        """The stored version of a ROS generation that stands for one: itself, or the newest before it that was read at
-        its tag; None for one older than all."""
-        return newest_up_to(version, self.read(ros))
+    def stands_for(self, version: str) -> str | None:
+        """The stored version that stands for one: itself, or the newest before it that was read at its tag; None for
+        one older than all."""
+        return newest_up_to(version, self.read())
 
-    def read(self, ros: int) -> Iterator[str]:
-        """The versions of a ROS generation that were read at their tags, oldest first."""
-        for version, whose in zip(self.versions, self.generations, strict=True):
-            if whose & ros and version not in self.approximate:
-                yield version
+    def read(self) -> Iterator[str]:
+        """The versions that were read at their tags, oldest first."""
+        return (version for version in self.versions if version not in self.approximate)
 
     def written(self, header: str, version: str) -> tuple[Include, ...] | None:
         """What a header includes in a stored version, as written; None where the version has no such header."""
@@ -118,7 +115,6 @@ class Including:
     def __init__(self) -> None:
         self._versions: list[str] = []
         self._approximate: list[str] = []
-        self._generations: list[int] = []
         self._numbers: dict[Include, int] = {}
         self._types: dict[str, int] = {}
         self._places: dict[str, dict[tuple[tuple[int, ...], tuple[int, ...]], list[int]]] = {}
@@ -127,13 +123,11 @@ class Including:
         self,
         version: str,
         headers: Iterable[tuple[str, HeaderSurface]],
-        generations: Iterable[int],
         approximate: bool = False,
     ) -> None:
-        """The next version. generations: of ROS that have it."""
+        """The next version."""
         place = len(self._versions)
         self._versions.append(version)
-        self._generations.append(sum(set(generations)))
         if approximate:
             self._approximate.append(version)
         for path, header in headers:
@@ -151,7 +145,6 @@ class Including:
         whole = Included(
             tuple(self._versions),
             tuple(self._approximate),
-            tuple(self._generations),
             tuple(self._numbers),
             tuple(self._types),
             headers,

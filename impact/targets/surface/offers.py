@@ -13,7 +13,7 @@ from .changes import Event, Form, Line, Told
 if TYPE_CHECKING:
     from ..target import Target
     from .python import Names
-    from .store import Surfaces
+    from .store import History, Surfaces
     from .surface import BuildSurface
 
 
@@ -76,15 +76,19 @@ class Offers:
             self._packages[name] = self._offer(name)
         return self._packages[name]
 
+    def history(self, package: str) -> History | None:
+        """All stored versions of a package that the target's ROS generation has; None when there is none."""
+        return self.surfaces.history(package, self.target.ros)
+
     def standard(self, name: str) -> int:
         """The C++ standard that a package asks of those who link it, as CMake writes it; 0 when nothing tells."""
-        offer, history = self.package(name), self.surfaces.history(name)
+        offer, history = self.package(name), self.history(name)
         built = history.build(offer.stored) if offer is not None and history is not None else None
         return built.standard if built is not None else 0
 
     def _offer(self, name: str) -> Offer | None:
         version = self.target.version(name)
-        line = self.surfaces.lines(name).get(self.target.ros) if version else None
+        line = self.surfaces.line(name, self.target.ros) if version else None
         place = line.place(version) if line is not None and version else None
         return None if line is None or place is None or not version else Offer(self, name, version, line, place)
 
@@ -103,7 +107,7 @@ class Offers:
 
     def there(self, side: str, name: str, package: str) -> bool:
         """Whether the stored version that stands for the target's has a name at all."""
-        offer, history = self.package(package), self.surfaces.history(package)
+        offer, history = self.package(package), self.history(package)
         return offer is not None and history is not None and history.has(name, offer.stored)
 
 
@@ -130,14 +134,14 @@ class Offer:
         """What the stored version gives to CMake and at run time."""
         from .surface import BuildSurface
 
-        history = self._offers.surfaces.history(self.package)
+        history = self._offers.history(self.package)
         build = history.build(self.stored) if history is not None else None
         return build or BuildSurface(self.package)
 
     @cached_property
     def parameters(self) -> tuple[str, ...]:
         """The parameters that the stored version declares."""
-        history = self._offers.surfaces.history(self.package)
+        history = self._offers.history(self.package)
         return tuple(name for name, _ in history.parameters(self.stored)) if history is not None else ()
 
     def every(self, side: str) -> Iterator[Offered]:
@@ -199,20 +203,19 @@ class Offer:
 
     def declarations(self, side: str, name: str, version: str) -> tuple[str, ...]:
         """How a stored version declares a name of C++ or Python, a line for each overload."""
-        return declarations(self._offers.surfaces, self.package, side, name, version)
+        return declarations(self._offers.history(self.package), side, name, version)
 
 
-def declarations(surfaces: Surfaces, package: str, side: str, name: str, version: str) -> tuple[str, ...]:
+def declarations(history: History | None, side: str, name: str, version: str) -> tuple[str, ...]:
     """How a stored version of a package declares a name of C++ or Python, a line for each overload; empty for anything
     else."""
-    history = surfaces.history(package) if side in ("c++", "python") else None
-    if history is None:
+    if history is None or side not in ("c++", "python"):
         return ()
     if side == "c++":
         return tuple(dict.fromkeys(declared(entity) for entity in history.entities(name, version)))
     from .python import UNKNOWN, shown
 
-    names = _names(surfaces, package, version)
+    names = _names(history, version)
     entry = names.find(name) if names is not None else None
     if entry is None or entry is UNKNOWN or entry.bound is None:
         return ()  # a module declares nothing by its name alone
@@ -221,11 +224,10 @@ def declarations(surfaces: Surfaces, package: str, side: str, name: str, version
 
 
 @lru_cache(maxsize=8)
-def _names(surfaces: Surfaces, package: str, version: str) -> Names | None:
+def _names(history: History, version: str) -> Names | None:
     from .python import Names
 
-    history = surfaces.history(package)
-    python = history.python(version) if history is not None else None
+    python = history.python(version)
     return Names(python) if python is not None else None
 
 

@@ -204,7 +204,7 @@ def defaults_changed(offers: Offers, found: Judged, arguments: int) -> tuple[str
     or it cannot be told. Reads both versions."""
     offered = found.offered
     old, new = (
-        [_defaults(one, offered.name) for one in declarations(offers.surfaces, offered.package, "c++", offered.name, v)]
+        [_defaults(one, offered.name) for one in declarations(offers.history(offered.package), "c++", offered.name, v)]
         for v in (offered.last, offered.first)
     )
     if len(old) != 1 or len(new) != 1:

@@ -66,7 +66,7 @@ class PythonOffers:
         """The Python names of a stored version; None where it has no Python."""
         key = package, version
         if key not in self._names:
-            history = self._offers.surfaces.history(package)
+            history = self._offers.history(package)
             python = history.python(version) if history is not None else None
             self._names[key] = Names(python) if python is not None and python.modules else None
         return self._names[key]
@@ -132,7 +132,7 @@ class PythonOffers:
 
     def _imported(self, offer: Offer, use: PythonUse) -> Lost | None:
         """A name that is imported from a module that is there, and that no version knows in any module."""
-        history = self._offers.surfaces.history(offer.package)
+        history = self._offers.history(offer.package)
         module, _, word = use.name.rpartition(".")
         if history is None or word in history.python_words or offer.stored in offer.line.approximate:
             return None

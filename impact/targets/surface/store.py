@@ -1,8 +1,8 @@
 """Surfaces of many versions in one file: facts only (names, signatures, versions), each kept once with its versions.
 
-An SQLite file with a row for each package, packed by itself, so that one package is read in milliseconds and the
-others not at all. What is packed: the versions in order, and rows of (kind, scope, value, the first and last versions
-that have it, over and over). Lines, comments, and names of C++ parameters are left out.
+An SQLite file with a row for each package and ROS generation, packed by itself, so that one package is read in
+milliseconds and the others not at all. What is packed: the versions in order, and rows of (kind, scope, value, the
+first and last versions that have it, over and over). Lines, comments, and names of C++ parameters are left out.
 """
 
 from __future__ import annotations
@@ -36,15 +36,16 @@ if TYPE_CHECKING:
     from .surface import BuildSurface, PythonSurface, Surface
 
 _SCHEMA = """
-CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL)
-  WITHOUT ROWID;
+CREATE TABLE package(name TEXT, ros INTEGER, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL,
+  PRIMARY KEY(name, ros)) WITHOUT ROWID;
 CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE headers(data BLOB NOT NULL);
 CREATE TABLE parameters(data BLOB NOT NULL);
 CREATE TABLE about(packages INTEGER, versions INTEGER, distros TEXT, date TEXT);
 """
-"""about: one row, see About. package: what its versions offer, what changed between them (see surface_changes.py), and
-what their headers include (see surface_includes.py). elsewhere: names that some version of a package lost, and the
+"""about: one row, see About. package: for each generation of ROS that has it, what its versions offer, what changed
+between them (see surface_changes.py), and what their headers include (see surface_includes.py): a package of ROS 1 and
+one of ROS 2 may share name and version, and be two. elsewhere: names that some version of a package lost, and the
 packages, space separated, that have or had one of that name. headers: one row, packed: headers that do not lie in a
 folder that is called like their package, with the packages that have or had them. parameters: one row, packed: the last
 parts of the names of parameters that came or went for sure, with the packages that declare or declared them."""
@@ -67,7 +68,8 @@ class Stored(NamedTuple):
 
 
 class Packed(NamedTuple):
-    """A package as it is stored: what its versions offer, what changed between them, what their headers include."""
+    """A package of one ROS generation as it is stored: what its versions offer, what changed between them, what their
+    headers include."""
 
     data: bytes
     changes: bytes
@@ -85,7 +87,8 @@ class About(NamedTuple):
 
 
 class History:
-    """All stored versions of one package, oldest first. approximate: those that a branch stood for."""
+    """All stored versions of one package of one ROS generation, oldest first. approximate: those that a branch stood
+    for."""
 
     def __init__(self, package: str, data: bytes, includes: bytes):
         self.package, self._includes = package, includes
@@ -439,25 +442,41 @@ class Surfaces:
     def __init__(self, file: Path):
         self.file = file
         self._reader = 0  # the process that opened it
-        self.packages = frozenset(name for (name,) in self._rows("SELECT name FROM package"))
+        self._generations: dict[str, tuple[int, ...]] = {}
+        for name, ros in self._rows("SELECT name, ros FROM package ORDER BY name, ros"):
+            self._generations[name] = (*self._generations.get(name, ()), ros)
+        self.packages = frozenset(self._generations)
+
+    def generations(self, package: str) -> tuple[int, ...]:
+        """The ROS generations of which versions of a package are stored."""
+        return self._generations.get(package, ())
 
     @lru_cache(maxsize=64)  # noqa: B019  (one of them lives as long as the program)
-    def history(self, package: str) -> History | None:
-        """All versions of a package, None when it is not there."""
-        row = next(self._rows("SELECT data, includes FROM package WHERE name = ?", package), None)
+    def history(self, package: str, ros: int) -> History | None:
+        """All versions of a package that a ROS generation has, None when there is none."""
+        row = self._row("data, includes", package, ros)
         return History(package, *row) if row else None
 
     @lru_cache(maxsize=1024)  # noqa: B019
+    def line(self, package: str, ros: int) -> Line | None:
+        """What changed in a package of a ROS generation from version to version, None when it is not there."""
+        row = self._row("changes", package, ros)
+        return unpack(row[0]) if row else None
+
     def lines(self, package: str) -> dict[int, Line]:
-        """What changed in a package from version to version, by ROS generation; empty when it is not there."""
-        row = next(self._rows("SELECT changes FROM package WHERE name = ?", package), None)
-        return unpack(row[0]) if row else {}
+        """The same by ROS generation; empty when the package is not there."""
+        return {ros: line for ros in self.generations(package) if (line := self.line(package, ros)) is not None}
 
     @lru_cache(maxsize=1024)  # noqa: B019
-    def included(self, package: str) -> Included | None:
-        """What the headers of each version of a package include, None when it is not there."""
-        row = next(self._rows("SELECT includes FROM package WHERE name = ?", package), None)
+    def included(self, package: str, ros: int) -> Included | None:
+        """What the headers of each version of a package of a ROS generation include, None when it is not there."""
+        row = self._row("includes", package, ros)
         return surface_includes.unpack(row[0]) if row else None
+
+    def _row(self, columns: str, package: str, ros: int) -> tuple | None:
+        if ros not in self.generations(package):
+            return None
+        return next(self._rows(f"SELECT {columns} FROM package WHERE name = ? AND ros = ?", package, ros), None)
 
     def holders(self, header: str) -> tuple[str, ...]:
         """The packages that may have, or have had, a header, by the path that dependants write."""
@@ -494,7 +513,7 @@ class Surfaces:
         """Differs whenever the file does."""
         return hashlib.sha1(self.file.read_bytes()).hexdigest()[:16]
 
-    def _rows(self, query: str, *values: str) -> Iterator[tuple]:
+    def _rows(self, query: str, *values: str | int) -> Iterator[tuple]:
         try:
             if self._reader != os.getpid():
                 # No other process may go on with a connection of this one.
@@ -514,10 +533,18 @@ def shipped() -> Surfaces:
         raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
 
 
-def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (), date: str = "") -> About:
+Packages = Mapping[tuple[str, int], Packed]
+"""Packed packages by name and ROS generation."""
+
+
+def write(file: Path, packages: Packages, distros: Sequence[str] = (), date: str = "") -> About:
     """Writes packed packages; a file that is there is replaced as a whole. distros, date: see About."""
-    versions = sum(len(History(name, packed.data, packed.includes).versions) for name, packed in packages.items())
-    about = About(len(packages), versions, " ".join(distros), date)
+    versions = {
+        (name, version)
+        for (name, _), packed in packages.items()
+        for version in History(name, packed.data, packed.includes).versions
+    }
+    about = About(len({name for name, _ in packages}), len(versions), " ".join(distros), date)
     with tempfile.TemporaryDirectory() as folder:
         fresh = Path(folder, "surfaces.sqlite")
         _fill(fresh, packages, about)
@@ -527,12 +554,12 @@ def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (
     return about
 
 
-def _fill(file: Path, packages: Mapping[str, Packed], about: About) -> None:
+def _fill(file: Path, packages: Packages, about: About) -> None:
     with closing(sqlite3.connect(file)) as db:
         db.execute("PRAGMA page_size=512")  # each packed value ends in a page that it fills in part
         db.executescript(_SCHEMA)
         db.executemany(
-            "INSERT INTO package VALUES(?, ?, ?, ?)", ((name, *packed) for name, packed in sorted(packages.items()))
+            "INSERT INTO package VALUES(?, ?, ?, ?, ?)", ((*key, *packed) for key, packed in sorted(packages.items()))
         )
         db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_elsewhere(packages).items()))
         db.execute("INSERT INTO headers VALUES(?)", (_headers(packages),))
@@ -542,42 +569,42 @@ def _fill(file: Path, packages: Mapping[str, Packed], about: About) -> None:
         db.execute("VACUUM")
 
 
-def _elsewhere(packages: Mapping[str, Packed]) -> dict[str, str]:
+def _elsewhere(packages: Packages) -> dict[str, str]:
     """Names that a package lost and others have or had, with those packages."""
     lost: dict[str, set[str]] = {}
-    for package, packed in packages.items():
-        for line in unpack(packed.changes).values():
-            for side in ("c++", "header", "python"):
-                for name in line.events.get(side, ()):
-                    lost.setdefault(name, set()).add(package)
+    for (package, _), packed in packages.items():
+        events = unpack(packed.changes).events
+        for side in ("c++", "header", "python"):
+            for name in events.get(side, ()):
+                lost.setdefault(name, set()).add(package)
     found: dict[str, set[str]] = {}
-    for package, packed in packages.items():
+    for (package, _), packed in packages.items():
         for name in History(package, packed.data, packed.includes).names().keys() & lost.keys():
             if lost[name] != {package}:
                 found.setdefault(name, set()).add(package)
     return {name: " ".join(sorted(those)) for name, those in found.items()}
 
 
-def _headers(packages: Mapping[str, Packed]) -> bytes:
+def _headers(packages: Packages) -> bytes:
     """Headers that do not lie in a folder called like their package, with the packages that have or had them."""
-    found: dict[str, list[str]] = {}
-    for package, packed in sorted(packages.items()):
+    found: dict[str, dict[str, None]] = {}
+    for (package, _), packed in sorted(packages.items()):
         for header in surface_includes.unpack(packed.includes).headers:
             if not header.startswith(f"{package}/"):
-                found.setdefault(header, []).append(package)
-    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(dict(sorted(found.items()))))
+                found.setdefault(header, {})[package] = None
+    return _listed(found)
 
 
-def _parameters(packages: Mapping[str, Packed]) -> bytes:
+def _listed(found: dict[str, dict[str, None]]) -> bytes:
+    ordered = {name: list(packages) for name, packages in sorted(found.items())}
+    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(ordered))
+
+
+def _parameters(packages: Packages) -> bytes:
     """The last parts of names of parameters that came or went for sure, with the packages they did so in."""
-    found: dict[str, list[str]] = {}
-    for package, packed in sorted(packages.items()):
-        names = {
-            last_part(name)
-            for line in unpack(packed.changes).values()
-            for name, events in line.events.get(PARAMETER, {}).items()
-            if any(told.kind in ("added", "removed") and told.sure >= 1 for event in events for told in event.told)
-        }
-        for name in names:
-            found.setdefault(name, []).append(package)
-    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(dict(sorted(found.items()))))
+    found: dict[str, dict[str, None]] = {}
+    for (package, _), packed in sorted(packages.items()):
+        for name, events in unpack(packed.changes).events.get(PARAMETER, {}).items():
+            if any(told.kind in ("added", "removed") and told.sure >= 1 for event in events for told in event.told):
+                found.setdefault(last_part(name), {})[package] = None
+    return _listed(found)

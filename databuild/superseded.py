@@ -1,0 +1,252 @@
+"""Takes rows out of data/changes*.json that the stored surfaces, or the table of interfaces, answer.
+
+A row says that a name of a ROS package is gone from some version, or distro, on. Where surfaces of the package are
+stored, each stored version tells whether the name is there. A row is
+
+    answered        every stored version says what the row says, and there are versions on both sides of its bound
+    contradicted    some stored version says otherwise, so that the row is wrong there or its bound is inexact
+    more            answered, but the row names a replacement, or a deprecation, that nothing stored names
+    bare            it is a bare name of a function or method, which does not tell whose: it may be anybody's
+    unknown         no version is stored, or none on one side of the bound, or the name is of no kind that is stored
+
+Of rows that were derived from release tags, which are what surfaces are made from too, only the unknown ones and those
+that say more stay, and of reviewed rows all but the answered and bare ones. Platform libraries have no stored surfaces,
+and their rows stay.
+
+    python -P -m rosimpact.databuild.superseded [--write]
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Any
+
+from ..edges.files import write_file
+from ..impact.targets.changes import DISTROS
+from ..impact.targets.distro.distro import DistroTarget, known_distros
+from ..impact.targets.snapshot import DATA
+from ..impact.targets.surface.changes import Line
+from ..impact.targets.surface.fields import Definition, default_fields, there
+from ..impact.targets.surface.offers import there_at
+from ..impact.targets.surface.store import shipped
+from ..impact.targets.version import at_least
+
+_SIDES = {"api": ("c++",), "python": ("python",), "header": ("header",), "cmake": ("command", "target", "variable")}
+_SEPARATOR = {"c++": "::", "python": ".", "header": "\0"}
+_DERIVED = frozenset(("changes_ros_tags.json",))
+_GOES = {True: ("answered", "contradicted", "bare"), False: ("answered", "bare")}
+"""Verdicts on rows that go: of derived files, and of reviewed ones."""
+
+
+def verdict(kind: str, package: str, old: str, new: str, removed_in: str, ros: int, deprecated: bool = False) -> str:
+    """What the stored data makes of a row; see the module. ros: as in changes.Row. deprecated: the row says from when
+    on the name is deprecated."""
+    side = kind.partition("-")[0]
+    if not removed_in or (side not in _SIDES and side != "msg"):
+        return "unknown"
+    if side == "api" and _is_bare(package, old):
+        return "bare"
+    answers: list[str] = []
+    for generation in (ros,) if ros else (1, 2):
+        told = list(_told(side, package, old, generation))
+        found = _compare(told, _gone_from(removed_in, package, generation))
+        if found == "unknown":
+            continue
+        instead, warns = _besides(side, package, old, generation)
+        if found == "answered" and ((new and new not in instead) or (deprecated and not warns)):
+            found = "more"
+        answers.append(found)
+    for worst in ("contradicted", "more", "answered"):
+        if worst in answers:
+            return worst
+    return "unknown"
+
+
+def _is_bare(package: str, name: str) -> bool:
+    """Whether a name of C++ is a function or method without its scope. Macros, types and functions of C, which are
+    called after their package, are global."""
+    head = package.partition("_")[0]
+    return "::" not in name and not name.startswith(f"{head}_") and not name[:1].isupper()
+
+
+def _compare(told: list[tuple[str, bool]], gone: Callable[[str], bool | None]) -> str:
+    """What versions that have, or lack, a name make of the bound. gone: what the bound says of a version."""
+    sides = {(gone(version), has) for version, has in told if gone(version) is not None}
+    if not any(has for _, has in sides):
+        return "unknown"
+    if (True, True) in sides or (False, False) in sides:
+        return "contradicted"
+    return "answered" if len(sides) == 2 else "unknown"
+
+
+def _gone_from(bound: str, package: str, ros: int) -> Callable[[str], bool | None]:
+    """Whether a bound says of a version that the name is gone; None for one that distros on both sides had."""
+    if bound == "ros2":
+        return lambda version: ros == 2
+    if bound not in DISTROS:
+        return lambda version: at_least(version, bound)
+    if (DISTROS[bound] >= DISTROS["ardent"]) != (ros == 2):
+        return lambda version: None
+
+    def gone(version: str) -> bool | None:
+        sides = {DISTROS[distro] >= DISTROS[bound] for distro in _having(package, ros).get(version, ())}
+        return sides.pop() if len(sides) == 1 else None
+
+    return gone
+
+
+@lru_cache(maxsize=16)
+def _having(package: str, ros: int) -> dict[str, set[str]]:
+    """The versions of a package with the distros of a generation that ever had them; rolling, which has no bound, left
+    out."""
+    found: dict[str, set[str]] = {}
+    for known in known_distros():
+        if known.ros == ros and known.name != "rolling":
+            for _, version in _target(known.name).history(package):
+                if version is not None:
+                    found.setdefault(version, set()).add(known.name)
+    return found
+
+
+@cache
+def _target(distro: str) -> DistroTarget:
+    return DistroTarget(distro)
+
+
+def _told(side: str, package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
+    """The stored versions, and whether each has the name."""
+    if side == "msg":
+        yield from _fields(package, old, ros)
+        return
+    line = shipped().line(package, ros)
+    if line is None:
+        return
+    for which in _SIDES[side]:
+        name = old.lower() if which == "command" else old
+        events = line.events.get(which, {})
+        if which == "c++" and "::" not in name:
+            yield from _of_bare(line, package, ros, name)
+        elif name in events:
+            for place, version in enumerate(line.versions):
+                if version not in line.approximate:
+                    yield version, there_at(which, events[name], place)
+            return
+        elif _always(package, ros, which, name):
+            for version in line.versions:
+                yield version, True
+
+
+def _of_bare(line: Line, package: str, ros: int, name: str) -> Iterator[tuple[str, bool]]:
+    """The same for a bare name of C++: that of a type or macro in whatever scope."""
+    known = [full for full in _names(package, ros) if full == name or full.endswith(f"::{name}")]
+    events = line.events.get("c++", {})
+    for place, version in enumerate(line.versions):
+        if known and version not in line.approximate:
+            yield version, any(full not in events or there_at("c++", events[full], place) for full in known)
+
+
+def _always(package: str, ros: int, side: str, name: str) -> bool:
+    if side in ("c++", "python", "header"):
+        return name in _names(package, ros)
+    history = shipped().history(package, ros)
+    build = history.build(history.versions[-1]) if history is not None else None
+    if build is None:
+        return False
+    known = {"command": build.commands, "variable": build.variables, "target": tuple(t.name for t in build.targets)}
+    return name in known[side]
+
+
+@lru_cache(maxsize=4)
+def _names(package: str, ros: int) -> dict[str, tuple[str, ...]]:
+    history = shipped().history(package, ros)
+    return history.names() if history is not None else {}
+
+
+def _besides(side: str, package: str, old: str, ros: int) -> tuple[set[str], bool]:
+    """What the stored surfaces name as replacement, and whether the name was deprecated in some version."""
+    line = shipped().line(package, ros)
+    instead: set[str] = set()
+    warns = False
+    for which in _SIDES.get(side, ()):
+        events = line.events.get(which, {}).get(old, ()) if line is not None else ()
+        instead.update(told.instead for event in events for told in event.told)
+        warns = warns or any(told.kind == "deprecated" for event in events for told in event.told)
+    return instead, warns
+
+
+def _fields(package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
+    """The same for `package/Name.field` or `package/Name`."""
+    history = default_fields().history(package, ros)
+    if history is None:
+        return
+    name, _, member = old.partition("/")[2].partition(".")
+    name, _, part = name.rpartition("_") if name.endswith(("_Request", "_Response", "_Goal")) else (name, "", "")
+    for kind in ("msg", "srv", "action"):
+        definition = history.definition(f"{kind}/{name}")
+        if definition is None:
+            continue
+        for state, version in enumerate(history.starts):
+            if there(definition.spans, state):
+                yield version, not member or _has(definition, part.lower(), member, state)
+            elif not member:
+                yield version, False
+
+
+def _has(definition: Definition, section: str, member: str, state: int) -> bool:
+    sections = [section] if section else list(definition.sections)
+    return any(there(row.spans, state) for one in sections for row in definition.members(one, member))
+
+
+def rewritten(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
+    """A file's content without superseded rows, and how many rows of each kind had which verdict."""
+    content = json.loads(file.read_bytes())
+    count: Counter[tuple[str, str]] = Counter()
+    kept = []
+    for group in content["changes"]:
+        names = {}
+        for old, new in group["names"].items():
+            # Of platform libraries nothing is stored; a name that comes back, or is only deprecated, says more.
+            plain = not group.get("library") and not group.get("back_in") and not group["kind"].startswith("package")
+            found = "unknown"
+            if plain:
+                found = verdict(group["kind"], group["package"], old, new, group.get("removed_in", ""),
+                                group.get("ros", 0), bool(group.get("deprecated_in")))  # fmt: skip
+            count[group["kind"], found] += 1
+            if found not in _GOES[file.name in _DERIVED]:
+                names[old] = new
+        if names:
+            kept.append({**group, "names": names})
+    return {**content, "changes": kept}, count
+
+
+def dumped(content: dict[str, Any]) -> str:
+    """A file's content, a line for each name."""
+    groups = []
+    for group in content["changes"]:
+        head = ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in group.items() if key != "names")
+        names = ",\n  ".join(f"{json.dumps(old)}: {json.dumps(new)}" for old, new in group["names"].items())
+        groups.append(f'{{{head}, "names": {{\n  {names}\n}}}}')
+    rest = ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items() if key != "changes")
+    return '{"changes": [\n' + ",\n".join(groups) + "\n], " + rest + "}\n"
+
+
+def main(arguments: list[str]) -> None:
+    """Prints what becomes of the rows of each file, and with --write takes out those that are superseded."""
+    for file in sorted(DATA.glob("changes*.json")):
+        content, count = rewritten(file)
+        before = sum(count.values())
+        after = sum(len(group["names"]) for group in content["changes"])
+        print(f"{file.name}: {before} rows, {after} left")
+        for (kind, found), number in sorted(count.items()):
+            print(f"  {kind:16} {found:13} {number}")
+        if "--write" in arguments and after < before:
+            write_file(file, dumped(content).encode())
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,99 @@
+"""How severe a finding is: the one policy, asked by every rule.
+
+A finding is an error when nothing speaks against it: what it says is known to hold on the target, and it stops a build
+or a run there. Whatever speaks against it is a Doubt, and each doubt allows a severity at most; the lowest counts. A
+rule therefore states what it knows of the place and of its evidence, and never a severity:
+
+    severity(*doubts_of_place(view, use.role, use.conditions), found.sure or Doubt.INCOMPLETE)
+
+Where a package has many findings of one kind that are worth one warning together (what is upcoming, what is passed on
+to others), Repeats lets the first ones speak and lowers the rest to notes.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Hashable, Iterable
+
+from ..facts.condition import Condition
+from ..model.view import View
+
+
+class Doubt(enum.Enum):
+    """A reason why a finding may be less than an error, with the severity that it allows at most."""
+
+    # Of the place
+    CONDITIONAL = "it stands under a condition of the build or launch that is not known to hold", "warning"
+    OPTIONAL = "the build or the program is prepared for its absence", "warning"
+    TEST = "it is in a test, which is not built or run with the package", "warning"
+    LATE = "it is not known to be reached whenever the package is built or started", "warning"
+    GUARDED = "a test in the code itself stands around it, which most likely tells the versions apart", "note"
+    UNCOMPILED = "nothing in the package compiles it on its own", "note"
+    EXAMPLE = "it is an example, or documentation", "note"
+    # Of the evidence
+    INCOMPLETE = "what decides is not known completely: a type, a version, the contents of a package", "warning"
+    AMBIGUOUS = "something else of the same name may be meant", "warning"
+    OWN = "the workspace has something of this name itself", "note"
+    # Of what follows
+    UPCOMING = "it holds only after an update of the distro, or on a newer one", "warning"
+    FAR = "it holds only some long-term distros later", "note"
+    DISTURBS = "builds and programs go on, and others that use it may not", "warning"
+    CHANGED = "it is built and runs, and does something else", "note"
+    DEPRECATED = "it is there, and produces a warning", "note"
+    REPEATED = "the package has been warned of the same already", "note"
+
+    def __init__(self, reason: str, allows: str):
+        self.reason, self.allows = reason, allows
+
+
+_LADDER = ("note", "warning", "error")
+
+
+def severity(*doubts: Doubt | bool | None) -> str:
+    """`error` where there is no doubt, else the highest severity that all doubts allow. True and None count for
+    nothing, so that `known or Doubt.INCOMPLETE` can be written. Raises TypeError for False, which is a slip."""
+    lowest = len(_LADDER) - 1
+    for doubt in doubts:
+        if isinstance(doubt, Doubt):
+            lowest = min(lowest, _LADDER.index(doubt.allows))
+        elif doubt is False:
+            raise TypeError("False is no doubt; write `known or Doubt...`")
+    return _LADDER[lowest]
+
+
+# Languages whose conditions a file states about itself.
+_IN_CODE = frozenset(("cpp", "macro", "python"))
+
+
+def doubts_of_place(view: View, role: str, conditions: Iterable[Condition] = ()) -> tuple[Doubt, ...]:
+    """What speaks against an error at a place. role: build, run, test or aside, as the model has it. conditions: those
+    that it stands under; that they can hold at all, a rule has asked before."""
+    doubts = []
+    if role == "aside":
+        doubts.append(Doubt.EXAMPLE)
+    elif not view.built(role):
+        doubts.append(Doubt.TEST)
+    conditions = tuple(conditions)
+    if not view.certain(conditions):
+        own = tuple(condition for condition in conditions if condition.language in _IN_CODE)
+        doubts.append(Doubt.CONDITIONAL if view.certain(own) else Doubt.GUARDED)
+    return tuple(doubts)
+
+
+class Repeats:
+    """Lowers what a package has been warned of already. One for each run of a rule, or for each package of it.
+
+    most: how many findings of one kind are worth a warning."""
+
+    def __init__(self, most: int = 1):
+        self._most = most
+        self._count: dict[Hashable, int] = {}
+
+    def severity(self, kind: Hashable, *doubts: Doubt | bool | None) -> str:
+        """As severity() has it for the first findings of a kind, and a note for the rest. What is a note anyway does
+        not count, so that findings are to be given in the order in which they are to be read."""
+        plain = severity(*doubts)
+        if plain == "note":
+            return plain
+        self._count[kind] = self._count.get(kind, 0) + 1
+        return plain if self._count[kind] <= self._most else severity(Doubt.REPEATED)

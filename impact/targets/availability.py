@@ -1,0 +1,419 @@
+"""Is it there, on this target? One question for packages, headers, names of C++ and Python, CMake names, targets,
+programs, plugins, launch files, parameters, interfaces and their fields.
+
+What answers are surfaces that were derived from the releases themselves, the lists of their headers and the table of
+interfaces; of platform libraries, and where a release was not read, the reviewed rows of data/changes*.json. Versions
+decide, never the names of distros; a package of the other ROS generation never answers. What is there is looked for on
+what the target is going to be as well (see Horizon), so that `upcoming` means the same to every rule.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterable
+from functools import cache, cached_property
+from typing import Literal, NamedTuple
+
+from .changes import DISTROS, Row, all_rows, changes_in_force, reached, version_of
+from .distro.distro import known_distros
+from .evidence import Evidence, evidence_of, of_offered
+from .providers.providers import Providers, default_providers
+from .surface.changes import PARAMETER
+from .surface.fields import before, default_fields, there
+from .surface.offers import Offer, Offered, Offers
+from .surface.surface import BuildSurface
+from .target import Change, Target
+from .uses import uses_in_force
+
+State = Literal["present", "removed", "not yet", "changed", "deprecated", "upcoming", "unknown"]
+
+# Parts of a build by kind: what of a surface can be unknown as a whole, and the names that one version has.
+_BUILT: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {
+    "target": ("targets", lambda build: (target.name for target in build.targets)),
+    "command": ("commands", lambda build: build.commands),
+    "variable": ("commands", lambda build: build.variables),
+    "executable": ("programs", lambda build: (program.name for program in build.programs)),
+    "launch file": ("launches", lambda build: (launch.path for launch in build.launches)),
+    "launch argument": (
+        "launches",
+        lambda build: (f"{launch.path} {name}" for launch in build.launches for name, _ in launch.arguments),
+    ),
+    "plugin": ("plugins", lambda build: (name for plugin in build.plugins for name in (plugin.name, plugin.type))),
+}
+_WITH_ALIKE = frozenset(("executable", "launch file", "plugin", "target"))
+_STATES: dict[str, State] = {
+    "removed": "removed",
+    "moved": "removed",
+    "absent": "not yet",
+    "deprecated": "deprecated",
+    "changed": "present",
+}
+_ROWS = {
+    "header": ("header-removed", "header-renamed", "header-moved"),
+    "c++": ("api-removed", "api-renamed", "api-changed"),
+    "python": ("python-removed", "python-api"),
+    "command": ("cmake-removed", "cmake-renamed"),
+    "target": ("cmake-removed", "cmake-renamed"),
+    "variable": ("cmake-removed", "cmake-renamed"),
+    "package": ("package-removed", "package-renamed"),
+}
+"""Kinds of reviewed rows by what they are about."""
+
+
+class Symbol(NamedTuple):
+    """Something that may be there or not. kind: `package`, `header`, `c++`, `python`, `command`, `target`, `variable`,
+    `executable`, `plugin`, `launch file`, `launch argument` (name: `path argument`), `parameter`, `interface` (name:
+    `msg/Name`) or `field` (name: `msg/Name.field`). packages: that may have it; of platform libraries none."""
+
+    kind: str
+    name: str
+    packages: tuple[str, ...] = ()
+
+
+class Horizon(NamedTuple):
+    """What a target is going to be. name: as a message has it. soon: with the next sync, which the distro's build farm
+    builds against already. platform: the newest distro, of which only the platform counts: libraries and Python. What
+    its packages change is told by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two
+    long-term distros ahead, which is worth no warning."""
+
+    target: Target
+    name: str
+    soon: bool = False
+    platform: bool = False
+    far: bool = False
+
+
+class Availability(NamedTuple):
+    """How a target stands to a symbol.
+
+    state: `present`; `removed`, earlier versions of this ROS generation had it; `not yet`, only later ones have it;
+    `changed`, there under the same name, and something else; `deprecated`, there, and it warns; `upcoming`, there, and
+    removed on the horizon; `unknown`. package, version: of what decides, as the target (or, of what is upcoming, the
+    horizon) has it. since: the version that removed, added or deprecated it, as far as it is known. replacement: what
+    stands for it, moved_to: the package that has it now. alike: what is there under a similar name. library: package is
+    a platform library. sure: nothing about it is guessed. horizon: where it is removed, of what is upcoming.
+    """
+
+    symbol: Symbol
+    state: State
+    package: str = ""
+    version: str = ""
+    since: str = ""
+    replacement: str = ""
+    moved_to: str = ""
+    alike: str = ""
+    library: bool = False
+    sure: bool = True
+    evidence: Evidence | None = None
+    horizon: Horizon | None = None
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether a use of it fails on the target."""
+        return self.state in ("removed", "not yet")
+
+
+def horizons(target: Target, asked: Iterable[str] = ()) -> tuple[Horizon, ...]:
+    """What is to come for a target, soonest first: the next sync of its distro, the distro as of the data's newest day,
+    and the newest long-term distro of its generation. asked: distros that are judged anyway, and are left out."""
+    found = []
+    if (testing := target.in_testing()) is not None:
+        found.append(Horizon(testing, f"the next sync of {target.distro}", soon=True))
+    if (updated := target.updated()) is not None:
+        found.append(Horizon(updated, f"{target.distro} of {updated.date}"))
+    newest = target.newest()
+    if newest is not None and newest.distro not in asked:
+        found.append(Horizon(newest, newest.distro, platform=True, far=_steps(target) > _NEAR))
+    return tuple(found)
+
+
+_NEAR = 2
+
+
+def _steps(target: Target) -> int:
+    """How many long-term distros of a target's generation are newer than it."""
+    known = known_distros()
+    here = next((one.released for one in known if one.name == target.distro), "")
+    return sum(one.lts and one.ros == target.ros and one.released > here for one in known)
+
+
+def coming_changes(target: Target, ahead: Horizon) -> tuple[Change, ...]:
+    """Reviewed changes that remove something on a horizon which a target has: of packages and libraries that are
+    there in another version."""
+
+    @cache
+    def moves(package: str, library: bool) -> bool:
+        if ahead.platform and not library:
+            return False
+        return version_of(package, library, target) != version_of(package, library, ahead.target)
+
+    here = {(c.kind, c.package, c.old) for c in target.changes() if c.state == "removed"}
+    found = (*changes_in_force(ahead.target, asked=moves), *uses_in_force(ahead.target, moves))
+    return tuple(c for c in found if c.state == "removed" and (c.kind, c.package, c.old) not in here)
+
+
+class Availabilities:
+    """What is there on one target. offers, providers: where to look, by default what is shipped. ahead: see
+    horizons()."""
+
+    def __init__(
+        self,
+        target: Target,
+        offers: Offers | None = None,
+        providers: Providers | None = None,
+        ahead: tuple[Horizon, ...] | None = None,
+    ):
+        self.target = target
+        self.offers = offers or Offers(target)
+        self.providers = providers or default_providers()
+        self._given = ahead
+        self._known: dict[Symbol, Availability] = {}
+        self._made_by: dict[str, frozenset[str]] = {}
+
+    def of(self, symbol: Symbol) -> Availability:
+        """How the target stands to a symbol, what is to come left out."""
+        known = self._known.get(symbol)
+        if known is None:
+            known = self._known[symbol] = self._of(symbol)
+        return known
+
+    def on_horizon(self, symbol: Symbol) -> Availability:
+        """The same, and `upcoming` for what is there and is removed on the nearest horizon."""
+        here = self.of(symbol)
+        if here.state not in ("present", "deprecated"):
+            return here
+        for horizon, then in self._ahead:
+            found = then.of(symbol)
+            if found.state == "removed" and (found.library or not horizon.platform):
+                evidence = found.evidence._replace(ahead=True) if found.evidence is not None else None
+                return found._replace(state="upcoming", horizon=horizon, evidence=evidence)
+        return here
+
+    @cached_property
+    def _ahead(self) -> list[tuple[Horizon, Availabilities]]:
+        ahead = horizons(self.target) if self._given is None else self._given
+        return [(one, Availabilities(one.target, providers=self.providers, ahead=())) for one in ahead]
+
+    def _of(self, symbol: Symbol) -> Availability:
+        if symbol.kind == "package":
+            return self._package(symbol)
+        if symbol.kind in ("field", "interface"):
+            return self._interface(symbol)
+        missing = None
+        for package in symbol.packages:
+            found = self._header(symbol, package) if symbol.kind == "header" else self._offered(symbol, package)
+            if found.state not in ("unknown", "removed", "not yet"):
+                return found
+            if found.state != "unknown":
+                missing = missing or found
+        return missing or self._reviewed(symbol) or Availability(symbol, "unknown")
+
+    # Packages
+
+    def _package(self, symbol: Symbol) -> Availability:
+        target, name = self.target, symbol.name
+        version = target.version(name)
+        row = self._reviewed(symbol)
+        if version is not None:
+            late = row is not None and row.state == "deprecated"
+            return Availability(symbol, "deprecated" if late else "present", name, version,
+                                replacement=row.replacement if row is not None and late else "")  # fmt: skip
+        if row is not None:
+            return row
+        last = target.last_distro(name)
+        if not last or last not in DISTROS or target.distro not in DISTROS:
+            return Availability(symbol, "unknown", name)
+        return Availability(symbol, "removed" if DISTROS[last] < DISTROS[target.distro] else "not yet", name)
+
+    # Headers
+
+    def _header(self, symbol: Symbol, package: str) -> Availability:
+        version = self.target.version(package)
+        if version is None:
+            return Availability(symbol, "unknown", package)
+        found = self._header_of(symbol, package, version)
+        offer = self.offers.package(package)
+        if offer is None or not (found.is_missing or found.state == "unknown"):
+            return found
+        if symbol.name in self._made(offer):
+            return Availability(symbol, "present", package, version)
+        closed = all(part != "headers" for part, _ in offer.build.unknown)
+        return found if closed else Availability(symbol, "unknown", package, version)
+
+    def _header_of(self, symbol: Symbol, package: str, version: str) -> Availability:
+        by_surface = self._offered(symbol, package)
+        has = self.providers.has_header(package, symbol.name, self.target.distro, version)
+        if has is None or has == (by_surface.state in ("present", "deprecated")):
+            return by_surface
+        if has:
+            return Availability(symbol, "present", package, version)
+        if by_surface.state != "unknown":
+            return by_surface if by_surface.is_missing else Availability(symbol, "unknown", package, version)
+        spans = self.providers.header_history(package, symbol.name)
+        place = DISTROS.get(self.target.distro, len(DISTROS))
+        mine = [span for span in spans if span.distro in DISTROS
+                and (DISTROS[span.distro] >= DISTROS["ardent"]) == (self.target.ros == 2)]  # fmt: skip
+        if not mine:
+            return Availability(symbol, "unknown", package, version)
+        early = any(DISTROS[span.distro] <= place for span in mine)
+        evidence = Evidence(package, "removed" if early else "added", symbol.name, side="header", header=symbol.name)
+        return Availability(symbol, "removed" if early else "not yet", package, version, evidence=evidence)
+
+    def _made(self, offer: Offer) -> frozenset[str]:
+        """Headers of the stored version that its tree does not have: those that its build makes, and whatever its own
+        headers include."""
+        known = self._made_by.get(offer.package)
+        if known is None:
+            found = {header.include for header in offer.build.headers}
+            included = self.offers.surfaces.included(offer.package, self.target.ros)
+            if included is not None:
+                for header in included.headers:
+                    found.update(one.path for one in included.written(header, offer.stored) or ())
+            known = self._made_by[offer.package] = frozenset(found)
+        return known
+
+    # What surfaces hold
+
+    def _offered(self, symbol: Symbol, package: str) -> Availability:
+        offer = self.offers.package(package)
+        if offer is None:
+            return Availability(symbol, "unknown", package, self.target.version(package) or "")
+        side = PARAMETER if symbol.kind == "parameter" else symbol.kind
+        # CMake minds no case in names of commands, and neither do surfaces.
+        name = symbol.name.lower() if side == "command" else symbol.name
+        offered = offer.get(side, name)
+        if offered is None or not decides(offer, offered):
+            has = offered is None and self._has(offer, side, name)
+            return Availability(symbol, "present" if has else "unknown", package, offer.version)
+        state = _STATES[offered.state]
+        sure = offered.sure
+        if side in _BUILT:
+            part, names = _BUILT[side]
+            if state in ("removed", "not yet") and name in names(offer.build):
+                return Availability(symbol, "present", package, offer.version)
+            sure = sure and all(one != part for one, _ in offer.build.unknown)
+        return Availability(
+            symbol, state, package, offer.version, offered.first, offered.instead, offered.moved_to,
+            _alike(offer, side, name) if state in ("removed", "not yet") and side in _WITH_ALIKE else "",
+            sure=sure, evidence=_with_other(offer, offered),
+        )  # fmt: skip
+
+    def _has(self, offer: Offer, side: str, name: str) -> bool:
+        if side in _BUILT:
+            return name in _BUILT[side][1](offer.build)
+        if side == PARAMETER:
+            return name in offer.parameters
+        return self.offers.there(side, name, offer.package)
+
+    # Interfaces and their fields
+
+    def _interface(self, symbol: Symbol) -> Availability:
+        name, _, member = symbol.name.partition(".")
+        for package in symbol.packages:
+            version = self.target.version(package)
+            history = default_fields().history(package, self.target.ros) if version else None
+            state = history.state(version) if history is not None and version else None
+            if history is None or state is None or not version:
+                continue
+            if member:
+                definition = history.definition(name)
+                rows = [] if definition is None or not there(definition.spans, state) else [
+                    row for section in definition.sections for row in definition.members(section, member)
+                ]  # fmt: skip
+                spans = tuple(span for row in rows for span in row.spans)
+                instead = next((row.successor for row in rows if row.successor), "")
+            else:
+                spans, instead = history.spans(name) or (), ""
+            if not spans:
+                continue
+            if there(spans, state):
+                return Availability(symbol, "present", package, version)
+            if history.may_be_back(spans, version):
+                continue
+            if before(spans, state):
+                ends = [last for _, last in spans if 0 <= last < state]
+                since = history.starts[max(ends) + 1] if ends else ""
+                evidence = Evidence(package, "removed", member or name, first=since)
+                return Availability(symbol, "removed", package, version, since, instead, evidence=evidence)
+            if history.read_up_to(version):
+                since = history.starts[min(first for first, _ in spans)]
+                evidence = Evidence(package, "added", member or name, first=since)
+                return Availability(symbol, "not yet", package, version, since, evidence=evidence)
+        return Availability(symbol, "unknown")
+
+    # Reviewed rows
+
+    def _reviewed(self, symbol: Symbol) -> Availability | None:
+        name = symbol.name.lower() if symbol.kind == "command" else symbol.name
+        for kind in _ROWS.get(symbol.kind, ()):
+            for change in self._rows.get((kind, name), ()):
+                if not symbol.packages or change.library or change.package in symbol.packages:
+                    return of_row(symbol, change)
+        for row in _removals().get(name, ()):
+            if not row.library or row.kind not in _ROWS[symbol.kind]:
+                continue
+            version = version_of(row.package, True, self.target)
+            if version and not reached(row.removed_in, version, self.target):
+                return Availability(symbol, "present", row.package, version, library=True)
+        return None
+
+    @cached_property
+    def _rows(self) -> dict[tuple[str, str], list[Change]]:
+        found: dict[tuple[str, str], list[Change]] = {}
+        for change in self.target.changes():
+            name = change.new if change.state == "absent" else change.old
+            name = name.lower() if change.kind.startswith("cmake") and "::" not in name else name
+            found.setdefault((change.kind, name), []).append(change)
+        return found
+
+
+@cache
+def _removals() -> dict[str, list[Row]]:
+    """Reviewed rows by the name that they say is removed."""
+    found: dict[str, list[Row]] = {}
+    for row in all_rows():
+        if row.removed_in and not row.new_since and not row.back_in:
+            found.setdefault(row.old, []).append(row)
+    return found
+
+
+def of_row(symbol: Symbol, change: Change) -> Availability:
+    """What a reviewed row says of a symbol."""
+    state: State = "changed" if change.kind == "api-changed" else "removed"
+    if change.state == "absent":
+        state = "not yet"
+    elif change.state == "deprecated":
+        state = "deprecated"
+    other = change.old if change.state == "absent" else change.new
+    return Availability(symbol, state, change.package, change.version, change.since, other, library=change.library,
+                        evidence=evidence_of(change))  # fmt: skip
+
+
+def decides(offer: Offer, offered: Offered) -> bool:
+    """Whether what is known of a name rests on versions that were read: not on a branch, which may hold something else
+    than the release, and not on one of two stored versions that differ in this, with the target's between them."""
+    line = offer.line
+    if any(version in line.approximate for version in (offer.stored, offered.last, offered.first)):
+        return False
+    return offer.exact or all(e.place != offer.place + 1 for e in line.events[offered.side][offered.name])
+
+
+def _with_other(offer: Offer, offered: Offered) -> Evidence:
+    """The evidence for what surfaces say of a name, with that for what stands for it."""
+    evidence = of_offered(offered)
+    new = offer.get(offered.side, offered.instead) if offered.instead else None
+    if new is None or not new.first:
+        return evidence
+    return evidence._replace(
+        other=Evidence(offered.package, "added", new.name, offered.name, offered.side, first=new.first, stored=True)
+    )
+
+
+_ALIKE = 0.75
+"""How much of two names has to agree, as difflib measures it."""
+
+
+def _alike(offer: Offer, side: str, name: str) -> str:
+    """What the target's version has that is called most alike; empty where nothing is."""
+    close = difflib.get_close_matches(name, list(dict.fromkeys(_BUILT[side][1](offer.build))), 1, _ALIKE)
+    return close[0] if close else ""

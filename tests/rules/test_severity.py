@@ -1,0 +1,76 @@
+"""The one policy of severities: each doubt allows a severity at most, and the lowest counts."""
+
+from typing import cast
+
+import pytest
+from rosimpact.impact.facts.condition import Condition
+from rosimpact.impact.model.view import View
+from rosimpact.impact.rules.severity import Doubt, Repeats, doubts_of_place, severity
+
+
+@pytest.mark.parametrize(
+    ("doubts", "expected"),
+    [
+        ((), "error"),
+        ((True, None), "error"),
+        ((Doubt.TEST,), "warning"),
+        ((Doubt.INCOMPLETE, Doubt.CONDITIONAL), "warning"),
+        ((Doubt.INCOMPLETE, Doubt.EXAMPLE), "note"),
+        ((Doubt.DEPRECATED, Doubt.INCOMPLETE), "note"),
+    ],
+)
+def test_lowest_counts(doubts, expected):
+    assert severity(*doubts) == expected
+    assert severity(*reversed(doubts)) == expected
+
+
+def test_false_is_no_doubt():
+    with pytest.raises(TypeError, match="known or"):
+        severity(False)
+
+
+class _Place:
+    """Conditions that begin with `known` hold; tests are built in ROS 2 alone."""
+
+    def __init__(self, ros: int):
+        self.ros = ros
+
+    def built(self, role):
+        return role in ("build", "run") or (role == "test" and self.ros == 2)
+
+    def certain(self, conditions):
+        return all(condition.text.startswith("known") for condition in conditions)
+
+
+_KNOWN, _OPTION = Condition("cpp", "known"), Condition("cmake", "WITH_X")
+_IF = Condition("cpp", "X_VERSION > 3")
+
+
+@pytest.mark.parametrize(
+    ("ros", "role", "conditions", "expected"),
+    [
+        (2, "build", (), ()),
+        (2, "build", (_KNOWN,), ()),
+        (2, "test", (), ()),
+        (1, "test", (), (Doubt.TEST,)),
+        (1, "test", (_OPTION,), (Doubt.TEST, Doubt.CONDITIONAL)),
+        (2, "run", (_OPTION, _KNOWN), (Doubt.CONDITIONAL,)),
+        (2, "build", (_OPTION, _IF), (Doubt.GUARDED,)),
+        (2, "aside", (), (Doubt.EXAMPLE,)),
+    ],
+)
+def test_doubts_of_a_place(ros, role, conditions, expected):
+    assert doubts_of_place(cast(View, _Place(ros)), role, conditions) == expected
+
+
+def test_the_first_of_a_kind_speaks():
+    repeats = Repeats()
+    given = [
+        repeats.severity("opencv", Doubt.EXAMPLE),
+        repeats.severity("opencv", Doubt.UPCOMING),
+        repeats.severity("opencv", Doubt.UPCOMING),
+        repeats.severity("boost", Doubt.UPCOMING),
+    ]
+    assert given == ["note", "warning", "note", "warning"]
+    twice = Repeats(2)
+    assert [twice.severity("x") for _ in range(3)] == ["error", "error", "note"]

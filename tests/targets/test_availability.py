@@ -1,0 +1,84 @@
+"""Is it there, on this target? One answer for all kinds of names, from what is shipped."""
+
+import pytest
+from rosimpact.impact.targets.availability import Availabilities, Symbol, horizons
+from rosimpact.impact.targets.distro.distro import DistroTarget
+
+OLD, NEW = "tf2_geometry_msgs/tf2_geometry_msgs.h", "tf2_geometry_msgs/tf2_geometry_msgs.hpp"
+TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
+
+
+@pytest.mark.parametrize(
+    ("distro", "symbol", "state", "since", "replacement"),
+    [
+        ("humble", Symbol("header", OLD, TF2), "deprecated", "0.18.0", NEW),
+        ("jazzy", Symbol("header", OLD, TF2), "removed", "0.36.0", NEW),
+        ("foxy", Symbol("header", NEW, TF2), "not yet", "0.18.0", ""),
+        ("jazzy", Symbol("header", "cv_bridge/cv_bridge.hpp", ("cv_bridge",)), "present", "", ""),
+        # Headers that a build makes are in no source tree.
+        ("jazzy", Symbol("header", "rclcpp/logging.hpp", ("rclcpp",)), "present", "", ""),
+        ("humble", Symbol("header", "message_filters/connection.hpp", ("message_filters",)), "present", "", ""),
+        ("jazzy", Symbol("header", "cv_bridge/no_such.hpp", ("cv_bridge",)), "unknown", "", ""),
+        ("jazzy", Symbol("package", "nav2_recoveries"), "removed", "", "nav2_behaviors"),
+        ("jazzy", Symbol("package", "rclcpp"), "present", "", ""),
+        ("jazzy", Symbol("package", "no_such_package_at_all"), "unknown", "", ""),
+        # CMake minds no case in names of commands: `macro(MOVEIT_PACKAGE)` defines moveit_package.
+        ("jazzy", Symbol("command", "moveit_package", ("moveit_common",)), "present", "", ""),
+        ("jazzy", Symbol("command", "MoveIt_Package", ("moveit_common",)), "present", "", ""),
+        # A package of ROS 1 does not answer for one of ROS 2 of the same name and version.
+        ("foxy", Symbol("executable", "ros2_control_node", CONTROL), "present", "", ""),
+        ("noetic", Symbol("executable", "ros2_control_node", CONTROL), "unknown", "", ""),
+        ("kinetic", Symbol("c++", "hardware_interface::RobotHW", ("hardware_interface",)), "present", "", ""),
+        # Versions between two that were read say nothing where these differ.
+        ("iron", Symbol("field", "srv/SwitchController.activate_controllers", ("controller_manager_msgs",)),
+         "present", "", ""),
+        ("foxy", Symbol("field", "srv/SwitchController.activate_controllers", ("controller_manager_msgs",)),
+         "not yet", None, ""),
+        # Of platform libraries, reviewed rows tell.
+        ("noetic", Symbol("c++", "CV_LOAD_IMAGE_COLOR"), "removed", None, None),
+        ("jazzy", Symbol("python", "no.such.name", ("rclpy",)), "unknown", "", ""),
+    ],
+)  # fmt: skip
+def test_how_a_target_stands_to_a_symbol(distro, symbol, state, since, replacement):
+    found = Availabilities(DistroTarget(distro)).of(symbol)
+    assert found.state == state
+    assert since is None or state == "present" or found.since == since
+    assert replacement is None or state == "present" or found.replacement == replacement
+
+
+def test_what_will_go_is_upcoming_on_the_nearest_horizon():
+    field = Symbol("field", "srv/SwitchController.Request.start_asap", ("controller_manager_msgs",))
+    there = Symbol("c++", "CV_LOAD_IMAGE_COLOR")
+    melodic = Availabilities(DistroTarget("melodic")).on_horizon(there)
+    assert (melodic.state, melodic.library) == ("upcoming", True)
+    assert melodic.horizon is not None and (melodic.horizon.name, melodic.horizon.platform) == ("noetic", True)
+    assert melodic.evidence is not None and melodic.evidence.ahead
+    # What packages of the newest distro lack is no matter of an update.
+    humble = Availabilities(DistroTarget("humble")).on_horizon(Symbol("header", OLD, TF2))
+    assert humble.state == "deprecated"
+    assert Availabilities(DistroTarget("noetic")).on_horizon(field).state == "unknown"
+
+
+@pytest.mark.parametrize(
+    ("target", "asked", "expected"),
+    [
+        (DistroTarget("noetic"), (), []),
+        (DistroTarget("melodic"), (), [("noetic", True, False)]),
+        (DistroTarget("melodic"), ("noetic",), []),
+        (DistroTarget("indigo"), (), [("noetic", True, True)]),
+    ],
+)
+def test_the_newest_distro_is_a_horizon_for_its_platform(target, asked, expected):
+    found = [one for one in horizons(target, asked) if not one.soon]
+    assert [(one.name, one.platform, one.far) for one in found] == expected
+
+
+def test_a_date_has_a_next_sync_and_an_update():
+    soon, later, newest = horizons(DistroTarget("iron", "2023-06-04"))
+    assert (soon.name, soon.soon) == ("the next sync of iron", True)
+    assert later.name.startswith("iron of 20") and not later.soon and not later.platform
+    assert newest.platform
+
+
+def test_a_target_answers_itself():
+    assert DistroTarget("jazzy").availability(Symbol("package", "rclcpp")).state == "present"
