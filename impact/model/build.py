@@ -181,7 +181,9 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     for only where the compiler's default is lower. project_by_variable: its CMakeLists.txt calls targets after
     ${PROJECT_NAME} rather than by the project's name. macros: what is given to the compiler with -D. message_files:
     (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told. files: the CMake
-    files read, relative to the root."""
+    files read, relative to the root. made: paths of the tree that configuring or building writes, or that git ignores;
+    a folder ends with a slash. handed_on: what the scripts look for that the package gives to those who find it
+    (CONFIG_EXTRAS, what these include, and extensions that they register)."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -204,6 +206,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     project_by_variable: bool = False
     standards: tuple[tuple[int, At, tuple[Condition, ...]], ...] = ()
     macros: tuple[Defined, ...] = ()
+    made: tuple[str, ...] = ()
+    handed_on: tuple[Found, ...] = ()
 
 
 class Declared(msgspec.Struct, frozen=True, gc=False):
