@@ -442,6 +442,15 @@ def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, Digest | None]],
     return None if packed else digest, packed, head
 
 
+def _called(build: Build, declared: str) -> str:
+    """The build type of a package by what its CMake calls, where that is one of the two alone: a manifest often still
+    says what the package was ported from."""
+    catkin, ament = build.catkin_package is not None, build.ament_package is not None
+    if catkin == ament or declared not in ("catkin", "ament_cmake"):
+        return declared
+    return "catkin" if catkin else "ament_cmake"
+
+
 class _Linker:
     def __init__(self, tree, gathered: Gathered, discovered: Discovered, ros: int, watched: Watched, jobs: int):
         self.tree, self.gathered, self.discovered, self.ros, self.watched = tree, gathered, discovered, ros, watched
@@ -604,13 +613,14 @@ class _Linker:
         )
         if before is not None and build == before.build:
             return before, read
+        build_type = _called(build, build_type_of(manifest, self.ros))
         digest = digest_of(
             place.name or manifest.name,
             place.path,
             place.manifest_path,
             manifest,
             build,
-            build_type_of(manifest, self.ros),
+            build_type,
             gathered.kinds,
             files,
             gathered.facts,

@@ -64,6 +64,7 @@ class TargetDraft:
             self.export_name,
             self.public_standard,
             tuple(self.installed_includes),
+            self.installed_as == "static",
         )
 
     def add_source(self, path: str, conditions: tuple[Condition, ...]) -> None:

@@ -32,7 +32,9 @@ import re
 from functools import lru_cache
 
 from ...model.build import for_tests
+from ...model.links import may_hide, package_of
 from ...model.view import View, interface_of
+from ...targets.library import variables
 from ...targets.version import at_least
 from ..rule import Hit, rule
 from .unlinked import unlinked
@@ -65,6 +67,7 @@ def missing_find_package(view: View):
         yield from _only_placed(view, package)
         yield from _never_set(view, package)
         yield from _no_prefix(view, package)
+        yield from _own_name(view, package)
         yield from _linked_to_nothing(view, package)
         yield from unlinked(view, package)
         found = found_names(view, package)
@@ -170,7 +173,7 @@ def _weight_of(view: View, need, counts: bool) -> str:
     return "error" if apart and need.targets and len(need.providers) == 1 else "warning"
 
 
-_OF_PACKAGE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|INCLUDE_DIRS|INCLUDE_DIR|LIBRARY|LIBS)\}")
+_INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 # Distros in which headers of all packages lay in one folder, so that any found package served every target.
 _ONE_FOLDER = ("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic")
 
@@ -180,13 +183,13 @@ def _not_given(view: View, package):
     if package.build_type != "ament_cmake" or view.target.distro in _ONE_FOLDER or package.build.unresolved:
         return
     targets = {t.name: t for t in package.build.targets}
-    everywhere = {n for item, _ in package.build.include_dirs for n in _OF_PACKAGE.findall(item)}
-    everywhere |= {_package_of(link.item) for link in package.build.links}
+    everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
+    everywhere |= {package_of(link.item) for link in package.build.links}
     found = {f.name for f in package.build.found}
     if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
         return
     told = set()
-    reach: dict[str, frozenset[str] | None] = {}
+    reach: dict[str, tuple[frozenset[str], set[str]] | None] = {}
     for include in package.digest.includes:
         providers = view.header(include.path)
         if (
@@ -201,12 +204,14 @@ def _not_given(view: View, package):
             continue
         for target in include.targets:
             if target not in reach:
-                given = _given(view, targets, target)
+                items = _given(targets, target)
+                hiding = {item for item in items or () if "$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item)}
                 # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
-                names = {s for n in (*(given or ()), *everywhere) if n for s in (n, n.lower())}
-                reach[target] = None if given is None else view.spread(names)
+                given = {package_of(item) for item in items or () if item not in hiding} | everywhere
+                names = {s for n in given if n for s in (n, n.lower())}
+                reach[target] = None if items is None else (view.spread(names), hiding)
             brought = reach[target]
-            if brought is None or name in brought:
+            if brought is None or name in brought[0] or any(may_hide(item, name) for item in brought[1]):
                 continue
             told.add(name)
             yield Hit(
@@ -220,16 +225,12 @@ def _not_given(view: View, package):
             break
 
 
-@lru_cache(maxsize=10000)
-def _package_of(item: str) -> str:
-    """The package that a link item stands for: `pkg::target`, `${pkg_LIBRARIES}`, or the item itself."""
-    match = _OF_PACKAGE.match(item)
-    return match.group(1) if match else item.partition("::")[0]
+_VARIABLE_OF_PACKAGE = re.compile(r"\$\{[^${}]+_(?:LIBRARIES|TARGETS|INCLUDE_DIRS?|LIBRARY|LIBS)\}")
 
 
-def _given(view: View, targets, name: str) -> set[str] | None:
-    """Packages that a target is given, itself or through targets of its package; None when that cannot be told."""
-    names: set[str] = set()
+def _given(targets, name: str) -> set[str] | None:
+    """All that a target is given, itself or through targets of its package; None when that cannot be told."""
+    items: set[str] = set()
     stack, seen = [name], set()
     while stack:
         target = targets.get(stack.pop())
@@ -241,11 +242,9 @@ def _given(view: View, targets, name: str) -> set[str] | None:
         if target.alias_of:
             stack.append(target.alias_of)
         for link in target.links:
-            if "$" in link.item and not _OF_PACKAGE.match(link.item):
-                return None
-            names.add(_package_of(link.item))
+            items.add(link.item)
             stack.append(link.item)
-    return names
+    return items
 
 
 def _directories_not_given(view: View, package):
@@ -291,10 +290,14 @@ _WITH_CPATH = ("groovy", "hydro", "indigo", "jade")
 
 
 def _no_components(view: View, package):
-    """Components asked of catkin that are system libraries on the target, which catkin cannot find as components."""
+    """Components asked of catkin that are system libraries on the target, which catkin cannot find as components. One
+    that was found before is found again: CMake remembers where it is."""
+    before: set[str] = set()
     for found in package.build.found:
         name = found.name
-        if found.how != "catkin" or name == "catkin" or not view.certain(found.conditions):
+        if found.how == "find_package":
+            before.add(name)
+        if found.how != "catkin" or name == "catkin" or name in before or not view.certain(found.conditions):
             continue
         if name in view.workspace.packages or view.target.version(name) is not None or view.private(name):
             continue
@@ -417,8 +420,18 @@ def _never_set(view: View, package):
             f"`{use.name}` is linked, and nothing sets it",
             f"pkg_check_modules({stem} REQUIRED {module})" if module else f"find_package({stem} REQUIRED)",
             package.name,
-            severity="error" if _compiled_with(view, package, use.name, module, stem) else "warning",
+            severity="error"
+            if _compiled_with(view, package, use.name, module, stem) and not _sets_others(view, package)
+            else "warning",
         )
+
+
+def _sets_others(view: View, package) -> bool:
+    """True where a library that is found may set variables of others: its configuration may look for what it needs."""
+    return any(
+        f.how == "find_package" and not view.is_package(f.name) and variables(f.name) is None
+        for f in package.build.found
+    )
 
 
 def _compiled_with(view: View, package, variable: str, module: str, stem: str) -> bool:
@@ -449,6 +462,24 @@ def _no_prefix(view: View, package):
                 f"pkg_check_modules({found.name.upper().replace('-', '_')} {found.prefix} {found.name})",
                 package.name,
             )
+
+
+def _own_name(view: View, package):
+    """ament_target_dependencies() with the package itself, which nothing has found when it is built."""
+    if any(f.name == package.name for f in package.build.found) or any("$" in f.name for f in package.build.found):
+        return
+    for target in package.build.targets:
+        for link in target.links:
+            if link.how == "ament" and link.item == package.name and view.certain(target.conditions + link.conditions):
+                yield Hit(
+                    link.at,
+                    "ament_target_dependencies",
+                    f"`{target.name}` is given `{link.item}`, which is this package itself, so CMake stops",
+                    f"target_link_libraries({target.name} {link.item})",
+                    package.name,
+                    severity="error",
+                )
+                return
 
 
 @lru_cache(maxsize=10000)

@@ -138,7 +138,7 @@ def _catkin_generation(view: View, package):
     if not generated:
         return
     found = {f.name for f in package.build.found}
-    if "message_generation" not in found and "genmsg" not in found:
+    if "message_generation" not in found and not found & _GENERATORS:
         through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
         yield Hit(
             generated[0].at,
@@ -149,6 +149,10 @@ def _catkin_generation(view: View, package):
             package.name,
             severity="warning" if through or view.blind(package) else "error",
         )
+
+
+# The packages that message_generation brings: each makes messages for one language, which genmsg alone does not.
+_GENERATORS = frozenset({"gencpp", "genpy", "genlisp", "geneus", "gennodejs"})
 
 
 def _orders(package) -> dict[str, set[str]]:
