@@ -46,6 +46,7 @@ EXTRACTORS: dict[str, tuple[str, str, int]] = {
     "setup_py": ("setup", "SetupFile", 3),
     "setup_cfg": ("setup", "SetupFile", 3),
     "pyproject": ("setup", "SetupFile", 3),
+    "gitignore": ("gitignore", "IgnoreFile", 1),
     "script": ("", "", 1),
     "flow_cpp": ("flow_cpp", "FlowFile", 4),
     "flow_python": ("flow_python", "FlowFile", 4),
@@ -71,6 +72,7 @@ BY_NAME = {
     "setup.py": "setup_py",
     "setup.cfg": "setup_cfg",
     "pyproject.toml": "pyproject",
+    ".gitignore": "gitignore",
 }
 BY_ENDING = {
     "msg": "msg",
@@ -147,6 +149,7 @@ _BUDGETS = {
     **dict.fromkeys(("setup_cfg", "pyproject"), "settings"),
     "setup_py": "python",
     "shell": "script",
+    "gitignore": "script",
 }
 
 

@@ -8,6 +8,7 @@ workspace is made of the digests themselves: an edit that changes none of them c
 from __future__ import annotations
 
 import hashlib
+import itertools
 import posixpath
 import re
 from bisect import bisect_left
@@ -25,6 +26,7 @@ from ..gather import Gathered
 from ..targets.fields import snake
 from .build import Build, extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
+from .ignored import is_ignored
 from .package import Digest, Watched, build_type_of, digest_of
 
 if TYPE_CHECKING:
@@ -611,6 +613,8 @@ class _Linker:
             and (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
             else Build()
         )
+        ignored = tuple(self.ignored(place, build, read))
+        build = msgspec.structs.replace(build, made=(*build.made, *ignored)) if ignored else build
         if before is not None and build == before.build:
             return before, read
         build_type = _called(build, build_type_of(manifest, self.ros))
@@ -629,6 +633,24 @@ class _Linker:
             self.home,
         )
         return digest, read
+
+    def ignored(self, place, build: Build, read: dict[str, str]) -> Iterator[str]:
+        """What the package installs and git ignores, so that it is there once it was made. read: as join() returns it,
+        completed by the files that tell."""
+        for install in build.installs:
+            for item in install.items if install.kind in ("files", "programs", "directory") else ():
+                path = posixpath.normpath(item)
+                if "$" in item or path.startswith(("/", "..")) or path in self.all_paths:
+                    continue
+                folders, rules = ["", *itertools.accumulate(path.split("/")[:-1], "{}/{}".format)], []
+                for folder in folders:
+                    file = f"{folder}/.gitignore" if folder else ".gitignore"
+                    if self.gathered.kinds.get(file) == "gitignore":
+                        read[file] = self.gathered.ids.get(file, "")
+                        facts = self.gathered.facts(file)
+                        rules.append((folder, facts.facts.patterns if facts is not None else ()))
+                if rules and is_ignored(path, rules):
+                    yield path
 
     def glob(self, place, files: list[str]):
         import fnmatch

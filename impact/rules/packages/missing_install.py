@@ -70,7 +70,15 @@ def _referred(view: View) -> dict[str, dict[str, set[str]]]:
     return found
 
 
+def _is_made(made: frozenset[str], path: str, kind: str) -> bool:
+    """True for a path that configuring or building writes, or that holds such ones; made: as Build.made."""
+    if path in made or any(item.endswith("/") and f"{path}/".startswith(item) for item in made):
+        return True
+    return kind == "directory" and any(item.startswith(f"{path}/") for item in made)
+
+
 def _absent(view: View, package, installs):
+    made = frozenset(package.build.made)
     for install in installs:
         if install.kind not in ("files", "programs", "directory") or not view.certain(install.conditions):
             continue
@@ -93,6 +101,8 @@ def _absent(view: View, package, installs):
             ):
                 continue  # made by the build, or a folder that git cannot keep while it is empty
             if path + ".in" in package.files or (install.kind == "files" and "." in path and _made(package, path)):
+                continue
+            if _is_made(made, path, install.kind):
                 continue
             inside = path[len(package.path) :].lstrip("/")
             yield Hit(
