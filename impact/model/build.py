@@ -184,7 +184,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told. files: the CMake
     files read, relative to the root. made: paths of the tree that configuring or building writes, or that git ignores;
     a folder ends with a slash. handed_on: what the scripts look for that the package gives to those who find it
-    (CONFIG_EXTRAS, what these include, and extensions that they register)."""
+    (CONFIG_EXTRAS, what these include, and extensions that they register). before_catkin_package: targets that are
+    added before catkin_package() is called."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -209,6 +210,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     macros: tuple[Defined, ...] = ()
     made: tuple[str, ...] = ()
     handed_on: tuple[Found, ...] = ()
+    before_catkin_package: tuple[str, ...] = ()
 
 
 class Declared(msgspec.Struct, frozen=True, gc=False):

@@ -34,6 +34,12 @@ def catkin_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     """catkin_package()."""
     if not run.silent:
         run.catkin_package = run.place(call.at)
+        opposite = {(held.text, not held.negated) for held in run.conditions}
+        run.before_catkin_package = tuple(
+            target.name
+            for target in run.targets.finish()
+            if not any((held.text, held.negated) in opposite for held in target.conditions)
+        )
     for keyword, items in sections(args, _PACKAGE).items():
         how = _PROMISES.get(keyword)
         if how is None:

@@ -99,6 +99,7 @@ class Targets:
         elif kind != "unknown" and conditions != draft.conditions:
             # Made in both branches of an if: only what both have in common is a condition of the target.
             draft.conditions = tuple(held for held in draft.conditions if held in conditions)
+            draft.kind = "test" if kind == "test" else draft.kind
         return draft
 
     def finish(self) -> tuple[BuildTarget, ...]:

@@ -133,6 +133,7 @@ class Interpreter:
         self.include_dirs: dict[tuple[str, At], None] = {}
         self.links: dict = {}
         self.catkin_package: At | None = None
+        self.before_catkin_package: tuple[str, ...] = ()
         self.ament_package: At | None = None
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}
@@ -230,6 +231,7 @@ class Interpreter:
             project_by_variable=self._project_by_variable(),
             made=tuple(self.made),
             handed_on=tuple(self.handed_on),
+            before_catkin_package=self.before_catkin_package,
         )
 
     def _project_by_variable(self) -> bool:

@@ -1,7 +1,7 @@
 """catkin-package-order: a target is added before catkin_package() is called.
 
 What it does
-    Reports the first library or program that stands before catkin_package() in the same CMakeLists.txt.
+    Reports libraries and programs that CMake adds before it comes to catkin_package().
 
 Why it breaks
     catkin_package() sets where targets are built and what they export: those that were added before it land in the
@@ -19,7 +19,7 @@ Use instead
     add_library(arm src/arm.cpp)
 
 Not reported
-    Targets of other files, which may be read later; tests; targets under a condition that is unknown on the target.
+    Tests; targets under a condition that is unknown on the target.
 """
 
 from ...model.view import View
@@ -32,11 +32,12 @@ def catkin_package_order(view: View):
         call = package.build.catkin_package
         if call is None or package.build_type != "catkin":
             continue
+        before = set(package.build.before_catkin_package)
         early = [
             target
             for target in package.build.targets
-            if target.kind in ("library", "executable", "module")
-            and (target.at.path, target.at.line < call.line) == (call.path, True)
+            if target.name in before
+            and target.kind in ("library", "executable", "module")
             and view.certain(target.conditions)
         ]
         if early:

@@ -20,7 +20,8 @@ Use instead
     target_link_libraries(loader arm gtest)
 
 Not reported
-    Targets that are given anything of which it cannot be told what it brings; static libraries; includes in headers.
+    Targets that are given anything of which it cannot be told what it brings; includes in headers; static libraries,
+    and shared ones that are not installed: the programs of the package bring what they lack.
 """
 
 from ...model.build import BuildTarget
@@ -60,13 +61,16 @@ def unlinked_library(view: View):
         if not includes or any("$" in f.name for f in package.build.found):
             continue
         targets = {t.name: t for t in package.build.targets}
+        installed = {item for i in package.build.installs if i.kind == "targets" for item in i.items}
         told: set[tuple[str, str]] = set()
         for include, word in includes:
             for name in include.targets:
                 target = targets.get(name)
                 if target is None or include.at.path not in target.sources or (word, name) in told:
                     continue
-                if target.kind not in ("executable", "library") or target.static or not view.certain(target.conditions):
+                if target.kind != "executable" and (target.kind != "library" or target.static or name not in installed):
+                    continue
+                if not view.certain(target.conditions):
                     continue
                 if _brought(view, package, targets, target, include.path, word):
                     continue
