@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import posixpath
 
+from ..build import Found
 from .blocks import Call
 from .conditions import version_key
 from .interpreter import BREAK, CONTINUE, FATAL, RETURN, Interpreter, handles
@@ -104,6 +105,9 @@ def include(run: Interpreter, call: Call, args: list[Word]) -> None:
                 return
         add_module(run, str(name))
         if name in MODULES:
+            if name.startswith("Find") and not name.startswith("FindPackage"):
+                place = run.place(name.at)
+                run.add_found(Found(name.removeprefix("Find"), "find_package", place, conditions=run.under(name)))
             return
     if name.endswith("_USE_FILE}") or name.startswith("$ENV{ROS_ROOT}/core/rosbuild/"):
         return  # settings of a found package, or rosbuild itself, whose macros are known

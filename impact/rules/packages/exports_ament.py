@@ -160,9 +160,10 @@ def _never_built(view: View, package: Package, exports) -> Iterator[Hit]:
 
 
 # Packages whose configuration defines targets for the components asked for alone, and of these the components that need
-# not be asked for. Source: FindBoost in cmake-modules(7); Qt5Config.cmake and Qt6Config.cmake, which find nothing
-# without components.
+# not be asked for; and those that are not found at all without components. Source: FindBoost in cmake-modules(7);
+# Qt5Config.cmake and Qt6Config.cmake.
 _COMPONENTS_ALONE = {"Boost": frozenset({"boost", "headers"}), "Qt5": frozenset(), "Qt6": frozenset()}
+_NONE_WITHOUT = frozenset({"Qt5", "Qt6"})
 
 
 def _without_components(view: View, package: Package, exports) -> Iterator[Hit]:
@@ -170,6 +171,16 @@ def _without_components(view: View, package: Package, exports) -> Iterator[Hit]:
     handed = {f.name for f in package.build.handed_on if f.components}
     named = {e.item for e in exports if e.how == "ament_export_dependencies"}
     told: set[str] = set()
+    for export in exports:
+        if export.how == "ament_export_dependencies" and export.item in _NONE_WITHOUT - handed - told:
+            told.add(export.item)
+            yield Hit(
+                export.at,
+                export.item,
+                f"dependants find `{export.item}` without components, at which its configuration stops",
+                "find it with its components in a file given to ament_package(CONFIG_EXTRAS ...)",
+                package.name,
+            )
     for target in exported_targets(package):
         if not view.certain(target.conditions):
             continue

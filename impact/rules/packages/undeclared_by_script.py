@@ -23,6 +23,7 @@ Not reported
 from ...model.view import View
 from ..rule import Hit, rule
 
+_TOOLS = frozenset({"ament_cmake", "ament_cmake_auto", "ament_cmake_ros", "catkin"})
 _HANDED_ON = frozenset({"build_export", "buildtool_export", "exec"})
 
 
@@ -32,7 +33,8 @@ def undeclared_by_script(view: View):
         if not package.build.handed_on:
             continue
         declared = view.declared(package)
-        closure = view.spread(name for name, kinds in declared.items() if kinds & _HANDED_ON)
+        # Who finds the package builds with the same tool.
+        closure = view.spread(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
         told = {package.name}
         for found in package.build.handed_on:
             if not found.required or not view.certain(found.conditions) or found.name in told or "$" in found.name:
