@@ -732,9 +732,7 @@ class Interpreter:
     def hand_on(self, path: str, at: At) -> None:
         """Runs a script that the package gives to those who find it, for what it looks for. Its files lie in one folder
         once they are installed, so that what it includes is known by its name."""
-        files = self.glob(f"{self.package_path}/*.cmake*".lstrip("/"), True)
-        named = {posixpath.basename(file).removesuffix(".in"): file for file in files}
-        path = named.get(posixpath.basename(path).removesuffix(".in"), path)
+        path = self.own_file(path) or path
         if path in self.including or self.load(path) is None:
             return
         outer, targets, macros, made = self.handing_on, self.targets, self.macros, self.made
@@ -752,9 +750,17 @@ class Interpreter:
             self.silent -= 1
             self.handing_on, self.targets, self.macros, self.made = outer, targets, macros, made
 
+    def own_file(self, name: str) -> str | None:
+        """The CMake file of the package, or the template of one, that has a name once it is installed."""
+        base = posixpath.basename(name).removesuffix(".in")
+        files = self.glob(f"{self.package_path}/*.cmake*".lstrip("/"), True)
+        return next((file for file in files if posixpath.basename(file).removesuffix(".in") == base), None)
+
     def exported_file(self, name: str) -> str | None:
         """The file in the tree from which `<package>_DIR/name` is installed, for a package of the workspace."""
         base = posixpath.basename(name)
+        if self.handing_on and self.exported.get(posixpath.dirname(name)) == self.package:
+            return self.own_file(name)
         for path in self.extras(self.exported.get(posixpath.dirname(name), "")):
             if posixpath.basename(path) in (base, f"{base}.in", f"{base}.em"):
                 return path
