@@ -1,7 +1,7 @@
 """undeclared-through-header: a header of a dependency includes a header of a package that nothing declared brings.
 
 What it does
-    Follows the includes of released headers, in the target's versions, to the packages that they lead to.
+    Follows the includes of released headers, in the target's versions, to the first headers of other packages.
 
 Why it breaks
     The compiler stops inside somebody else's header on a machine that has only what package.xml declares; elsewhere it
@@ -17,7 +17,8 @@ Use instead
     <depend>tf2_geometry_msgs</depend>
 
 Not reported
-    Headers whose version on the target was not read; packages that the target does not have; code that is not built.
+    Headers whose version on the target was not read, and includes of theirs under a condition; packages that the target
+    does not have; code that is not built.
 """
 
 from ...model.view import Need, View
@@ -53,14 +54,20 @@ def _led_to(view: View, need: Need) -> list[tuple[str, str]]:
     """The packages of ROS that a released header leads to, besides its own, each with the first header of it."""
     known = view.worked_out.get(("led to", need.subject))
     if known is None:
-        known = []
-        if need.providers[0].kind == "ros" and view.machine.includes(need.subject) is not None:
-            for header in sorted(view.machine.brought(need.subject).headers):
-                providers = view.header(header) if "/" in header else ()
+        found: dict[str, str] = {}
+        seen, waiting = {need.subject}, [need.subject] if need.providers[0].kind == "ros" else []
+        while waiting:
+            for header in view.machine.always_included(waiting.pop()):
+                if header in seen or "/" not in header:
+                    continue
+                seen.add(header)
+                providers = view.header(header)
                 if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
                     continue
                 name = providers[0].name
-                if name != need.providers[0].name and view.target.version(name) and (name, header) not in known:
-                    known.append((name, header))
-        view.worked_out["led to", need.subject] = known
+                if name == need.providers[0].name:
+                    waiting.append(header)
+                elif view.target.version(name):
+                    found.setdefault(name, header)
+        known = view.worked_out["led to", need.subject] = list(found.items())
     return known
