@@ -23,6 +23,16 @@ def is_ignored(path: str, rules: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
     return ignored
 
 
+def holds_ignored(path: str, rules: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
+    """Whether a pattern names files below a folder; rules as of is_ignored()."""
+    return any(
+        f"{folder}/{pattern.lstrip('/')}".lstrip("/").startswith(f"{path}/")
+        for folder, patterns in rules
+        for pattern in patterns
+        if not pattern.startswith("!")
+    )
+
+
 @lru_cache(maxsize=1000)
 def _expression(pattern: str) -> re.Pattern[str] | None:
     """A pattern as an expression for paths relative to its file; one with a slash inside counts from there on."""

@@ -26,7 +26,7 @@ from ..gather import Gathered
 from ..targets.fields import snake
 from .build import Build, extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
-from .ignored import is_ignored
+from .ignored import holds_ignored, is_ignored
 from .package import Digest, Watched, build_type_of, digest_of
 
 if TYPE_CHECKING:
@@ -649,7 +649,7 @@ class _Linker:
                         read[file] = self.gathered.ids.get(file, "")
                         facts = self.gathered.facts(file)
                         rules.append((folder, facts.facts.patterns if facts is not None else ()))
-                if rules and is_ignored(path, rules):
+                if rules and (is_ignored(path, rules) or (install.kind == "directory" and holds_ignored(path, rules))):
                     yield path
 
     def glob(self, place, files: list[str]):

@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.facts.gitignore import extract
-from rosimpact.impact.model.ignored import is_ignored
+from rosimpact.impact.model.ignored import holds_ignored, is_ignored
 
 
 @pytest.mark.parametrize(
@@ -27,3 +27,17 @@ def test_patterns(patterns, path, ignored):
 
 def test_a_file_further_down_counts_from_its_folder():
     assert is_ignored("pkg/data/a.bin", [("", ()), ("pkg", ("/data",))])
+
+
+@pytest.mark.parametrize(
+    ("pattern", "folder", "holds"),
+    [
+        ("template/*png", "pkg/template", True),
+        ("/template/a/b.xml", "pkg/template", True),
+        ("template/*png", "pkg/templates", False),
+        ("!template/*png", "pkg/template", False),
+        ("*.png", "pkg/template", False),
+    ],
+)
+def test_folders_that_hold_ignored_files(pattern, folder, holds):
+    assert holds_ignored(folder, [("", ()), ("pkg", (pattern,))]) is holds

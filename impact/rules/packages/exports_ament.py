@@ -87,7 +87,16 @@ def _passed_on(view: View, package: Package, reach: set[str], told: set[str]) ->
                 f"`{target.name}` passes `{item}` on and `{known.name}` is not exported",
                 f"add `{known.name}` to ament_export_dependencies",
                 package.name,
+                severity="note" if link.how == "ament" and _loaded_alone(view, package) else "warning",
             )
+
+
+def _loaded_alone(view: View, package: Package) -> bool:
+    """True for a package of plugins that no package of the workspace looks for: it is loaded rather than linked."""
+    plugins = any(e.how in ("plugin_description", "component") for e in package.build.exports)
+    return plugins and not any(
+        found.name == package.name for other in view.everyone() for found in other.build.found if other is not package
+    )
 
 
 def _named_by(link) -> str:
