@@ -32,7 +32,7 @@ import re
 from functools import lru_cache
 
 from ...model.build import for_tests
-from ...model.links import may_hide, package_of
+from ...model.links import found_with, may_hide, package_of
 from ...model.view import View, interface_of
 from ...targets.library import variables
 from ...targets.version import at_least
@@ -73,7 +73,7 @@ def missing_find_package(view: View):
         found = found_names(view, package)
         if found is None:
             continue
-        reachable = view.spread(found)
+        reachable = view.spread(found) | found_with(view, found)
         tested = {f.name for f in package.build.found if for_tests(f.conditions) and f.name in found}
         outside = {f.name for f in package.build.found if not for_tests(f.conditions)}
         built = view.spread(n for n in found if n in outside or n not in tested) if tested - outside else reachable

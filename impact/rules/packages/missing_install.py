@@ -31,6 +31,7 @@ import posixpath
 import re
 
 from ...model.build import At
+from ...model.installed import lets_in
 from ...model.view import View
 from ..rule import Hit, rule
 
@@ -341,7 +342,8 @@ def _covered(package, installs, path: str) -> bool:
             item = posixpath.normpath(item.rstrip("/")) if item.rstrip("/") else ""
             if path == item:
                 return True
-            if install.kind == "directory" and (item in ("", ".", package.path) or path.startswith(item + "/")):
+            base = "" if item in ("", ".") else f"{item}/"
+            if install.kind == "directory" and path.startswith(base) and lets_in(install, path[len(base) :]):
                 return True
             if install.kind == "python" and (path.startswith(item + "/") or not item):
                 return True
