@@ -299,6 +299,8 @@ def _no_components(view: View, package):
             before.add(name)
         if found.how != "catkin" or name == "catkin" or name in before or not view.certain(found.conditions):
             continue
+        if found.quiet and not found.required:
+            continue
         if name in view.workspace.packages or view.target.version(name) is not None or view.private(name):
             continue
         key = view.target.resolve(name) is not None
