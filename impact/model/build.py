@@ -182,10 +182,10 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     for only where the compiler's default is lower. project_by_variable: its CMakeLists.txt calls targets after
     ${PROJECT_NAME} rather than by the project's name. macros: what is given to the compiler with -D. message_files:
     (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told. files: the CMake
-    files read, relative to the root. made: paths of the tree that configuring or building writes, or that git ignores;
-    a folder ends with a slash. handed_on: what the scripts look for that the package gives to those who find it
-    (CONFIG_EXTRAS, what these include, and extensions that they register). before_catkin_package: targets that are
-    added before catkin_package() is called."""
+    files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
+    a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
+    scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
+    they register). before_catkin_package: targets that are added before catkin_package() is called."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None

@@ -27,6 +27,7 @@ from ..targets.fields import snake
 from .build import Build, extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
 from .ignored import holds_ignored, is_ignored
+from .installed import HEADER_NAME
 from .package import Digest, Watched, build_type_of, digest_of
 
 if TYPE_CHECKING:
@@ -156,7 +157,8 @@ class Workspace:
 
     @cached_property
     def generated_headers(self) -> dict[str, str]:
-        """Basename of headers made while building (parameters, protobuf, Qt forms, configure_file) to the package."""
+        """Basename of headers made while building (parameters, protobuf, Qt forms, configure_file, custom commands) to
+        the package."""
         found = {}
         for package in self:
             for item in package.build.generated:
@@ -165,6 +167,9 @@ class Workspace:
                 elif item.how == "protobuf":
                     for file in item.files:
                         found[posixpath.basename(file).replace(".proto", ".pb.h")] = package.name
+            for path in package.build.made:
+                if HEADER_NAME.search(path):
+                    found[posixpath.basename(path)] = package.name
             for path in package.digest.files:
                 name = posixpath.basename(path)
                 if name.endswith(".ui"):

@@ -1063,7 +1063,8 @@ def test_options_of_a_directory_count(source):
     ("source", "made"),
     [
         ("configure_file(a.in ${CMAKE_CURRENT_SOURCE_DIR}/a.yaml)", ["pkg/a.yaml"]),
-        ("configure_file(a.in a.yaml)", []),  # lies in the build folder
+        ("configure_file(a.in a.yaml)", ["${CMAKE_BINARY_DIR}/a.yaml"]),
+        ("add_custom_command(OUTPUT a.h COMMAND run)", ["pkg/a.h", "${CMAKE_BINARY_DIR}/a.h"]),
         ("file(WRITE ${CMAKE_CURRENT_SOURCE_DIR}/a.yaml x)", ["pkg/a.yaml"]),
         ("file(MAKE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/data)", ["pkg/data/"]),
         ("add_custom_command(OUTPUT ${CMAKE_CURRENT_SOURCE_DIR}/a.yaml COMMAND run)", ["pkg/a.yaml"]),

@@ -8,7 +8,7 @@ from ..build import GeneratedInterfaces, Link
 from .blocks import Call
 from .drafts import TargetDraft
 from .genex import reduced, rejoin
-from .interpreter import Interpreter, handles
+from .interpreter import BINARY, Interpreter, handles
 from .macros import note_flag, note_macro
 from .names import name_set
 from .standard import feature_standard, flag_standard, note_options
@@ -191,10 +191,10 @@ def add_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 
 def note_made(run: Interpreter, path: str, *, folder: bool = False) -> None:
-    """Remembers a file of the tree, or a folder, that configuring or building writes."""
-    relative = run.relative(path)
-    if relative:
-        run.made[f"{relative}/" if folder else relative] = None
+    """Remembers a file, or a folder, that configuring or building writes into the tree or the build folder."""
+    place = run.relative(path) or (run.shown(path) if path.startswith(BINARY) else "")
+    if place:
+        run.made[f"{place}/" if folder else place] = None
 
 
 def note_written(run: Interpreter, item: Word) -> None:
@@ -214,6 +214,8 @@ def add_custom_command(run: Interpreter, call: Call, args: list[Word]) -> None:
             section = str(item)
         elif section in ("OUTPUT", "BYPRODUCTS"):
             note_made(run, run.resolve(item))
+            if not item.startswith("/"):
+                note_made(run, run.resolve(item, run.scope["CMAKE_CURRENT_BINARY_DIR"].text))
         else:
             note_written(run, item)
 
