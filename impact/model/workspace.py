@@ -18,16 +18,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
+from ...edges import processes
 from ...edges.limits import limits_stamp
-from .. import processes
+from ..facts.extract import Gathered
 from ..facts.kinds import EXTRACTORS
 from ..facts.manifest import Manifest
-from ..gather import Gathered
-from ..targets.fields import snake
-from .build import Build, extras_of, interpret
+from ..targets.surface.fields import snake
+from .cmake.build import Build
+from .cmake.installed import HEADER_NAME
+from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
 from .ignored import holds_ignored, is_ignored
-from .installed import HEADER_NAME
 from .package import Digest, Watched, build_type_of, digest_of
 
 if TYPE_CHECKING:

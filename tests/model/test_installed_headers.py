@@ -1,8 +1,8 @@
 """What install rules copy, patterns included."""
 
 import pytest
-from rosimpact.impact.model.build import At, Install
-from rosimpact.impact.model.installed import copied_files
+from rosimpact.impact.model.cmake.build import At, Install
+from rosimpact.impact.model.cmake.installed import copied_files
 
 FILES = ("p/include/p/a.h", "p/include/p/b.hpp", "p/include/p/detail/c.h", "p/src/d.h")
 

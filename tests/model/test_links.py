@@ -1,7 +1,7 @@
 """What a link item stands for, and what one with a variable that nothing sets may stand for."""
 
 import pytest
-from rosimpact.impact.model.links import may_hide, package_of
+from rosimpact.impact.model.cmake.links import may_hide, package_of
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 import posixpath
 
-from ..build import Found
 from .blocks import Call
+from .build import Found
 from .conditions import version_key
 from .interpreter import BREAK, CONTINUE, FATAL, RETURN, Interpreter, handles
 from .lists import integer, list_items

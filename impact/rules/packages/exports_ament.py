@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from ...model.links import exported_targets, found_with, package_of, public_links
+from ...model.cmake.links import exported_targets, found_with, package_of, public_links
 from ...model.view import View
 from ...model.workspace import Package
 from ..rule import Hit

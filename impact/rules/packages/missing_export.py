@@ -29,9 +29,9 @@ Not reported
 
 import posixpath
 
-from ...model.links import found_with
+from ...model.cmake.links import found_with
 from ...model.view import View
-from ...targets.library import variables
+from ...targets.providers.library import variables
 from ..rule import Hit, rule
 from .exports_ament import lacking
 

@@ -31,10 +31,10 @@ Not reported
 import re
 from functools import lru_cache
 
-from ...model.build import for_tests
-from ...model.links import found_with, may_hide, package_of
+from ...model.cmake.build import for_tests
+from ...model.cmake.links import found_with, may_hide, package_of
 from ...model.view import View, interface_of
-from ...targets.library import variables
+from ...targets.providers.library import variables
 from ...targets.version import at_least
 from ..rule import Hit, rule
 from .unlinked import unlinked

@@ -30,8 +30,8 @@ Not reported
 import posixpath
 import re
 
-from ...model.build import At
-from ...model.installed import lets_in
+from ...model.cmake.build import At
+from ...model.cmake.installed import lets_in
 from ...model.view import View
 from ..rule import Hit, rule
 

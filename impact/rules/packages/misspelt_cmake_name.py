@@ -26,10 +26,10 @@ Not reported
 
 import re
 
-from ...model.spelling import Names, one_edit
+from ...model.misspelling import Names, one_edit
 from ...model.view import View
-from ...targets.library import not_answering, variables
-from ..cure import Replace
+from ...targets.providers.library import not_answering, variables
+from ..fix_actions import Replace
 from ..rule import Hit, rule
 
 _SUFFIXES = (

@@ -24,8 +24,8 @@ Not reported
 import posixpath
 import re
 
-from ...model.build import At
-from ...model.installed import installed_headers
+from ...model.cmake.build import At
+from ...model.cmake.installed import installed_headers
 from ...model.package import role_of_folder
 from ...model.view import View
 from ..rule import Hit, rule

@@ -24,8 +24,8 @@ Not reported
     and shared ones that are not installed: the programs of the package bring what they lack.
 """
 
-from ...model.build import BuildTarget
-from ...model.links import package_of
+from ...model.cmake.build import BuildTarget
+from ...model.cmake.links import package_of
 from ...model.view import View
 from ...model.workspace import Package
 from ..rule import Hit, rule

@@ -24,10 +24,10 @@ Not reported
     compiler's default is below what they ask for: CMake then writes the higher one behind it.
 """
 
-from ...model.links import standards_asked
+from ...model.cmake.links import standards_asked
 from ...model.view import View
-from ...targets.library import NeededStandard, default_standard, needed_standard, standard_year
-from ...targets.standard import HEADER_SINCE
+from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
+from ...targets.providers.standard import HEADER_SINCE
 from ...targets.version import at_least
 from ..rule import Hit, rule
 
