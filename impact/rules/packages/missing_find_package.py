@@ -33,6 +33,7 @@ from functools import lru_cache
 
 from ...model.cmake.build import for_tests
 from ...model.cmake.links import found_with, may_hide, package_of
+from ...model.cmake.names import MODULES
 from ...model.view import View, interface_of
 from ...targets.providers.library import variables
 from ...targets.version import at_least
@@ -429,9 +430,13 @@ def _never_set(view: View, package):
 
 
 def _sets_others(view: View, package) -> bool:
-    """True where a library that is found may set variables of others: its configuration may look for what it needs."""
+    """True where a library that is found may set variables of others: its configuration may look for what it needs,
+    which CMake's own find modules leave to the caller."""
     return any(
-        f.how == "find_package" and not view.is_package(f.name) and variables(f.name) is None
+        f.how == "find_package"
+        and f"Find{f.name}" not in MODULES
+        and not view.is_package(f.name)
+        and variables(f.name) is None
         for f in package.build.found
     )
 
