@@ -9,12 +9,11 @@ from ...model.cmake.links import exported_targets, found_with, package_of, publi
 from ...model.view import View
 from ...model.workspace import Package
 from ..rule import Hit
+from .find_targets import ONE_FOLDER
 
 _HOWS = frozenset(
     {"ament_export_targets", "ament_export_libraries", "ament_export_include_directories", "ament_export_dependencies"}
 )
-# Until Galactic all headers lay in one folder, so a header that is not exported is found all the same.
-_ONE_FOLDER = frozenset({"ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic"})
 
 
 def lacking(view: View, package: Package) -> Iterator[Hit]:
@@ -122,7 +121,7 @@ def _included(view: View, package: Package, reach: frozenset[str], exports, told
             continue
         told.add(name)
         workspace = any(p.name in view.workspace.packages for p in need.providers)
-        apart = view.target.distro not in _ONE_FOLDER or workspace
+        apart = view.target.distro not in ONE_FOLDER or workspace
         yield Hit(
             need.at,
             name,
