@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from ...model.cmake.links import exported_targets, found_with, package_of, public_links
 from ...model.view import View
 from ...model.workspace import Package
+from ...targets.version import at_least
 from ..rule import Hit
 from .find_targets import ONE_FOLDER
 
@@ -64,15 +65,21 @@ def _nothing(view: View, package: Package, exports) -> Iterator[Hit]:
     )
 
 
+# From this version on ament_target_dependencies() links targets where it linked libraries by their paths before.
+# Source: CHANGELOG.rst of ament_cmake_target_dependencies.
+_BY_TARGET = "0.9.0"
+
+
 def _passed_on(view: View, package: Package, reach: set[str], told: set[str]) -> Iterator[Hit]:
     """Packages that an exported target passes on, and that dependants are not told to find: CMake stops at a target of
     theirs."""
     found = {f.name.lower(): f for f in package.build.found}
+    by_target = at_least(view.target.version("ament_cmake_target_dependencies") or _BY_TARGET, _BY_TARGET)
     for target in exported_targets(package):
         if not view.certain(target.conditions):
             continue
         for link in public_links(target):
-            name = _named_by(link)
+            name = _named_by(link) if by_target or link.how != "ament" else ""
             known = found.get(name.lower())
             if known is None or known.name in told or known.name.lower() in reach or known.name == package.name:
                 continue
@@ -120,8 +127,9 @@ def _included(view: View, package: Package, reach: frozenset[str], exports, told
         if not name or name in told or name == package.name or need.providers[0].kind != "ros":
             continue
         told.add(name)
-        workspace = any(p.name in view.workspace.packages for p in need.providers)
-        apart = view.target.distro not in ONE_FOLDER or workspace
+        # What the distro does not bring lies in a folder of its own there too.
+        overlaid = name in view.workspace.packages or view.target.version(name) is None
+        apart = view.target.distro not in ONE_FOLDER or overlaid
         yield Hit(
             need.at,
             name,
