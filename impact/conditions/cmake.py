@@ -12,6 +12,14 @@ from .environment import PARTS, Environment, against, numbers_of, version_of
 from .logic import both, either, negation
 
 _CMAKE_TOKEN = re.compile(r'\s*(?:"((?:[^"\\]|\\.)*)"|([()])|((?:[^\s()"\\]|\\.)+))', re.DOTALL)
+# Environment variables that a shell, a build tool or the setup files of ROS set; any other is unset where nobody says
+# otherwise. Source: environ(7), cmake-env-variables(7), REP 149 and the setup files of ament and colcon.
+_USUALLY_SET = re.compile(
+    r"(?i)(?:HOME|PATH|USER|LOGNAME|PWD|OLDPWD|SHELL|TERM|LANG|LC_\w+|TMPDIR|HOSTNAME|DISPLAY|EDITOR|VIRTUAL_ENV|"
+    r"CC|CXX|FC|CPP|AR|LD|CFLAGS|CXXFLAGS|CPPFLAGS|LDFLAGS|DESTDIR|VERBOSE|PYTHONPATH|LD_LIBRARY_PATH|"
+    r"LIBRARY_PATH|CPATH|PKG_CONFIG_PATH|CI|(?:CMAKE|CTEST|ROS|RMW|AMENT|COLCON|CATKIN|RCUTILS|CCACHE|DEB|DPKG)_\w+|"
+    r"ProgramFiles\S*|\w*_PREFIX_PATH|\w*(?:VERBOSE|JOBS))\Z"
+)
 _REFERENCE = re.compile(r"\$(ENV)?\{([^{}$]*)\}")
 _TRUE = frozenset(("1", "ON", "YES", "TRUE", "Y"))
 _FALSE = frozenset(("0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND", ""))
@@ -153,6 +161,8 @@ class _CMake:
             environment = re.fullmatch(r"ENV\{(ROS_DISTRO|ROS_VERSION|ROS_PYTHON_VERSION)\}", argument)
             if environment or argument in ("CMAKE_VERSION", "PROJECT_NAME", "CMAKE_SYSTEM_NAME"):
                 return True
+            if argument.startswith("ENV{") and not _USUALLY_SET.match(argument[4:-1]):
+                return False
         return None
 
     def expand(self, text: str) -> str | None:
@@ -162,6 +172,8 @@ class _CMake:
         def replace(match: re.Match[str]) -> str:
             nonlocal unknown
             value = self.variable(match.group(2))
+            if value is None and match.group(1) and not _USUALLY_SET.match(match.group(2)):
+                return ""
             unknown |= value is None
             return value or ""
 

@@ -48,6 +48,7 @@ EXTRACTORS: dict[str, tuple[str, str]] = {
     "setup_py": ("setup", "SetupFile"),
     "setup_cfg": ("setup", "SetupFile"),
     "pyproject": ("setup", "SetupFile"),
+    "gitignore": ("gitignore", "IgnoreFile"),
     "script": ("", ""),
     "flow_cpp": ("flow_cpp", "FlowFile"),
     "flow_python": ("flow_python", "FlowFile"),
@@ -91,6 +92,7 @@ BY_NAME = {
     "setup.py": "setup_py",
     "setup.cfg": "setup_cfg",
     "pyproject.toml": "pyproject",
+    ".gitignore": "gitignore",
 }
 BY_ENDING = {
     "msg": "msg",
@@ -169,6 +171,7 @@ _BUDGETS = {
     **dict.fromkeys(("setup_py", "colcon_setup_py"), "python"),
     "colcon_cmake": "cmake",
     "shell": "script",
+    "gitignore": "script",
 }
 
 

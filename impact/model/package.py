@@ -488,11 +488,13 @@ class _Join:
         if not candidates:
             return None
         beside = posixpath.join(posixpath.dirname(includer), include)
-        if beside in self.cpp:
-            return beside
+        for path in (beside, f"{beside}.in"):
+            if path in self.cpp:
+                return path
         ending = "/" + include
         for path in candidates:
-            if path.endswith(ending) or path == include:
+            plain = path.removesuffix(".in")
+            if plain.endswith(ending) or plain == include:
                 return path
         return None
 

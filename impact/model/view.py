@@ -1134,7 +1134,7 @@ class View:
                 if testing or role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
                 else "build",
                 certain,
-                found.required or found.how == "catkin",
+                found.required or (found.how == "catkin" and not found.quiet),
             )
         for include in digest.includes:
             if not self.active(include.conditions):

@@ -8,6 +8,7 @@ workspace is made of the digests themselves: an edit that changes none of them c
 from __future__ import annotations
 
 import hashlib
+import itertools
 import posixpath
 import re
 from bisect import bisect_left
@@ -25,8 +26,10 @@ from ..facts.manifest import Manifest
 from ..source_keys import source_key
 from ..targets.surface.fields import snake
 from .cmake.build import Build
+from .cmake.installed import HEADER_NAME
 from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
+from .ignored import holds_ignored, is_ignored
 from .package import Digest, Watched, build_type_of, digest_of
 
 if TYPE_CHECKING:
@@ -153,7 +156,8 @@ class Workspace:
 
     @cached_property
     def generated_headers(self) -> dict[str, str]:
-        """Basename of headers made while building (parameters, protobuf, Qt forms, configure_file) to the package."""
+        """Basename of headers made while building (parameters, protobuf, Qt forms, configure_file, custom commands) to
+        the package."""
         found = {}
         for package in self:
             for item in package.build.generated:
@@ -162,6 +166,9 @@ class Workspace:
                 elif item.how == "protobuf":
                     for file in item.files:
                         found[posixpath.basename(file).replace(".proto", ".pb.h")] = package.name
+            for path in package.build.made:
+                if HEADER_NAME.search(path):
+                    found[posixpath.basename(path)] = package.name
             for path in package.digest.files:
                 name = posixpath.basename(path)
                 if name.endswith(".ui"):
@@ -441,6 +448,15 @@ def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, Digest | None]],
     return None if packed else digest, packed, head
 
 
+def _called(build: Build, declared: str) -> str:
+    """The build type of a package by what its CMake calls, where that is one of the two alone: a manifest often still
+    says what the package was ported from."""
+    catkin, ament = build.catkin_package is not None, build.ament_package is not None
+    if catkin == ament or declared not in ("catkin", "ament_cmake"):
+        return declared
+    return "catkin" if catkin else "ament_cmake"
+
+
 class _Linker:
     def __init__(self, tree, gathered: Gathered, discovered: Discovered, ros: int, watched: Watched, jobs: int):
         self.tree, self.gathered, self.discovered, self.ros, self.watched = tree, gathered, discovered, ros, watched
@@ -603,15 +619,18 @@ class _Linker:
             and (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
             else Build()
         )
+        ignored = tuple(self.ignored(place, build, read))
+        build = msgspec.structs.replace(build, made=(*build.made, *ignored)) if ignored else build
         if before is not None and build == before.build:
             return before, read
+        build_type = _called(build, build_type_of(manifest, self.ros))
         digest = digest_of(
             place.name or manifest.name,
             place.path,
             place.manifest_path,
             manifest,
             build,
-            build_type_of(manifest, self.ros),
+            build_type,
             gathered.kinds,
             files,
             gathered.facts,
@@ -621,6 +640,24 @@ class _Linker:
             self.home,
         )
         return digest, read
+
+    def ignored(self, place, build: Build, read: dict[str, str]) -> Iterator[str]:
+        """What the package installs and git ignores, so that it is there once it was made. read: as join() returns it,
+        completed by the files that tell."""
+        for install in build.installs:
+            for item in install.items if install.kind in ("files", "programs", "directory") else ():
+                path = posixpath.normpath(item)
+                if "$" in item or path.startswith(("/", "..")) or path in self.all_paths:
+                    continue
+                folders, rules = ["", *itertools.accumulate(path.split("/")[:-1], "{}/{}".format)], []
+                for folder in folders:
+                    file = f"{folder}/.gitignore" if folder else ".gitignore"
+                    if self.gathered.kinds.get(file) == "gitignore":
+                        read[file] = self.gathered.ids.get(file, "")
+                        facts = self.gathered.facts(file)
+                        rules.append((folder, facts.facts.patterns if facts is not None else ()))
+                if rules and (is_ignored(path, rules) or (install.kind == "directory" and holds_ignored(path, rules))):
+                    yield path
 
     def glob(self, place, files: list[str]):
         import fnmatch

@@ -46,7 +46,7 @@ NAMES = [
     ("cfg/Tune.cfg", "script"),
     ("scripts/run", "script"),
     ("LICENSE", None),
-    (".gitignore", None),
+    (".gitignore", "gitignore"),
     ("launch/a.launch", "launch_xml"),
     ("launch/a.launch.xml", "launch_xml"),
     ("launch/a_launch.xml", "launch_xml"),

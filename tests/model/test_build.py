@@ -1046,3 +1046,89 @@ def test_files_that_match_a_pattern(pattern, recurse, expected):
     find = _Linker.glob(None, None, FILES)  # type: ignore[arg-type]
     assert find(pattern, recurse) == expected
     assert find(pattern, recurse) == expected
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        'set_directory_properties(PROPERTIES COMPILE_OPTIONS "-Wall;-std=c++14")',
+        "set_property(DIRECTORY APPEND PROPERTY COMPILE_OPTIONS -std=c++14)",
+        'set_property(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} PROPERTY COMPILE_OPTIONS "-std=c++14")',
+    ],
+)
+def test_options_of_a_directory_count(source):
+    assert [number for number, _, _ in build(source).standards] == [14]
+
+
+@pytest.mark.parametrize(
+    ("source", "made"),
+    [
+        ("configure_file(a.in ${CMAKE_CURRENT_SOURCE_DIR}/a.yaml)", ["pkg/a.yaml"]),
+        ("configure_file(a.in a.yaml)", ["${CMAKE_BINARY_DIR}/a.yaml"]),
+        ("add_custom_command(OUTPUT a.h COMMAND run)", ["pkg/a.h", "${CMAKE_BINARY_DIR}/a.h"]),
+        ("file(WRITE ${CMAKE_CURRENT_SOURCE_DIR}/a.yaml x)", ["pkg/a.yaml"]),
+        ("file(MAKE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/data)", ["pkg/data/"]),
+        ("add_custom_command(OUTPUT ${CMAKE_CURRENT_SOURCE_DIR}/a.yaml COMMAND run)", ["pkg/a.yaml"]),
+        ("execute_process(COMMAND run -o ${CMAKE_CURRENT_SOURCE_DIR}/out)", ["pkg/out", "pkg/out/"]),
+        ("execute_process(COMMAND run ${CMAKE_CURRENT_SOURCE_DIR}/there.txt)", []),
+        ("catkin_download_test_data(x http://e/a.bag DESTINATION ${CMAKE_CURRENT_SOURCE_DIR}/test FILENAME a.bag)",
+         ["pkg/test/a.bag"]),
+    ],
+)  # fmt: skip
+def test_what_configuring_or_building_writes_into_the_tree(source, made):
+    assert list(build(source, {"pkg/there.txt": ""}).made) == made
+
+
+def test_sources_given_to_an_unknown_command_are_compiled():
+    source = "add_executable(known src/a.cpp)\nsome_nodelet(src/a.cpp src/b.cpp src/absent.cpp)\nroslint_cpp(src/c.cpp)"
+    files = {f"pkg/src/{name}.cpp": "" for name in "abc"}
+    assert {t.name: (t.kind, t.sources) for t in build(source, files).targets} == {
+        "known": ("executable", ("pkg/src/a.cpp",)),
+        "some_nodelet()": ("unknown", ("pkg/src/b.cpp",)),
+    }
+
+
+def test_a_find_module_of_the_tree_makes_its_targets_and_looks_for_nothing_on_behalf_of_the_package():
+    module = "FetchContent_MakeAvailable(arm)\nfind_package(Other REQUIRED)\nset(Arm_LIBRARIES arm)"
+    made = build(
+        "list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_SOURCE_DIR}/cmake)\nfind_package(Arm REQUIRED)\n"
+        "add_executable(x x.cpp)\ntarget_link_libraries(x ${Arm_LIBRARIES})",
+        {"pkg/cmake/FindArm.cmake": module},
+    )
+    assert [f.name for f in made.found] == ["Arm"]
+    assert {t.name: t.kind for t in made.targets} == {"arm": "fetched", "x": "executable"}
+    assert not made.uses or all(use.name != "Arm_LIBRARIES" for use in made.uses)
+
+
+def test_scripts_that_a_package_hands_on_are_read_for_what_they_find():
+    extras = 'include("${pkg_DIR}/generate.cmake")\nfind_package(rmw REQUIRED)\nadd_library(not_ours a.cpp)'
+    files = {
+        "pkg/pkg-extras.cmake.in": extras,
+        "pkg/cmake/generate.cmake": "ament_register_extension(point pkg later.cmake)\nfind_package(rcutils)",
+        "pkg/cmake/later.cmake": "find_package(tf2 REQUIRED)",
+    }
+    made = build("project(pkg)\nament_package(CONFIG_EXTRAS pkg-extras.cmake.in)", files)
+    assert sorted((f.name, f.required) for f in made.handed_on) == [("rcutils", False), ("rmw", True), ("tf2", True)]
+    assert (made.found, made.targets) == ((), ())
+
+
+def test_targets_before_catkin_package_are_in_the_order_of_the_run_and_of_its_own_branch():
+    source = (
+        "project(pkg)\nif(USE_ROSBUILD)\nrosbuild_add_library(old a.cpp)\nelse()\nadd_library(early a.cpp)\n"
+        "catkin_package()\nadd_library(late a.cpp)\nendif()"
+    )
+    assert build(source).before_catkin_package == ("early",)
+
+
+@pytest.mark.parametrize("name", ["pkg__rosidl_typesupport_introspection_cpp", "pkg__rosidl_generator_rs"])
+def test_every_type_support_of_generated_interfaces_is_a_target(name):
+    made = build(
+        f"rosidl_generate_interfaces(pkg msg/A.msg)\nif(TARGET {name})\nset(seen yes)\nendif()\n"
+        f"add_executable(${{seen}} a.cpp)\ntarget_link_libraries(yes {name})"
+    )
+    assert "yes" in [t.name for t in made.targets]
+
+
+def test_an_environment_variable_is_seen_through_a_variable():
+    source = "set(V $ENV{ROS_VERSION})\nif(V EQUAL 1)\nfind_package(catkin)\nendif()"
+    assert found(source) == ["catkin [$ENV{ROS_VERSION} EQUAL 1]"]

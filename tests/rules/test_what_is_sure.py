@@ -214,7 +214,7 @@ def test_a_stream_whose_header_nothing_brings(source, expected, tmp_path):
 @pytest.mark.parametrize(
     ("more", "expected"),
     [
-        ("", {"error"}),
+        ("", {"warning"}),
         ("include(ExternalProject)\nExternalProject_Add(rope GIT_REPOSITORY https://example.org/rope.git)\n", set()),
     ],
 )

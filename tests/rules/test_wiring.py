@@ -343,7 +343,7 @@ ROWS = {
         "humble",
         ament("sled", LIBRARY + "ament_export_libraries(sled)", sled_cpp="int f;\n"),
         ("sled/CMakeLists.txt", "ament_export_libraries(sled)", "ament_export_libraries(sledge)"),
-        ("error", "sledge"),
+        ("warning", "sledge"),
     ),
     "an exported library that catkin builds": Row(
         "missing-export",

@@ -62,7 +62,16 @@ def ament_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     held = run.get(f"{package_name(run)}_CONFIG_EXTRAS")
     extras = [*given.get("CONFIG_EXTRAS", []), *given.get("CONFIG_EXTRAS_POST", []), *(held.words if held else ())]
     for item in split_words(extras):
-        run.add_export(run.tree_path(item), "cfg_extras", item.at, run.under(item))
+        path = run.tree_path(item)
+        run.add_export(path, "cfg_extras", item.at, run.under(item))
+        run.hand_on(path, item.at)
+
+
+@handles("ament_register_extension")
+def ament_register_extension(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """ament_register_extension(point package file): in a script that is given to others, the file runs for them."""
+    if run.handing_on and len(args) >= 3:
+        run.hand_on(run.tree_path(args[2]), call.at)
 
 
 _ROSIDL = name_set(

@@ -77,7 +77,7 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     sources: paths relative to the workspace root when they can be told, else as written. guarded: of those, each that
     stands under conditions besides the target's own, with these. export_name: what it is called where it is exported,
     empty for its name. public_standard: the C++ standard that it asks of those who link it. installed_includes: folders
-    of the prefix that those search for headers, from $<INSTALL_INTERFACE:>.
+    of the prefix that those search for headers, from $<INSTALL_INTERFACE:>. static: an archive.
     """
 
     name: str
@@ -94,6 +94,7 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     export_name: str = ""
     public_standard: int = 0
     installed_includes: tuple[str, ...] = ()
+    static: bool = False
 
 
 class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -180,7 +181,10 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     for only where the compiler's default is lower. project_by_variable: its CMakeLists.txt calls targets after
     ${PROJECT_NAME} rather than by the project's name. macros: what is given to the compiler with -D. message_files:
     (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told. files: the CMake
-    files read, relative to the root."""
+    files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
+    a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
+    scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
+    they register). before_catkin_package: targets that are added before catkin_package() is called."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -203,6 +207,9 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     project_by_variable: bool = False
     standards: tuple[tuple[int, At, tuple[Condition, ...]], ...] = ()
     macros: tuple[Defined, ...] = ()
+    made: tuple[str, ...] = ()
+    handed_on: tuple[Found, ...] = ()
+    before_catkin_package: tuple[str, ...] = ()
 
 
 class Declared(msgspec.Struct, frozen=True, gc=False):

@@ -11,7 +11,7 @@ from .blocks import Call
 from .build import At, GeneratedInterfaces, Install
 from .interpreter import Interpreter, handles
 from .names import name_set
-from .targets import add_links, add_sources
+from .targets import add_links, add_sources, note_made
 from .values import Value, Word, sections, split_words, word
 
 _PACKAGE = name_set(
@@ -34,6 +34,12 @@ def catkin_package(run: Interpreter, call: Call, args: list[Word]) -> None:
     """catkin_package()."""
     if not run.silent:
         run.catkin_package = run.place(call.at)
+        opposite = {(held.text, not held.negated) for held in run.conditions}
+        run.before_catkin_package = tuple(
+            target.name
+            for target in run.targets.finish()
+            if not any((held.text, held.negated) in opposite for held in target.conditions)
+        )
     for keyword, items in sections(args, _PACKAGE).items():
         how = _PROMISES.get(keyword)
         if how is None:
@@ -44,6 +50,7 @@ def catkin_package(run: Interpreter, call: Call, args: list[Word]) -> None:
                 text = run.tree_path(item)
             elif how == "cfg_extras":
                 text = _extras_path(run, item)
+                run.hand_on(text, item.at)
             run.add_export(text, how, item.at, run.under(item))
     package = run.project or run.package
     run.set_unknown(f"{package}_EXPORTED_TARGETS", call.at)
@@ -180,9 +187,14 @@ def catkin_add_test(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 @handles("catkin_download_test_data", "catkin_download")
 def catkin_download(run: Interpreter, call: Call, args: list[Word]) -> None:
-    """catkin_download_test_data(): a custom target."""
-    if args:
-        run.new_target(args[0], "custom", args[0].at)
+    """catkin_download_test_data(): a custom target, and the file that it fetches."""
+    if not args:
+        return
+    run.new_target(args[0], "custom", args[0].at)
+    given = sections(args[1:], frozenset({"DESTINATION", "FILENAME", "MD5"}))
+    for folder in given.get("DESTINATION", []):
+        for name in given.get("FILENAME", []) or [word(posixpath.basename(args[-1]), call.at)]:
+            note_made(run, run.resolve(posixpath.join(folder, name)))
 
 
 @handles("catkin_add_env_hooks", "catkin_add_env_hooks_", "rosbuild_init", "rosbuild_genmsg", "rosbuild_gensrv")

@@ -64,6 +64,7 @@ class TargetDraft:
             self.export_name,
             self.public_standard,
             tuple(self.installed_includes),
+            self.installed_as == "static",
         )
 
     def add_source(self, path: str, conditions: tuple[Condition, ...]) -> None:
@@ -98,6 +99,7 @@ class Targets:
         elif kind != "unknown" and conditions != draft.conditions:
             # Made in both branches of an if: only what both have in common is a condition of the target.
             draft.conditions = tuple(held for held in draft.conditions if held in conditions)
+            draft.kind = "test" if kind == "test" else draft.kind
         return draft
 
     def finish(self) -> tuple[BuildTarget, ...]:

@@ -112,6 +112,8 @@ def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
                 conditions,
             )
         )
+    if not flags & {"CONFIG", "NO_MODULE"}:
+        _run_module(run, call, str(name))
     if required:
         found = Value((word("1", call.at),))
         run.assign(run.scope, f"{name}_FOUND", found)
@@ -121,6 +123,29 @@ def _find(run: Interpreter, call: Call, name: Word, rest: list[Word]) -> None:
     effect = _FINDING.get(name)
     if effect is not None:
         effect(run, call)
+
+
+def _run_module(run: Interpreter, call: Call, name: str) -> None:
+    """Runs the find module of the tree that answers, for the targets and commands that it makes. What it looks for is
+    its own affair, and its variables are set to what is not known."""
+    held = run.get("CMAKE_MODULE_PATH")
+    for directory in held.words if held is not None else ():
+        path = run.relative(run.resolve(f"{directory}/Find{name}.cmake")) if directory else None
+        if path is None or run.load(path) is None or path in run.including:
+            continue
+        before = run.scope
+        run.push(dict(before))
+        run.silent += 1
+        try:
+            run.run_file(path, call.at)
+            after = run.scope
+        finally:
+            run.silent -= 1
+            run.pop()
+        for variable, value in after.items():
+            if before.get(variable) is not value and not variable.startswith(("CMAKE_", "_")):
+                run.set_unknown(variable, call.at)
+        return
 
 
 @handles("gz_find_package", "ign_find_package")

@@ -7,6 +7,7 @@ variables is joined.
 from __future__ import annotations
 
 import posixpath
+import re
 from collections.abc import Callable, Iterable
 
 from msgspec import structs
@@ -59,6 +60,10 @@ class _TooMuch(Exception):
     """The package asks for more work than any real one."""
 
 
+SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
+# Commands that read sources and compile nothing.
+_NO_BUILDER = re.compile(r"lint|format|tidy|check|uncrustify|style|doc|translation|coverage|install|propert|package")
+
 # Commands that name targets of the package.
 _ON_TARGETS = frozenset({"add_dependencies", "add_executable", "add_library", "target_link_libraries"})
 
@@ -109,7 +114,10 @@ class Interpreter:
         self.exported: dict[str, str] = {}  # folder of CMake files -> the package it belongs to
         self.modules: set[str] = set()
         self.guarded: set[str] = set()
-        self.configured: dict[str, None] = {}
+        self.made: dict[str, None] = {}
+        self.handed_on: dict[Found, None] = {}
+        self.handing_on = False
+        self.passed: dict[str, tuple[At, dict[str, None]]] = {}  # sources given to commands that nothing defines
         self.automatic: list[TargetDraft] = []  # made by ament_auto_add_*()
 
         self.project = ""
@@ -125,6 +133,7 @@ class Interpreter:
         self.include_dirs: dict[tuple[str, At], None] = {}
         self.links: dict = {}
         self.catkin_package: At | None = None
+        self.before_catkin_package: tuple[str, ...] = ()
         self.ament_package: At | None = None
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}
@@ -190,6 +199,7 @@ class Interpreter:
 
     def result(self) -> Build:
         """What was collected."""
+        self.compile_passed()
         standard = None
         default_only = by_flag = False
         if self.standards:
@@ -219,6 +229,9 @@ class Interpreter:
             files=tuple(self.files),
             message_files=tuple(self.message_files),
             project_by_variable=self._project_by_variable(),
+            made=tuple(self.made),
+            handed_on=tuple(self.handed_on),
+            before_catkin_package=self.before_catkin_package,
         )
 
     def _project_by_variable(self) -> bool:
@@ -278,10 +291,31 @@ class Interpreter:
         if wrapper is not None:
             self.use_command(call)
             return wrapper(self, call, self.expand(call.templates)) or NORMAL
+        words = self.expand(call.templates)
         if name not in BUILTIN_COMMANDS:
             self.use_command(call)
-        self.expand(call.templates)
+            self.pass_sources(call, words)
         return NORMAL
+
+    def pass_sources(self, call: Call, words: list[Word]) -> None:
+        """Remembers the sources given to a command that nothing defines: it most likely builds them."""
+        if self.silent or _NO_BUILDER.search(call.name):
+            return
+        for item in words:
+            if item.endswith(SOURCES) and "$" not in item:
+                path = self.relative(self.resolve(item))
+                if path is not None and self.exists(path):
+                    self.passed.setdefault(call.name, (self.place(call.at), {}))[1][path] = None
+
+    def compile_passed(self) -> None:
+        """Gives these sources, where no target compiles them, to a target of which nothing else is known."""
+        compiled = {path for target in self.targets.finish() for path in target.sources}
+        for name, (at, paths) in self.passed.items():
+            left = [path for path in paths if path not in compiled]
+            if left:
+                draft = self.targets.make(f"{name}()", "unknown", at, ())
+                for path in left:
+                    draft.add_source(path, ())
 
     def spend(self, steps: int) -> None:
         """Counts work in units of one short command; the run ends when it is more than any real package asks for."""
@@ -453,7 +487,7 @@ class Interpreter:
         tokens: list[tests.Token] = []
         for template in head.templates:
             if template.kind == LITERAL:
-                tokens.extend(tests.Token(item, template.quoted, True, True) for item in template.words)
+                tokens.extend(self.literal_token(item, template.quoted) for item in template.words)
                 continue
             if template.kind == REFERENCE:
                 value = self.reference(template, head)
@@ -465,6 +499,14 @@ class Interpreter:
             for item in self.expand_one(template, head):
                 tokens.append(tests.Token(item, template.quoted, item.sure, False))
         return tokens
+
+    def literal_token(self, item: Word, quoted: bool) -> tests.Token:
+        """An argument of if() without a reference. A variable that holds an environment variable stands for it, which
+        is known on a target."""
+        held = None if quoted else self.lookup("", item)
+        if held is not None and not held.sure and len(held.words) == 1 and held.text.startswith("$ENV{"):
+            return tests.Token(held.text, False, False, False)
+        return tests.Token(item, quoted, True, True)
 
     def run_foreach(self, block: Block) -> int:
         """Runs a foreach() in any of its forms."""
@@ -687,9 +729,38 @@ class Interpreter:
             finally:
                 self.silent -= 1
 
+    def hand_on(self, path: str, at: At) -> None:
+        """Runs a script that the package gives to those who find it, for what it looks for. Its files lie in one folder
+        once they are installed, so that what it includes is known by its name."""
+        path = self.own_file(path) or path
+        if path in self.including or self.load(path) is None:
+            return
+        outer, targets, macros, made = self.handing_on, self.targets, self.macros, self.made
+        self.targets, self.macros, self.made = Targets(), {}, {}
+        self.handing_on = True
+        self.silent += 1
+        self.push(dict(self.scope))
+        folder = self.absolute(posixpath.dirname(path))
+        self.scope[f"{self.package}_DIR"] = Value((word(folder, at),))
+        self.exported[folder] = self.package
+        try:
+            self.run_file(path, at)
+        finally:
+            self.pop()
+            self.silent -= 1
+            self.handing_on, self.targets, self.macros, self.made = outer, targets, macros, made
+
+    def own_file(self, name: str) -> str | None:
+        """The CMake file of the package, or the template of one, that has a name once it is installed."""
+        base = posixpath.basename(name).removesuffix(".in")
+        files = self.glob(f"{self.package_path}/*.cmake*".lstrip("/"), True)
+        return next((file for file in files if posixpath.basename(file).removesuffix(".in") == base), None)
+
     def exported_file(self, name: str) -> str | None:
         """The file in the tree from which `<package>_DIR/name` is installed, for a package of the workspace."""
         base = posixpath.basename(name)
+        if self.handing_on and self.exported.get(posixpath.dirname(name)) == self.package:
+            return self.own_file(name)
         for path in self.extras(self.exported.get(posixpath.dirname(name), "")):
             if posixpath.basename(path) in (base, f"{base}.in", f"{base}.em"):
                 return path
@@ -848,7 +919,12 @@ class Interpreter:
 
     def is_target(self, name: str) -> bool | None:
         """True when the tree makes this target."""
-        return True if name in self.targets else None
+        return True if name in self.targets or self.is_typesupport(name) else None
+
+    def is_typesupport(self, name: str) -> bool:
+        """True for `T__x`, where rosidl generates interfaces as T: which x there are hangs on what is installed."""
+        base, separator, _ = name.partition("__")
+        return bool(separator) and any(made.how == "rosidl" and made.target == base for made in self.generated)
 
     def is_command(self, name: str) -> bool | None:
         """True when CMake or the tree defines this command."""
@@ -936,7 +1012,9 @@ class Interpreter:
 
     def add_found(self, found: Found) -> None:
         """Collects a package looked for."""
-        if not self.silent:
+        if self.handing_on:
+            self.handed_on[found] = None
+        elif not self.silent:
             self.found[structs.replace(found, via=self.via) if self.via else found] = None
 
     def add_install(self, install: Install) -> None:

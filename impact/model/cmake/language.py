@@ -6,11 +6,13 @@ import itertools
 import posixpath
 
 from .blocks import Call
+from .build import Found
 from .conditions import version_key
 from .interpreter import BREAK, CONTINUE, FATAL, RETURN, Interpreter, handles
 from .lists import integer, list_items
 from .names import MODULES, MODULES_WITH, name_set
 from .standard import note_variable
+from .targets import note_written
 from .values import (
     UNSET,
     Value,
@@ -103,6 +105,9 @@ def include(run: Interpreter, call: Call, args: list[Word]) -> None:
                 return
         add_module(run, str(name))
         if name in MODULES:
+            if name.startswith("Find") and not name.startswith("FindPackage"):
+                place = run.place(name.at)
+                run.add_found(Found(name.removeprefix("Find"), "find_package", place, conditions=run.under(name)))
             return
     if name.endswith("_USE_FILE}") or name.startswith("$ENV{ROS_ROOT}/core/rosbuild/"):
         return  # settings of a found package, or rosbuild itself, whose macros are known
@@ -283,6 +288,8 @@ def execute_process(run: Interpreter, call: Call, args: list[Word]) -> None:
     for keyword, name in itertools.pairwise(args):
         if keyword in _ANSWERS:
             run.set_unknown(name, call.at)
+        else:
+            note_written(run, name)
 
 
 _ANSWERS = name_set(
@@ -342,11 +349,6 @@ def get_property(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.assign(run.scope, str(args[0]), unsure(held))
     else:
         run.set_unknown(args[0], call.at)
-
-
-@handles("set_directory_properties")
-def set_directory_properties(run: Interpreter, call: Call, args: list[Word]) -> None:
-    """set_directory_properties() changes nothing that is collected."""
 
 
 def _property_key(command: str, args: list[Word]) -> str:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import posixpath
 
 from .blocks import Call
 from .interpreter import Interpreter, handles
+from .targets import note_made
 from .values import (
     MAX_WORDS,
     UNSET,
@@ -125,8 +127,22 @@ def file(run: Interpreter, call: Call, args: list[Word]) -> None:
         run.set(rest[1], [rest[0]])
     elif action == "REAL_PATH" and len(rest) >= 2:
         run.set_text(rest[1], run.resolve(rest[0]), call.at, rest[0].sure)
+    elif action in ("WRITE", "APPEND", "TOUCH", "DOWNLOAD", "MAKE_DIRECTORY", "GENERATE", "COPY"):
+        _write(run, action, rest)
     elif action in ("READ", "STRINGS", "TIMESTAMP", "SIZE", "READ_SYMLINK", "MD5", "SHA1", "SHA256") and len(rest) >= 2:
         run.set_unknown(rest[1], call.at)
+
+
+def _write(run: Interpreter, action: str, rest: list[Word]) -> None:
+    """The forms of file() that write into the tree."""
+    if action in ("TOUCH", "MAKE_DIRECTORY"):
+        written = rest
+    elif action in ("GENERATE", "COPY"):
+        written = [item for keyword, item in itertools.pairwise(rest) if keyword in ("OUTPUT", "DESTINATION")]
+    else:
+        written = rest[1:2] if action == "DOWNLOAD" else rest[:1]
+    for item in written:
+        note_made(run, run.resolve(item), folder=action in ("MAKE_DIRECTORY", "COPY"))
 
 
 def _glob(run: Interpreter, call: Call, recursive: bool, rest: list[Word]) -> None:
@@ -173,8 +189,7 @@ def aux_source_directory(run: Interpreter, call: Call, args: list[Word]) -> None
 
 @handles("configure_file")
 def configure_file(run: Interpreter, call: Call, args: list[Word]) -> None:
-    """configure_file(): a generated file, remembered so that it counts as existing in the build folder."""
+    """configure_file(): a generated file."""
     if len(args) >= 2:
         value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
-        made = run.resolve(args[1], value.text if value is not None else None)
-        run.configured[run.shown(made)] = None
+        note_made(run, run.resolve(args[1], value.text if value is not None else None))

@@ -8,8 +8,9 @@ from .blocks import Call
 from .build import GeneratedInterfaces, Link
 from .drafts import TargetDraft
 from .genex import reduced, rejoin
-from .interpreter import Interpreter, handles
+from .interpreter import BINARY, Interpreter, handles
 from .macros import note_flag, note_macro
+from .names import name_set
 from .standard import feature_standard, flag_standard, note_options
 from .values import Value, Word, following, position, split_words, word
 
@@ -102,7 +103,9 @@ def known(run: Interpreter, name: Word) -> TargetDraft:
         if followed is None or followed is draft or followed.kind == "alias":
             break
         draft = followed
-    return draft if draft is not None else run.new_target(name, "unknown", name.at)
+    if draft is not None:
+        return draft
+    return run.new_target(name, "generated" if run.is_typesupport(name) else "unknown", name.at)
 
 
 # The folders of the prefix that those who link a target search; spaces stand where a list was split.
@@ -187,6 +190,44 @@ def add_dependencies(run: Interpreter, call: Call, args: list[Word]) -> None:
         add_links(run, known(run, args[0]), split_words(args[1:]), "order")
 
 
+def note_made(run: Interpreter, path: str, *, folder: bool = False) -> None:
+    """Remembers a file, or a folder, that configuring or building writes into the tree or the build folder."""
+    place = run.relative(path) or (run.shown(path) if path.startswith(BINARY) else "")
+    if place:
+        run.made[f"{place}/" if folder else place] = None
+
+
+def note_written(run: Interpreter, item: Word) -> None:
+    """Remembers an argument of a program that names a path of the tree which does not exist: the program makes it."""
+    path = run.relative(item) if item.startswith("/") else None
+    if path and not run.path_exists(item, False):
+        run.made[path] = run.made[f"{path}/"] = None
+
+
+@handles("add_custom_command")
+def add_custom_command(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """add_custom_command(): its outputs are made by the build. What is not absolute lies in the build folder, but where
+    the command runs in the source folder its outputs are often written as if they lay there too."""
+    section = ""
+    for item in args:
+        if item in _OF_CUSTOM_COMMANDS:
+            section = str(item)
+        elif section in ("OUTPUT", "BYPRODUCTS"):
+            note_made(run, run.resolve(item))
+            if not item.startswith("/"):
+                note_made(run, run.resolve(item, run.scope["CMAKE_CURRENT_BINARY_DIR"].text))
+        else:
+            note_written(run, item)
+
+
+_OF_CUSTOM_COMMANDS = name_set(
+    """
+    OUTPUT BYPRODUCTS COMMAND MAIN_DEPENDENCY DEPENDS IMPLICIT_DEPENDS WORKING_DIRECTORY COMMENT DEPFILE JOB_POOL
+    VERBATIM APPEND USES_TERMINAL COMMAND_EXPAND_LISTS TARGET PRE_BUILD PRE_LINK POST_BUILD ARGS
+    """
+)
+
+
 @handles("add_custom_target")
 def add_custom_target(run: Interpreter, call: Call, args: list[Word]) -> None:
     """add_custom_target()."""
@@ -195,14 +236,18 @@ def add_custom_target(run: Interpreter, call: Call, args: list[Word]) -> None:
     draft = run.new_target(args[0], "custom", args[0].at)
     section = ""
     for item in args[1:]:
-        if item in ("DEPENDS", "SOURCES"):
+        if item in ("DEPENDS", "SOURCES", "BYPRODUCTS"):
             section = str(item)
-        elif item in ("COMMAND", "WORKING_DIRECTORY", "COMMENT", "BYPRODUCTS", "ALL", "VERBATIM", "USES_TERMINAL"):
+        elif item in ("COMMAND", "WORKING_DIRECTORY", "COMMENT", "ALL", "VERBATIM", "USES_TERMINAL"):
             section = ""
+        elif section == "BYPRODUCTS":
+            note_made(run, run.resolve(item))
         elif section == "DEPENDS" and "/" not in item and "." not in item:
             add_links(run, draft, [item], "order")
         elif section == "SOURCES":
             add_sources(run, draft, [item])
+        else:
+            note_written(run, item)
 
 
 @handles("target_compile_definitions")
@@ -255,9 +300,33 @@ def set_target_properties(run: Interpreter, call: Call, args: list[Word]) -> Non
                 set_target_property(run, name, key, value)
 
 
+@handles("set_directory_properties")
+def set_directory_properties(run: Interpreter, call: Call, args: list[Word]) -> None:
+    """set_directory_properties(PROPERTIES key value ...)."""
+    if "PROPERTIES" in args:
+        pairs = args[position(args, "PROPERTIES") + 1 :]
+        for key, value in zip(pairs[::2], pairs[1::2], strict=False):
+            set_directory_property(run, key, [value])
+
+
+def set_directory_property(run: Interpreter, key: str, values: list[Word]) -> None:
+    """Keeps what a property of the folder gives to every target in it."""
+    items = list(split_words(values))
+    if key == "COMPILE_OPTIONS":
+        note_options(run, items)
+        for item in items:
+            note_flag(run, item)
+    elif key == "COMPILE_DEFINITIONS":
+        for item in items:
+            note_macro(run, item, "")
+    elif key == "INCLUDE_DIRECTORIES" and not run.silent:
+        for item in items:
+            run.include_dirs[(run.tree_path(item), run.place(item.at))] = None
+
+
 @handles("set_property")
 def set_property(run: Interpreter, call: Call, args: list[Word]) -> None:
-    """set_property() on targets; others are remembered for get_property()."""
+    """set_property() on targets and folders; others are remembered for get_property()."""
     if "PROPERTY" not in args[:-1]:
         return
     split = position(args, "PROPERTY")
@@ -269,6 +338,8 @@ def set_property(run: Interpreter, call: Call, args: list[Word]) -> None:
                 set_target_property(run, name, key, value)
             run.assign(run.properties, f"TARGET {name} {key}", Value(tuple(values)))
         return
+    if args[0] == "DIRECTORY":
+        set_directory_property(run, key, values)
     owner = " ".join([args[0], *owners[:1], key])
     if "APPEND" in args[:split] and owner in run.properties:
         values = [*run.properties[owner].words, *values]
@@ -307,7 +378,7 @@ def generate_export_header(run: Interpreter, call: Call, args: list[Word]) -> No
     if args:
         base = following(args, "EXPORT_FILE_NAME") or f"{args[0].lower()}_export.h"
         value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
-        run.configured[run.shown(run.resolve(base, value.text if value is not None else None))] = None
+        note_made(run, run.resolve(base, value.text if value is not None else None))
 
 
 _QT_OPTIONS = frozenset({"OPTIONS", "TARGET", "DEPENDS"})

@@ -21,6 +21,7 @@ from ...facts.kinds import kind_of as kind_by_name
 from ...targets.surface.fields import snake
 from ...targets.surface.surface import BuildSurface, ExportedTarget, Header, LaunchFile, Plugin, Program
 from ..cmake.build import Install, for_tests
+from ..cmake.installed import HEADER_NAME, copied_files
 from ..flow.started import launch_kind
 from ..package import role_of_folder
 
@@ -40,8 +41,6 @@ def surface_of(workspace: Workspace, package: Package) -> BuildSurface:
     return _Surface(workspace, package).surface()
 
 
-# Names of headers, by their last part.
-_HEADER = re.compile(r"\.(?:h|hpp|hh|hxx|h\+\+|ipp|tpp|tcc|txx|inl|impl|cuh)\Z")
 _CONFIGURATION = re.compile(r"(.+?)(?:-config|Config)\.cmake(?:\.in)?\Z")
 _LIBRARIES = frozenset(("library", "interface", "module", "imported", "generated", "external"))
 # Where files that are made while building lie.
@@ -254,14 +253,14 @@ class _Surface:
         for install in self.installs:
             destination = posixpath.normpath(install.destination.replace("${CMAKE_INSTALL_INCLUDEDIR}", "include"))
             if "$" in destination and install.kind in ("files", "directory"):
-                if any(_HEADER.search(item) or item.rstrip("/").endswith("include") for item in install.items):
+                if any(HEADER_NAME.search(item) or item.rstrip("/").endswith("include") for item in install.items):
                     self.note("headers", f"`{install.destination}` is where they go")
                 continue
             if not f"{destination}/".startswith("include/") or install.kind not in ("files", "directory", "programs"):
                 continue
             sure = not install.conditions
             for source, installed in self.copied(install, destination):
-                if _HEADER.search(installed):
+                if HEADER_NAME.search(installed):
                     include, certain = _below(installed, roots)
                     yield Header(include, installed, source, sure and certain)
         yield from self.generated_headers(roots)
@@ -269,22 +268,13 @@ class _Surface:
     def copied(self, install: Install, destination: str) -> Iterator[tuple[str, str]]:
         """(source, path in the prefix) of the files that an install rule copies."""
         for item in install.items:
-            if install.kind != "directory":
-                if "$" in item and not item.startswith(_BUILT):
-                    self.note("headers" if destination.startswith("include") else "launches", f"`{item}` is installed")
-                    continue
-                name = install.rename or posixpath.basename(item)
-                yield "" if item.startswith(_BUILT) else self.inside(item), f"{destination}/{name}"
-                continue
-            if "$" in item:
+            made = install.kind != "directory" and item.startswith(_BUILT)
+            if made:
+                yield "", f"{destination}/{install.rename or posixpath.basename(item)}"
+            elif "$" in item:
                 self.note("headers" if destination.startswith("include") else "launches", f"`{item}` is installed")
-                continue
-            folder = item.rstrip("/")
-            base = "" if folder in ("", ".") else f"{folder}/"
-            top = destination if item.endswith("/") or not folder else f"{destination}/{posixpath.basename(folder)}"
-            for path in self.package.digest.files:
-                if path.startswith(base) and _let_in(install, path[len(base) :]):
-                    yield self.inside(path), f"{top}/{path[len(base) :]}"
+        for path, installed in copied_files(install, destination, self.package.digest.files):
+            yield self.inside(path), installed
 
     def generated_headers(self, roots: list[str]) -> Iterator[Header]:
         for made in self.generated:
@@ -429,26 +419,6 @@ def _below(installed: str, roots: list[str]) -> tuple[str, bool]:
     rests = [installed[len(root) + 1 :] for root in roots if installed.startswith(f"{root}/")]
     chosen = next((rest for rest in rests if "/" in rest), rests[-1] if rests else installed)
     return chosen, not rests or chosen == rests[0]
-
-
-def _let_in(install: Install, inside: str) -> bool:
-    """Whether the patterns of install(DIRECTORY) let a file in; they are for names, or folders above them."""
-    let_in = not install.only
-    parts = inside.split("/")
-    for pattern in install.patterns:
-        text = pattern.lstrip("!")
-        if text.startswith("~"):
-            try:
-                # CMake's regular expressions are close to Python's; they are matched against the whole path.
-                hit = re.search(text[1:], f"/{inside}") is not None
-            except re.error:
-                continue
-        else:
-            hit = any(fnmatch.fnmatchcase(part, text) for part in parts) or fnmatch.fnmatchcase(inside, f"*{text}")
-        if hit and pattern.startswith("!"):
-            return False
-        let_in = let_in or hit
-    return let_in
 
 
 def _once(items: Iterable[str]) -> tuple[str, ...]:

@@ -67,13 +67,14 @@ def library_component(view: View):
                     )
                 if gone:
                     sure = found.required and view.certain(found.conditions)
+                    optional = found.quiet and not found.required
                     yield Hit(
                         at,
                         name,
                         f"{found.name} {gone.version} has no component `{name}`",
                         gone.help,
                         package.name,
-                        severity="error" if sure else "warning",
+                        severity="error" if sure else "note" if optional else "warning",
                     )
         yield from _old_qt(view, package)
         yield from _linked(view, package, asked)

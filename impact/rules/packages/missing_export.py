@@ -1,18 +1,20 @@
 """missing-export: dependants of the package will miss something that it promises or that its headers need.
 
 What it does
-    Compares what a package exports with what is there: include directories and libraries that do not exist, system
-    libraries exported under a name whose variables nobody sets, packages that installed headers include and that are
-    not exported, and include directories of its own headers or of system libraries off the compiler's path.
+    Compares what a package exports with what is there and with what dependants need: include directories and libraries
+    that do not exist or are not installed, system libraries exported under a name whose variables nobody sets, packages
+    that installed headers include or that an exported target links publicly and that are not exported (in catkin:
+    packages of which its messages are made), components of these that dependants do not ask for, and include
+    directories of its own headers or of system libraries off the compiler's path.
 
 Why it breaks
     The package builds, and every package that depends on it fails: the header's own includes are not found, or the
     exported configuration names a library that was never built.
 
 Severity
-    error where the package's own configuration stops (an include directory that does not exist), or that of whoever
-    looks for the package (a library that is never built); warning where a dependant of the workspace, or
-    an exported target or library, needs what is missing; note otherwise, and for all but the first few of a package.
+    error where the package's own configuration stops (an include directory that does not exist), and for a library of
+    its own that catkin_package() exports and no command makes; warning where a dependant of the workspace, or an
+    exported target or library, needs what is missing; note otherwise.
 
 Example
     ament_export_dependencies(rclcpp)           # and include/p/p.hpp includes angles/angles.h
@@ -26,13 +28,12 @@ Not reported
 """
 
 import posixpath
-import re
 
+from ...model.cmake.links import found_with
 from ...model.view import View
 from ...targets.providers.library import variables
 from ..rule import Hit, rule
-from .missing_find_package import found_names
-from .undeclared_package import LOUD, WITH_CLIENT, WITH_TESTS
+from .exports_ament import lacking
 
 
 @rule(severity="warning")
@@ -43,8 +44,9 @@ def missing_export(view: View):
         yield from _directories(view, package)
         if package.build.catkin_package is not None:
             yield from _catkin(view, package)
+            yield from _message_packages(view, package)
         if package.build.ament_package is not None:
-            yield from _ament(view, package)
+            yield from lacking(view, package)
 
 
 def _directories(view: View, package):
@@ -122,202 +124,23 @@ def _sets(package, stem: str) -> bool:
     return False
 
 
-def _ament(view: View, package):
+def _message_packages(view: View, package):
+    """Packages of messages that the package's own are made of, and that catkin_package() does not hand on."""
     exports = [e for e in package.build.exports if view.active(e.conditions)]
-    hows = {e.how for e in exports}
-    if not hows & {
-        "ament_export_targets",
-        "ament_export_libraries",
-        "ament_export_include_directories",
-        "ament_export_dependencies",
-    }:
-        if package.digest.public_headers and not any(f.how == "ament_auto" for f in package.build.found):
-            libraries = [
-                t for t in package.build.targets if t.kind in ("library", "interface") and t.name in _installed(package)
-            ]
-            if libraries and any("/include/" in f"/{h}" for h in package.digest.public_headers):
-                first = package.build.ament_package
-                # Plugins of a base class of its own: it is there for others to include.
-                own_base = any(e.how == "plugin_description" and e.context == package.name for e in exports)
-                if package.name not in view.workspace.includers and not own_base:
-                    return
+    named = {e.item for e in exports if e.how in ("catkin_depends", "system_depends")}
+    if any("$" in name for name in named):
+        return
+    reach = found_with(view, named)
+    for made in package.build.generated:
+        if made.how != "catkin" or not made.offered or not view.certain(made.conditions):
+            continue
+        for name, at in made.dependencies:
+            if "$" not in name and name not in reach and name != package.name:
+                reach |= {name}
                 yield Hit(
-                    first,
-                    "ament_export_include_directories",
-                    f"`{package.name}` installs headers and exports neither them nor a target",
-                    "call ament_export_targets or ament_export_include_directories",
+                    at,
+                    name,
+                    f"messages are made of those of `{name}`, and `{name}` is not in CATKIN_DEPENDS",
+                    f"add `{name}` to CATKIN_DEPENDS of catkin_package()",
                     package.name,
                 )
-        return
-    if any(f.how == "ament_auto" for f in package.build.found) or any(
-        "$" in e.item for e in exports if e.how == "ament_export_dependencies"
-    ):
-        return
-    yield from _linked(view, package, exports)
-    yield from _never_built(view, package, exports)
-    yield from _components(view, package, exports)
-    exported = set()
-    for export in exports:
-        if export.how == "ament_export_dependencies":
-            exported.add(export.item)
-            exported.update(p.name for p in view.cmake(export.item))
-    reach = view.spread(exported)
-    yield from _off_path(view, package, exports, reach)
-    found = found_names(view, package) or set()
-    told = set()
-    # Until Galactic all headers lay in one folder, so a missing export went unnoticed.
-    apart = view.target.distro not in ("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic")
-    includers = view.workspace.includers.get(package.name)
-    spoken = 0
-    for need in view.weighed(package):
-        if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, reach):
-            continue
-        if need.subject.startswith(WITH_TESTS):
-            continue
-        name = next((p.name for p in need.providers if p.name in found), None)
-        if name is None or name in told or name == package.name or need.providers[0].kind != "ros":
-            continue
-        told.add(name)
-        severity = (
-            "warning"
-            if apart
-            and name not in WITH_CLIENT
-            and (includers or "ament_export_libraries" in hows or "ament_export_targets" in hows)
-            else "note"
-        )
-        # A package that exports little is told so by the first few; the rest follow as notes.
-        spoken += severity == "warning"
-        severity = severity if spoken <= LOUD else "note"
-        yield Hit(
-            need.at,
-            name,
-            f"an installed header includes `{need.subject}` and `{name}` is not exported",
-            f"add `{name}` to ament_export_dependencies",
-            package.name,
-            severity=severity,
-        )
-
-
-# System libraries whose headers lie in a folder of their own that the compiler does not search by itself.
-_OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "libpcl-dev", "libogre-dev", "libxml2"})
-
-
-def _off_path(view: View, package, exports, reach):
-    """Header-only packages that leave the include folder of a system library out."""
-    if any(e.how == "cfg_extras" for e in exports) or _installed(package):
-        return
-    told = set()
-    for need in view.weighed(package):
-        name = need.providers[0].name
-        if need.how != "include" or not need.public or not need.certain or name not in _OFF_PATH or name in told:
-            continue
-        if view.answered(need.providers, reach) or any("$" in e.item for e in exports if "include" in e.how):
-            continue
-        told.add(name)
-        yield Hit(
-            need.at,
-            name,
-            f"an installed header includes `{need.subject}` and the include folder of `{name}` is not exported",
-            "export its package, or its include directories",
-            package.name,
-            severity="warning",
-        )
-
-
-def _components(view: View, package, exports):
-    """Compiled parts of Boost that an exported target passes on: the find_package(Boost) of ament_export_dependencies
-    defines no targets for them."""
-    if not any(e.how == "ament_export_targets" for e in exports) or any(e.how == "cfg_extras" for e in exports):
-        return
-    if not any(e.how == "ament_export_dependencies" and e.item == "Boost" for e in exports):
-        return
-    asked = {name for f in package.build.found if f.name == "Boost" for name, _ in f.components} - _HEADERS_ALONE
-    installed = _installed(package)
-    for target in package.build.targets:
-        if target.name not in installed or target.kind != "library" or not view.certain(target.conditions):
-            continue
-        for link in target.links:
-            head, _, rest = link.item.partition("::")
-            if head != "Boost" or link.visibility == "PRIVATE" or link.how not in ("link", "ament"):
-                continue
-            names = {rest} & asked if rest else asked if link.how == "ament" else set()
-            if not names:
-                continue
-            yield Hit(
-                link.at,
-                "Boost",
-                f"`{target.name}` passes `Boost::{min(names)}` on, and dependants find Boost without components",
-                "find it with its components in a file given to ament_package(CONFIG_EXTRAS ...)",
-                package.name,
-            )
-            return
-
-
-_HEADERS_ALONE = frozenset({"boost", "headers"})
-
-
-def _never_built(view: View, package, exports):
-    """ament_export_libraries() of what no command makes: find_package(this package) stops when it looks for it."""
-    names = {n for t in package.build.targets for n in (t.name, t.output_name) if t.kind != "unknown"}
-    if package.build.unresolved or any("$" in name for name in names):
-        return
-    if any(t.kind in ("external", "fetched") for t in package.build.targets):
-        return  # another build system makes libraries of its own
-    for export in exports:
-        item = export.item
-        if export.how != "ament_export_libraries" or item in names or re.search(r"[$/.:]|^-", item):
-            continue
-        if not view.certain(export.conditions) or (view.cmake(item) and item != package.name):
-            continue
-        yield Hit(
-            export.at,
-            item,
-            f"the exported library `{item}` is never built, so find_package({package.name}) stops",
-            "export what the package builds, or drop it",
-            package.name,
-            severity="error",
-        )
-
-
-def _installed(package) -> set[str]:
-    return {item for rule_ in package.build.installs if rule_.kind == "targets" for item in rule_.items}
-
-
-def _linked(view: View, package, exports):
-    """Imported targets that an exported library passes on, and whose package dependants are not told to find."""
-    if not any(e.how == "ament_export_targets" for e in exports):
-        return
-    names = {e.item.lower() for e in exports if e.how == "ament_export_dependencies"}
-    reach = {name.lower() for name in view.spread(e.item for e in exports if e.how == "ament_export_dependencies")}
-    found = {f.name.lower(): f for f in package.build.found}
-    installed = _installed(package)
-    extras = any(e.how == "cfg_extras" for e in exports)
-    told = set()
-    for target in package.build.targets:
-        if (
-            target.name not in installed
-            or target.kind not in ("library", "interface")
-            or not view.certain(target.conditions)
-        ):
-            continue
-        for link in target.links:
-            head, _, rest = link.item.partition("::")
-            known = found.get(head.lower())
-            if link.how != "link" or not rest or "$" in link.item or link.visibility == "PRIVATE" or known is None:
-                continue
-            if (
-                head.lower() in names
-                or head.lower() in reach
-                or head in told
-                or extras
-                or head in view.workspace.packages
-            ):
-                continue
-            told.add(head)
-            yield Hit(
-                link.at,
-                known.name,
-                f"`{target.name}` passes `{link.item}` on and `{known.name}` is not exported",
-                f"add `{known.name}` to ament_export_dependencies",
-                package.name,
-            )

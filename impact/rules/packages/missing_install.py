@@ -31,6 +31,7 @@ import posixpath
 import re
 
 from ...model.cmake.build import At
+from ...model.cmake.installed import lets_in
 from ...model.view import View
 from ..rule import Hit, rule
 
@@ -70,7 +71,15 @@ def _referred(view: View) -> dict[str, dict[str, set[str]]]:
     return found
 
 
+def _is_made(made: frozenset[str], path: str, kind: str) -> bool:
+    """True for a path that configuring or building writes, or that holds such ones; made: as Build.made."""
+    if path in made or any(item.endswith("/") and f"{path}/".startswith(item) for item in made):
+        return True
+    return kind == "directory" and any(item.startswith(f"{path}/") for item in made)
+
+
 def _absent(view: View, package, installs):
+    made = frozenset(package.build.made)
     for install in installs:
         if install.kind not in ("files", "programs", "directory") or not view.certain(install.conditions):
             continue
@@ -93,6 +102,8 @@ def _absent(view: View, package, installs):
             ):
                 continue  # made by the build, or a folder that git cannot keep while it is empty
             if path + ".in" in package.files or (install.kind == "files" and "." in path and _made(package, path)):
+                continue
+            if _is_made(made, path, install.kind):
                 continue
             inside = path[len(package.path) :].lstrip("/")
             yield Hit(
@@ -331,7 +342,8 @@ def _covered(package, installs, path: str) -> bool:
             item = posixpath.normpath(item.rstrip("/")) if item.rstrip("/") else ""
             if path == item:
                 return True
-            if install.kind == "directory" and (item in ("", ".", package.path) or path.startswith(item + "/")):
+            base = "" if item in ("", ".") else f"{item}/"
+            if install.kind == "directory" and path.startswith(base) and lets_in(install, path[len(base) :]):
                 return True
             if install.kind == "python" and (path.startswith(item + "/") or not item):
                 return True

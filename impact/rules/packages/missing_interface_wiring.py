@@ -138,7 +138,9 @@ def _catkin_generation(view: View, package):
     if not generated:
         return
     found = {f.name for f in package.build.found}
-    if "message_generation" not in found and "genmsg" not in found:
+    if found & _GENERATORS or _GENERATORS & view.spread(found & {"genmsg"}):
+        return  # genmsg looks for every generator that is installed
+    if "message_generation" not in found:
         through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.spread([f])), "")
         yield Hit(
             generated[0].at,
@@ -147,8 +149,12 @@ def _catkin_generation(view: View, package):
             + (f", but for `{through}` that brings it" if through else ""),
             "add `message_generation` to find_package(catkin REQUIRED COMPONENTS ...)",
             package.name,
-            severity="warning" if through or view.blind(package) else "error",
+            severity="warning" if through or "genmsg" in found or view.blind(package) else "error",
         )
+
+
+# The packages that message_generation brings: each makes messages for one language.
+_GENERATORS = frozenset({"gencpp", "genpy", "genlisp", "geneus", "gennodejs"})
 
 
 def _orders(package) -> dict[str, set[str]]:

@@ -24,7 +24,9 @@ Not reported
     Names that anybody is known to provide, that some distro has released, or that no declared name resembles.
 """
 
-from ...model.misspelling import Names
+import re
+
+from ...model.misspelling import Names, one_edit
 from ...model.view import View
 from ...targets.providers.library import not_answering, variables
 from ..fix_actions import Replace
@@ -149,6 +151,24 @@ def _run_together(name: str, names) -> tuple[str, str] | None:
     return None
 
 
+def _is_slip(stem: str, name: str) -> bool:
+    """True when the stem of a variable is a letter or an underscore away from a package's name; a library's variables
+    often have another number or other separators in them than its name."""
+    letters = re.sub(r"[\W_\d]", "", name)
+    return (
+        len(letters) > 4
+        and one_edit(stem, name)
+        and stem.lower() != name.lower()
+        and re.sub(r"\D", "", stem) == re.sub(r"\D", "", name)
+        and (len(stem) > len(name) or re.sub(r"[\W_]", "", stem) != re.sub(r"[\W_]", "", name))
+    )
+
+
+def _set_by_hand(package) -> set[str]:
+    """Variables that calls other than find_package() name the beginning of."""
+    return {f"{f.prefix}{suffix}" for f in package.build.found if f.prefix for suffix in _SUFFIXES}
+
+
 def _variables(view: View, package, found):
     """Variables that only differ in case from what a find_package of the package sets."""
     folded = {name.lower(): name for name in found}
@@ -161,6 +181,18 @@ def _variables(view: View, package, found):
                 stem = use.name[: -len(suffix)]
                 break
         else:
+            continue
+        meant = next((name for name in found if name.isidentifier() and _is_slip(stem, name)), None)
+        if meant is not None and not view.cmake(stem) and use.name not in _set_by_hand(package):
+            told.add(use.name)
+            yield Hit(
+                use.at,
+                use.name,
+                f"nothing sets `{use.name}`; find_package({meant}) is called",
+                f"write `${{{meant}{suffix}}}`",
+                package.name,
+                fix=(Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", f"${{{meant}{suffix}}}"),),
+            )
             continue
         if stem.lower() not in folded or (stem in found and variables(stem) is None):
             continue
@@ -177,7 +209,7 @@ def _variables(view: View, package, found):
             )
         if right is not None:
             told.add(use.name)
-            if any(use.name == f"{f.prefix}{suffix}" for f in package.build.found if f.prefix):
+            if use.name in _set_by_hand(package):
                 continue
             yield Hit(
                 use.at,

@@ -24,7 +24,7 @@ def unlinked(view: View, package) -> Iterator[Hit]:
     found = {f.name for f in build.found}
     if any("$" in name for name in found):
         return
-    exported = _Exported(view)
+    exported = Exported(view)
     targets = {t.name: t for t in build.targets}
     includes: dict[str, list[IncludeUse]] = {}
     for include in package.digest.includes:
@@ -35,13 +35,13 @@ def unlinked(view: View, package) -> Iterator[Hit]:
     for target in build.targets:
         if target.kind != "executable" or for_tests(target.conditions) or not view.certain(target.conditions):
             continue
-        linked = _linked(package, targets, target)
+        linked = linked_items(package, targets, target)
         if linked is None:
             continue
-        brought = exported.closure(_packages(view, package, linked))
+        brought = exported.closure(linked_packages(view, package, linked))
         if brought is None:
             continue
-        words = [_plain(item) for item in linked]
+        words = [plain(item) for item in linked]
         for include in includes.get(target.name, ()):
             if not include.path.startswith(_COMPILED) or include.at.path not in target.sources:
                 continue  # a header may be included for what another source uses
@@ -52,7 +52,7 @@ def unlinked(view: View, package) -> Iterator[Hit]:
             if name in brought or name in told or name == package.name:
                 continue
             libraries = exported.libraries(name)
-            if not libraries or any(_plain(lib) in word for lib in (*libraries, name) for word in words):
+            if not libraries or any(plain(lib) in word for lib in (*libraries, name) for word in words):
                 continue
             told.add(name)
             yield Hit(
@@ -123,18 +123,18 @@ def unlinked_opencv(view: View, package) -> Iterator[Hit]:
     ]
     if not calls or any("$" in f.name for f in build.found):
         return
-    exported = _Exported(view)
+    exported = Exported(view)
     targets = {t.name: t for t in build.targets}
     for target in build.targets:
         if target.kind != "executable" or for_tests(target.conditions) or not view.certain(target.conditions):
             continue
-        linked = _linked(package, targets, target)
+        linked = linked_items(package, targets, target)
         if linked is None or any("opencv" in item.lower() for item in linked):
             continue
-        if not all(_stem(item) in _OF_THEIR_OWN or view.is_package(_stem(item)) for item in linked if "$" in item):
+        if not all(stem_of(item) in BRING_NOTHING or view.is_package(stem_of(item)) for item in linked if "$" in item):
             continue
         call = next((use for use in calls if use.at.path in target.sources), None)
-        brought = exported.closure(_packages(view, package, linked)) if call is not None else None
+        brought = exported.closure(linked_packages(view, package, linked)) if call is not None else None
         if call is None or brought is None:
             continue
         bringing = {name for name in brought if name != "OpenCV" and exported.may_bring(name, "opencv")}
@@ -158,13 +158,13 @@ def lacks_boost(view: View, package, target: BuildTarget, component: str) -> boo
     catkin = package.build_type == "catkin" and view.target.ros == 1
     if not catkin or component not in _NOT_OF_THE_CORE or target.kind != "executable" or package.build.unresolved:
         return False
-    linked = _linked(package, {t.name: t for t in package.build.targets}, target)
+    linked = linked_items(package, {t.name: t for t in package.build.targets}, target)
     if linked is None or any("$" in f.name for f in package.build.found):
         return False
-    if not all(_stem(item) in _OF_THEIR_OWN or view.is_package(_stem(item)) for item in linked if "$" in item):
+    if not all(stem_of(item) in BRING_NOTHING or view.is_package(stem_of(item)) for item in linked if "$" in item):
         return False
-    exported = _Exported(view)
-    brought = exported.closure(_packages(view, package, linked))
+    exported = Exported(view)
+    brought = exported.closure(linked_packages(view, package, linked))
     return brought is not None and all(
         name in _WITH_BOOST_OF_THE_CORE or not exported.may_bring(name, "boost") for name in brought
     )
@@ -180,7 +180,7 @@ _WITH_BOOST_OF_THE_CORE = frozenset(
     ]
 )  # fmt: skip
 # What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along.
-_OF_THEIR_OWN = frozenset(
+BRING_NOTHING = frozenset(
     [
         "catkin", "Boost", "Eigen", "Eigen3", "EIGEN", "EIGEN3", "orocos_kdl", "console_bridge", "urdfdom",
         "urdfdom_headers", "TinyXML", "TinyXML2", "tinyxml", "tinyxml2", "Poco", "log4cxx", "LOG4CXX", "Bullet",
@@ -191,7 +191,7 @@ _OF_THEIR_OWN = frozenset(
 _WITH_ALL_OF_OPENCV = frozenset({"groovy", "hydro", "indigo", "jade"})
 
 
-class _Exported:
+class Exported:
     """What catkin packages hand on to whoever links them."""
 
     def __init__(self, view: View):
@@ -213,7 +213,7 @@ class _Exported:
             return any("$" in item or library in item.lower() for item in given)
         offer = self._view.offers.package(name)
         if offer is None:
-            return name not in _OF_THEIR_OWN and not _INTERFACES.search(name) and name not in _BARE
+            return name not in BRING_NOTHING and not _INTERFACES.search(name) and name not in _BARE
         given = (*offer.build.system, *offer.build.libraries, *(why for _, why in offer.build.unknown))
         return any(library in item.lower() for item in given)
 
@@ -250,7 +250,7 @@ _INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
 _BARE = frozenset({"message_runtime", "message_generation"})
 
 
-def _linked(package, targets: dict[str, BuildTarget], program: BuildTarget) -> set[str] | None:
+def linked_items(package, targets: dict[str, BuildTarget], program: BuildTarget) -> set[str] | None:
     """All that a program is linked to, itself and through libraries of its package; None where that cannot be told."""
     items = {link.item for link in package.build.links}
     seen: set[str] = set()
@@ -265,7 +265,7 @@ def _linked(package, targets: dict[str, BuildTarget], program: BuildTarget) -> s
         if target.alias_of:
             waiting.append(target.alias_of)
         for link in target.links:
-            if link.how == "link":
+            if link.how in ("link", "ament"):
                 items.add(link.item)
                 waiting.append(link.item)
     if any("$" in item and not _VARIABLE.fullmatch(item) for item in items):
@@ -276,19 +276,19 @@ def _linked(package, targets: dict[str, BuildTarget], program: BuildTarget) -> s
 _VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
 
 
-def _packages(view: View, package, items: Iterable[str]) -> set[str]:
+def linked_packages(view: View, package, items: Iterable[str]) -> set[str]:
     """The packages that link items stand for."""
-    names = {_stem(item) for item in items}
+    names = {stem_of(item).partition("::")[0] for item in items}
     if "catkin" in names:
         names.update(f.name for f in package.build.found if f.how == "catkin")
     return {name for name in names if view.is_package(name)} - {package.name, "catkin"}
 
 
-def _stem(item: str) -> str:
+def stem_of(item: str) -> str:
     """`tf` of `${tf_LIBRARIES}`; any other item itself."""
     match = _VARIABLE.fullmatch(item)
     return match.group(1) if match else item
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", name.lower())

@@ -24,6 +24,7 @@ Not reported
     compiler's default is below what they ask for: CMake then writes the higher one behind it.
 """
 
+from ...model.cmake.links import standards_asked
 from ...model.view import View
 from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
 from ...targets.providers.standard import HEADER_SINCE
@@ -60,7 +61,7 @@ def _ros1(view: View, package, default: int | None):
     # Qt's targets ask for C++11 themselves, as Qt does since 5.7 (its release notes).
     raised = at_least(view.target.library("qt") or "5.7", "5.7")
     sure = bool(fixed) or not (raised and any(f.name.startswith(("Qt5", "Qt6")) for f in package.build.found))
-    standards = {t.name: standard_year(t.standard) for t in package.build.targets if t.standard}
+    standards = standards_asked(view, package)
     for include in package.digest.includes:
         have = max([year, *(standards[t] for t in include.targets if t in standards)])
         if have >= 2020 or include.role != "build" or not include.targets or not view.certain(include.conditions):
@@ -93,7 +94,7 @@ def _ros2(view: View, package, default: int | None):
     if not fixed or not package.build.standard_by_flag or default is None:
         return
     have = standard_year(fixed[0])
-    standards = {t.name: standard_year(t.standard) for t in package.build.targets if t.standard}
+    standards = standards_asked(view, package)
     newest = view.newest
     for include in package.digest.includes:
         if include.role != "build" or not include.targets or not view.certain(include.conditions):

@@ -203,6 +203,16 @@ class Machine:
         found = self._find(header)
         return None if found is None else found.includes
 
+    def always_included(self, header: str) -> tuple[str, ...]:
+        """What a header of a ROS package includes under no condition; nothing where that is not known."""
+        for package in self.surfaces.holders(header):
+            stored = self._standing_for(package)
+            written = stored[0].written(header, stored[1]) if stored is not None else None
+            if stored is not None and written is not None:
+                plain = (one for one in written if not one.conditions)
+                return tuple(dict.fromkeys(stored[0].answer(one, header, stored[1]) for one in plain))
+        return ()
+
     def owner(self, header: str) -> tuple[str, str] | None:
         """The package or library that has a header here, and its version."""
         found = self._find(header)

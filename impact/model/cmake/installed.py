@@ -1,0 +1,89 @@
+"""What the install rules of a package copy where: the files of its tree by their paths in the prefix."""
+
+from __future__ import annotations
+
+import fnmatch
+import posixpath
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+from .build import Install
+
+if TYPE_CHECKING:
+    from ..workspace import Package
+
+# Names of headers, by their last part.
+HEADER_NAME = re.compile(r"\.(?:h|hpp|hh|hxx|h\+\+|ipp|tpp|tcc|txx|inl|impl|cuh)\Z")
+
+
+class Installed(NamedTuple):
+    """The headers of a package that are installed. headers: path in the tree to its path in the prefix. known: nothing
+    else can be there, as no rule installs what cannot be told. by_file: paths of headers that a rule names itself,
+    rather than the folder they lie in."""
+
+    headers: dict[str, str]
+    known: bool
+    by_file: frozenset[str]
+
+
+def installed_headers(package: Package) -> Installed:
+    """The headers that the package's rules install, whatever condition they stand under."""
+    found: dict[str, str] = {}
+    by_file: set[str] = set()
+    known = not package.build.unresolved
+    for install in package.build.installs:
+        destination = posixpath.normpath(install.destination.replace("${CMAKE_INSTALL_INCLUDEDIR}", "include"))
+        if install.kind not in ("files", "directory", "programs"):
+            continue
+        if "$" in destination:
+            known = known and not any(HEADER_NAME.search(item) or "include" in item for item in install.items)
+            continue
+        if not f"{destination}/".startswith("include/"):
+            continue
+        known = known and not any("$" in item for item in install.items)
+        for path, place in copied_files(install, destination, package.digest.files):
+            if HEADER_NAME.search(place):
+                found[path] = place
+                if install.kind != "directory":
+                    by_file.add(path)
+    if any(found_.how == "ament_auto" for found_ in package.build.found):
+        known = known and package.build.ament_package is not None
+    return Installed(found, known, frozenset(by_file))
+
+
+def copied_files(install: Install, destination: str, files: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    """(path in the tree, path in the prefix) of the files that an install rule copies; items that hold a variable are
+    passed over."""
+    for item in install.items:
+        if "$" in item:
+            continue
+        if install.kind != "directory":
+            yield item, f"{destination}/{install.rename or posixpath.basename(item)}"
+            continue
+        folder = item.rstrip("/")
+        base = "" if folder in ("", ".") else f"{folder}/"
+        top = destination if item.endswith("/") or not folder else f"{destination}/{posixpath.basename(folder)}"
+        for path in files:
+            if path.startswith(base) and lets_in(install, path[len(base) :]):
+                yield path, f"{top}/{path[len(base) :]}"
+
+
+def lets_in(install: Install, inside: str) -> bool:
+    """Whether the patterns of install(DIRECTORY) let a file in; they are for names, or folders above them."""
+    let_in = not install.only
+    parts = inside.split("/")
+    for pattern in install.patterns:
+        text = pattern.lstrip("!")
+        if text.startswith("~"):
+            try:
+                # CMake's regular expressions are close to Python's; they are matched against the whole path.
+                hit = re.search(text[1:], f"/{inside}") is not None
+            except re.error:
+                continue
+        else:
+            hit = any(fnmatch.fnmatchcase(part, text) for part in parts) or fnmatch.fnmatchcase(inside, f"*{text}")
+        if hit and pattern.startswith("!"):
+            return False
+        let_in = let_in or hit
+    return let_in

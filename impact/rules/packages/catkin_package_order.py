@@ -1,0 +1,51 @@
+"""catkin-package-order: a target is added before catkin_package() is called.
+
+What it does
+    Reports libraries and programs that CMake adds before it comes to catkin_package().
+
+Why it breaks
+    catkin_package() sets where targets are built and what they export: those that were added before it land in the
+    build folder instead of the devel space, where nothing that depends on the package, and no rosrun, finds them.
+
+Severity
+    warning, since installed packages do without the devel space.
+
+Example
+    add_library(arm src/arm.cpp)
+    catkin_package(LIBRARIES arm)
+
+Use instead
+    catkin_package(LIBRARIES arm)
+    add_library(arm src/arm.cpp)
+
+Not reported
+    Tests; targets under a condition that is unknown on the target.
+"""
+
+from ...model.view import View
+from ..rule import Hit, rule
+
+
+@rule(severity="warning")
+def catkin_package_order(view: View):
+    for package in view:
+        call = package.build.catkin_package
+        if call is None or package.build_type != "catkin":
+            continue
+        before = set(package.build.before_catkin_package)
+        early = [
+            target
+            for target in package.build.targets
+            if target.name in before
+            and target.kind in ("library", "executable", "module")
+            and view.certain(target.conditions)
+        ]
+        if early:
+            names = ", ".join(f"`{target.name}`" for target in early[:3]) + (", ..." if len(early) > 3 else "")
+            yield Hit(
+                call,
+                "catkin_package",
+                f"catkin_package() is called after {names} {'is' if len(early) == 1 else 'are'} added",
+                "call it before add_library() and add_executable()",
+                package.name,
+            )

@@ -1,0 +1,113 @@
+"""What catkin is asked to find, and cannot: find modules, system libraries as components; and ROS's include folder."""
+
+from ...model.view import View
+from ..rule import Hit
+
+# Find modules that cmake_modules puts on CMake's path, once it is found itself. Catkin did so until Hydro.
+_FIND_MODULES = frozenset({"Eigen", "NUMPY", "TBB", "TinyXML", "TinyXML2", "UUID", "Xenomai", "GSL"})
+
+
+def check_find_modules(view: View, package):
+    """find_package calls whose find module comes with a package that is not found before."""
+    if package.build_type != "catkin" or view.target.ros != 1 or view.target.distro in ("groovy", "hydro"):
+        return
+    names = {f.name for f in package.build.found}
+    own = {p.rsplit("/", 1)[-1] for p in package.files if p.endswith(".cmake")}
+    for found in package.build.found:
+        if found.name not in _FIND_MODULES or found.how != "find_package" or f"Find{found.name}.cmake" in own:
+            continue
+        if "cmake_modules" in names or view.providers.cmake_platforms(found.name) or not view.active(found.conditions):
+            continue
+        sure = found.required and view.certain(found.conditions)
+        needed = found.required or (found.name == "Eigen" and _lacks_eigen(view, package))
+        yield Hit(
+            found.at,
+            "cmake_modules",
+            f"`Find{found.name}.cmake` comes with `cmake_modules`, which CMake never looks for",
+            "add `cmake_modules` to find_package(catkin REQUIRED COMPONENTS ...) and to package.xml",
+            package.name,
+            severity="error" if sure else "warning" if needed else "note",
+        )
+
+
+def _lacks_eigen(view: View, package) -> bool:
+    """True when code that is built here includes Eigen, whose headers lie in a folder of their own, and nothing that is
+    found brings it."""
+    found = {f.name for f in package.build.found} - {"Eigen"}
+    if any("$" in name for name in found):
+        return False
+    reached = view.spread({*found, *(p.name for name in found for p in view.cmake(name)[:1])})
+    return any(
+        need.how == "include" and need.subject.startswith(("Eigen/", "unsupported/Eigen/"))
+        and need.role == "build" and need.certain and not view.answered(need.providers, reached)
+        for need in view.needs(package)
+    )  # fmt: skip
+
+
+def check_include_directories(view: View, package):
+    """catkin packages that are found, and whose include directories no target gets."""
+    build = package.build
+    if package.build_type != "catkin" or not any(f.how == "catkin" for f in build.found) or build.unresolved:
+        return
+    given = " ".join(
+        [item for item, _ in build.include_dirs]
+        + [link.item for t in build.targets for link in t.links if link.how == "include"]
+    )
+    if "catkin_INCLUDE_DIRS" in given or "/opt/ros" in given:
+        return
+    if any(f"{f.name}_INCLUDE_DIRS" in given for f in build.found if f.how == "catkin"):
+        return  # all of /opt/ros lies in one folder
+    for target in build.targets:
+        if target.kind not in ("executable", "library") or not view.certain(target.conditions):
+            continue
+        include = next(
+            (
+                i
+                for i in package.digest.includes
+                if target.name in i.targets
+                and view.certain(i.conditions)
+                and any(p.kind == "ros" and p.name not in view.workspace.packages for p in view.header(i.path))
+            ),
+            None,
+        )
+        if include is not None:
+            yield Hit(
+                target.at,
+                "catkin_INCLUDE_DIRS",
+                f"`{include.path}` is included by `{target.name}`, which does not get catkin_INCLUDE_DIRS",
+                "include_directories(${catkin_INCLUDE_DIRS})",
+                package.name,
+                severity="warning" if view.target.distro in _WITH_CPATH else "error",
+            )
+            return
+
+
+# Distros whose setup files put the include folder of ROS into CPATH. Source: catkin's change log, 0.7.0.
+_WITH_CPATH = ("groovy", "hydro", "indigo", "jade")
+
+
+def check_components(view: View, package):
+    """Components asked of catkin that are system libraries on the target, which catkin cannot find as components. One
+    that was found before is found again: CMake remembers where it is."""
+    before: set[str] = set()
+    for found in package.build.found:
+        name = found.name
+        if found.how == "find_package":
+            before.add(name)
+        if found.how != "catkin" or name == "catkin" or name in before or not view.certain(found.conditions):
+            continue
+        if found.quiet and not found.required:
+            continue
+        if name in view.workspace.packages or view.target.version(name) is not None or view.private(name):
+            continue
+        key = view.target.resolve(name) is not None
+        if not key and not any(p.kind == "system" and view.target.resolve(p.name) for p in view.cmake(name)):
+            continue
+        yield Hit(
+            found.at,
+            name,
+            f"`{name}` is a system library in {view.target.distro} and no catkin component",
+            f"find_package({name} REQUIRED), or pkg-config, on its own",
+            package.name,
+            severity="error" if found.required and not view.underlaid else "warning",
+        )

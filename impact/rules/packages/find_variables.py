@@ -1,0 +1,101 @@
+"""Variables of libraries that targets link and nothing sets."""
+
+import re
+from functools import lru_cache
+
+from ...model.cmake.names import MODULES
+from ...model.view import View
+from ...targets.providers.library import variables
+from ..rule import Hit
+
+_LIBRARIES = re.compile(r"(.+)_(?:LIBRARIES|LIBRARY|LIBS)\Z")
+# Variables that other things than a find_package of their own name set: test macros, Python, Qt, catkin itself, what
+# PCL, gazebo and rviz find along.
+_SET_ALONG = re.compile(
+    r"(?i)(gtest|gmock|python|pythonlibs|qt|qt\d?\w*|catkin|boost\w*|rviz.*|ogre\w*|eigen\d?|opengl|gl|x11|openmp\w*|"
+    r"threads|sdformat|protobuf|vtk|openssl\w*|tinyxml\d?|console_bridge|urdfdom\w*|mpi|cuda\w*|.*_cuda|dl|m|rt)\Z"
+)
+
+
+def check_unset_libraries(view: View, package):
+    """`${X_LIBRARIES}` that a target links and nothing sets: the linker then misses the library."""
+    build = package.build
+    if build.unresolved or any("$" in f.name for f in build.found):
+        return
+    sought = {fold(n) for f in build.found for n in (f.name, f.prefix) if n}
+    reachable = {fold(name) for name in view.spread(f.name for f in build.found)}
+    told = set()
+    for use in build.uses:
+        match = (
+            _LIBRARIES.match(use.name) if use.kind == "variable" and use.context == "target_link_libraries" else None
+        )
+        if match is None or use.name in told or not view.certain(use.conditions):
+            continue
+        stem = match.group(1)
+        folded = fold(stem)
+        if not folded or _SET_ALONG.match(stem) or view.is_package(stem):
+            continue
+        if any(folded in other or other in folded for other in (*sought, *reachable) if len(other) > 2):
+            continue
+        told.add(use.name)
+        module = next((m for m in (stem, f"lib{stem}") if view.providers.pkgconfig(m)), "")
+        known = module or (stem if view.cmake(stem) else "")
+        if not known:
+            continue
+        yield Hit(
+            use.at,
+            known,
+            f"`{use.name}` is linked, and nothing sets it",
+            f"pkg_check_modules({stem} REQUIRED {module})" if module else f"find_package({stem} REQUIRED)",
+            package.name,
+            severity="error"
+            if _compiled_with(view, package, use.name, module, stem) and not _sets_others(view, package)
+            else "warning",
+        )
+
+
+def _sets_others(view: View, package) -> bool:
+    """True where a library that is found may set variables of others: its configuration may look for what it needs,
+    which CMake's own find modules leave to the caller."""
+    return any(
+        f.how == "find_package"
+        and f"Find{f.name}" not in MODULES
+        and not view.is_package(f.name)
+        and variables(f.name) is None
+        for f in package.build.found
+    )
+
+
+def _compiled_with(view: View, package, variable: str, module: str, stem: str) -> bool:
+    """True when a target that links the empty variable, and nothing that could stand for it, compiles the library's
+    headers."""
+    providers = view.providers.pkgconfig(module) if module else view.cmake(stem)
+    owners = {p.package or p.name for p in providers}
+    for target in package.build.targets:
+        items = [link.item for link in target.links if link.how == "link"]
+        if f"${{{variable}}}" not in items or not view.certain(target.conditions):
+            continue
+        if any("$" not in item and fold(stem) in fold(item) for item in items):
+            continue
+        includes = (i for i in package.digest.includes if target.name in i.targets and view.certain(i.conditions))
+        if any((p.package or p.name) in owners for i in includes for p in view.header(i.path)[:1]):
+            return True
+    return False
+
+
+def check_prefixes(view: View, package):
+    """pkg_check_modules(REQUIRED x): its first argument names the variables, so that x is not required."""
+    for found in package.build.found:
+        if found.how == "pkg_check_modules" and found.prefix in ("REQUIRED", "QUIET"):
+            yield Hit(
+                found.at,
+                found.name,
+                f"`{found.prefix}` is taken as the prefix of the variables, so `{found.name}` is not {found.prefix}",
+                f"pkg_check_modules({found.name.upper().replace('-', '_')} {found.prefix} {found.name})",
+                package.name,
+            )
+
+
+@lru_cache(maxsize=10000)
+def fold(name: str) -> str:
+    return re.sub(r"[^a-z]|^lib|dev$", "", name.lower())

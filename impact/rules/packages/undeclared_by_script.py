@@ -1,0 +1,54 @@
+"""undeclared-by-script: a CMake script that dependants run finds a package that package.xml does not hand on.
+
+What it does
+    Reads the scripts that a package gives to those who find it (CONFIG_EXTRAS, CFG_EXTRAS, what they include, and
+    extensions that they register), and compares the packages that these scripts require with package.xml.
+
+Why it breaks
+    find_package() of the package stops on a machine that has only what package.xml declares, in every dependant.
+
+Severity
+    warning.
+
+Example
+    find_package(rmw REQUIRED)      # in arm-extras.cmake, and package.xml has only <build_depend>rmw</build_depend>
+
+Use instead
+    <build_export_depend>rmw</build_export_depend>
+
+Not reported
+    Packages that declared ones bring along, optional ones, and those under a condition that is unknown on the target.
+"""
+
+from ...model.view import View
+from ..rule import Hit, rule
+
+_TOOLS = frozenset({"ament_cmake", "ament_cmake_auto", "ament_cmake_ros", "catkin"})
+_HANDED_ON = frozenset({"build_export", "buildtool_export", "exec"})
+
+
+@rule(severity="warning")
+def undeclared_by_script(view: View):
+    for package in view:
+        if not package.build.handed_on:
+            continue
+        declared = view.declared(package)
+        # Who finds the package builds with the same tool.
+        closure = view.spread(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
+        told = {package.name}
+        for found in package.build.handed_on:
+            if not found.required or not view.certain(found.conditions) or found.name in told or "$" in found.name:
+                continue
+            told.add(found.name)
+            providers = view.cmake(found.name)
+            ros = bool(providers) and all(p.kind == "ros" for p in providers)
+            if not ros or view.answered(providers, closure) or view.blind(package):
+                continue
+            name = providers[0].name
+            yield Hit(
+                found.at,
+                name,
+                f"a script that dependants run finds `{found.name}`, and package.xml does not hand `{name}` on",
+                f"add `<build_export_depend>{name}</build_export_depend>` to {package.digest.manifest_path}",
+                package.name,
+            )

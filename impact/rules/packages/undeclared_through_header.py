@@ -1,0 +1,73 @@
+"""undeclared-through-header: a header of a dependency includes a header of a package that nothing declared brings.
+
+What it does
+    Follows the includes of released headers, in the target's versions, to the first headers of other packages.
+
+Why it breaks
+    The compiler stops inside somebody else's header on a machine that has only what package.xml declares; elsewhere it
+    works by what else happens to be installed.
+
+Severity
+    warning.
+
+Example
+    #include <tf2/utils.h>      // includes tf2_geometry_msgs, which tf2 does not depend on; package.xml has only tf2
+
+Use instead
+    <depend>tf2_geometry_msgs</depend>
+
+Not reported
+    Headers whose version on the target was not read, and includes of theirs under a condition; packages that the target
+    does not have; code that is not built.
+"""
+
+from ...model.view import Need, View
+from ..rule import Hit, rule
+
+
+@rule(severity="warning")
+def undeclared_through_header(view: View):
+    for package in view:
+        if not package.digest.includes or view.blind(package):
+            continue
+        closure = view.may_bring(package)
+        told: set[str] = set()
+        for need in view.weighed(package):
+            if need.how != "include" or not need.certain or not view.built(need.role) or not need.targets:
+                continue
+            if not view.answered(need.providers, closure):
+                continue  # that it is missing itself is told elsewhere
+            for name, header in _led_to(view, need):
+                if name in told or name == package.name or view.answered(view.header(header), closure):
+                    continue
+                told.add(name)
+                yield Hit(
+                    need.at,
+                    name,
+                    f"`{need.subject}` includes `{header}`, and nothing that `{package.name}` declares brings `{name}`",
+                    f"add `<depend>{name}</depend>` to {package.digest.manifest_path}",
+                    package.name,
+                )
+
+
+def _led_to(view: View, need: Need) -> list[tuple[str, str]]:
+    """The packages of ROS that a released header leads to, besides its own, each with the first header of it."""
+    known = view.worked_out.get(("led to", need.subject))
+    if known is None:
+        found: dict[str, str] = {}
+        seen, waiting = {need.subject}, [need.subject] if need.providers[0].kind == "ros" else []
+        while waiting:
+            for header in view.machine.always_included(waiting.pop()):
+                if header in seen or "/" not in header:
+                    continue
+                seen.add(header)
+                providers = view.header(header)
+                if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
+                    continue
+                name = providers[0].name
+                if name == need.providers[0].name:
+                    waiting.append(header)
+                elif view.target.version(name):
+                    found.setdefault(name, header)
+        known = view.worked_out["led to", need.subject] = list(found.items())
+    return known

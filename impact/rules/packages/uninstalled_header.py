@@ -1,0 +1,81 @@
+"""uninstalled-header: an installed header includes a header of its own package that is not installed.
+
+What it does
+    Compares the headers that install rules copy, patterns included, with what these headers include: a header of the
+    package that lies in its source folder, or that a PATTERN or EXCLUDE leaves out, is not there for dependants.
+
+Why it breaks
+    The package builds from its own tree; whoever includes the installed header gets "No such file or directory".
+
+Severity
+    warning, note where no dependant of the workspace includes headers of the package and the including header lies in
+    a folder of implementation details.
+
+Example
+    install(DIRECTORY include/ DESTINATION include FILES_MATCHING PATTERN "*.h")   # and a.h includes "p/b.hpp"
+
+Use instead
+    install(DIRECTORY include/ DESTINATION include FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+
+Not reported
+    Headers that the build makes; includes under a condition; packages of which it cannot be told what they install.
+"""
+
+import posixpath
+import re
+
+from ...model.cmake.build import At
+from ...model.cmake.installed import installed_headers
+from ...model.package import role_of_folder
+from ...model.view import View
+from ..rule import Hit, rule
+
+_DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
+
+
+@rule(severity="warning")
+def uninstalled_header(view: View):
+    for package in view:
+        if not package.build.files or not package.digest.public_headers:
+            continue
+        installed = installed_headers(package)
+        if not installed.known:
+            continue
+        made = set(package.build.made)
+        told = set()
+        for path, inner in package.digest.inner:
+            place = installed.headers.get(path)
+            if place is None or role_of_folder(path[len(package.path) :].lstrip("/")):
+                continue
+            lost = [to for to in inner if to not in installed.headers and to not in told and not to.endswith(".in")]
+            for to in lost if lost else ():
+                include = _include_of(view, path, to)
+                if include is None or to in made or _answered(installed.headers, place, include.path):
+                    continue
+                told.add(to)
+                dependants = package.name in view.workspace.includers
+                yield Hit(
+                    At(path, include.line, include.column),
+                    include.path,
+                    f"`{posixpath.basename(path)}` is installed and includes `{include.path}`, which is not",
+                    f"install `{to[len(package.path) :].lstrip('/')}`, or include it from sources alone",
+                    package.name,
+                    severity="note" if _DETAIL.search(path) and not dependants else "warning",
+                )
+
+
+def _include_of(view: View, path: str, to: str):
+    """The include in a file that names another file of the package and stands under no condition."""
+    file = view.workspace.gathered.facts(path)
+    name = posixpath.basename(to)
+    for include in getattr(file.facts if file is not None else None, "includes", ()):
+        if posixpath.basename(include.path) == name and view.certain(include.conditions):
+            return include
+    return None
+
+
+def _answered(headers: dict[str, str], place: str, include: str) -> bool:
+    """Whether an installed header answers an include of the header that lies at a place of the prefix."""
+    beside = posixpath.normpath(posixpath.join(posixpath.dirname(place), include))
+    ending = "/" + include.lstrip("./")
+    return any(other == beside or other.endswith(ending) for other in headers.values())

@@ -1,0 +1,115 @@
+"""unlinked-library: sources of a target include a compiled library, and nothing that the target is given links it.
+
+What it does
+    For libraries that are more than headers (yaml-cpp, tinyxml, gtest ...): finds targets whose own sources include
+    them, and that are linked to the library neither themselves, nor through targets of the package, nor through what
+    the packages that they are given export in the target's versions.
+
+Why it breaks
+    The linker reports undefined references, at once for a program, and for a shared library wherever it is used. Often
+    it worked as long as another package happened to export the library.
+
+Severity
+    warning.
+
+Example
+    add_executable(loader test/loader.cpp)        # includes gtest/gtest.h
+    target_link_libraries(loader arm)
+
+Use instead
+    target_link_libraries(loader arm gtest)
+
+Not reported
+    Targets that are given anything of which it cannot be told what it brings; includes in headers; static libraries,
+    and shared ones that are not installed: the programs of the package bring what they lack.
+"""
+
+from ...model.cmake.build import BuildTarget
+from ...model.cmake.links import package_of
+from ...model.view import View
+from ...model.workspace import Package
+from ..rule import Hit, rule
+from .unlinked import BRING_NOTHING, Exported, linked_items, linked_packages, plain, stem_of
+
+# How the include paths of compiled libraries begin, and a word of every name that each is linked by, without
+# separators. Source: the libraries' documentation.
+_COMPILED = (
+    ("yaml-cpp/", "yamlcpp"),
+    ("tinyxml2.h", "tinyxml2"),
+    ("tinyxml.h", "tinyxml"),
+    ("json/json.h", "jsoncpp"),
+    ("jsoncpp/", "jsoncpp"),
+    ("curl/curl.h", "curl"),
+    ("glog/logging.h", "glog"),
+    ("libusb-1.0/", "usb"),
+    ("gtest/gtest.h", "gtest"),
+    ("gmock/gmock.h", "gmock"),
+)
+
+
+@rule(severity="warning")
+def unlinked_library(view: View):
+    for package in view:
+        if package.build.unresolved or package.build_type not in ("catkin", "ament_cmake"):
+            continue
+        includes = [
+            (i, word)
+            for i in package.digest.includes
+            for start, word in _COMPILED
+            if i.targets and i.path.startswith(start) and view.certain(i.conditions)
+        ]
+        if not includes or any("$" in f.name for f in package.build.found):
+            continue
+        targets = {t.name: t for t in package.build.targets}
+        installed = {item for i in package.build.installs if i.kind == "targets" for item in i.items}
+        told: set[tuple[str, str]] = set()
+        for include, word in includes:
+            for name in include.targets:
+                target = targets.get(name)
+                if target is None or include.at.path not in target.sources or (word, name) in told:
+                    continue
+                if target.kind != "executable" and (target.kind != "library" or target.static or name not in installed):
+                    continue
+                if not view.certain(target.conditions):
+                    continue
+                if _brought(view, package, targets, target, include.path, word):
+                    continue
+                told.add((word, name))
+                yield Hit(
+                    include.at,
+                    f"{include.path.partition('/')[0].removesuffix('.h')}",
+                    f"`{name}` compiles `{include.path}` and is linked to nothing that brings the library",
+                    f"link the library to `{name}` with target_link_libraries()",
+                    package.name,
+                )
+
+
+def _brought(
+    view: View, package: Package, targets: dict[str, BuildTarget], target: BuildTarget, header: str, word: str
+) -> bool:
+    """Whether anything that a target is given links the library of a header, or may."""
+    items = linked_items(package, targets, target)
+    if items is None or any(word.removesuffix("2") in plain(item) for item in items):
+        return True
+    if word == "gmock" and any("gtest" in plain(item) for item in items):
+        return False
+    if any(_may_bring_anything(view, package, item) for item in items):
+        return True
+    packages = linked_packages(view, package, items)
+    if view.target.ros == 2:
+        return view.answered(view.header(header), view.spread(packages))
+    exported = Exported(view)
+    brought = exported.closure(packages)
+    return brought is None or any(exported.may_bring(name, word) for name in brought)
+
+
+def _may_bring_anything(view: View, package: Package, item: str) -> bool:
+    """Whether it cannot be told what an item brings: it is of no package of ROS and of no library that is known to come
+    alone. A variable that no package found can set is empty."""
+    name = stem_of(item) if "$" in item else package_of(item)
+    if name in BRING_NOTHING or view.is_package(name) or name.startswith(("Qt5", "Qt6")):
+        return False
+    if "$" not in item:
+        return "::" in item
+    start = name.lower()[:3]
+    return any(start in (f.name.lower()[:3], f.prefix.lower()[:3]) for f in package.build.found)

@@ -1,0 +1,3 @@
+#include "sonar_filter/filter.hpp"
+
+double filtered(double value) { return value; }

@@ -1,0 +1,1 @@
+include("${arm_generator_DIR}/generate_arms.cmake")
