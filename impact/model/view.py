@@ -16,6 +16,7 @@ from ..config import Config
 from ..facts.condition import Condition
 from ..facts.interface import Interface
 from ..targets import message_headers
+from ..targets.apt import Apt, apt_of
 from ..targets.changes import DISTROS
 from ..targets.distro import known_distros
 from ..targets.evidence import Evidence
@@ -31,6 +32,7 @@ from .api_python import python_packages
 from .build import At, Found, for_tests
 from .conditions import Environment, all_hold
 from .package import MemberUse, role_of_folder
+from .roles import Roles
 from .spelling import Names
 from .workspace import Package, Workspace, snake
 
@@ -39,17 +41,10 @@ from .workspace import Package, Workspace, snake
 _INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
 # Kinds that are on the machine that builds the package from source.
 _BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test", "doc"})
-# On every machine that builds ROS packages (ros_buildfarm's base image and the dependencies of catkin and ament).
-_ALWAYS = frozenset({
-    "build-essential", "cmake", "pkg-config", "python", "python3", "python-dev", "python3-dev", "git", "g++-static",
-    "libc6-dev",
-})  # fmt: skip
-
-
 class Need(NamedTuple):
     """Something a package uses of somebody else.
 
-    how: find_package, component, pkg-config, include, import, launch, plugin or shell. subject: as written.
+    how: find_package, component, pkg-config, program, include, import, launch, plugin or shell. subject: as written.
     providers: who could give it, best first. role: build, test, run or aside. certain: stands under no condition that
     is unknown on the target. required: its absence stops the configuration (find_package) or the program.
     """
@@ -66,7 +61,8 @@ class Need(NamedTuple):
 
 
 _HOW = {
-    "find_package": 0, "component": 0, "pkg-config": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5,
+    "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "include": 1, "import": 2, "plugin": 3,
+    "launch": 4, "shell": 5,
 }  # fmt: skip
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
 
@@ -809,9 +805,19 @@ class View:
         """Everything on a machine that has just what the package declares, the package itself included."""
         known = self._closures.get(package.name)
         if known is None:
-            known = self.spread(self._built_with(package)).union(_ALWAYS, (package.name,))
+            known = self.spread(self._built_with(package)).union(self.preinstalled, (package.name,))
             self._closures[package.name] = known
         return known
+
+    @cached_property
+    def apt(self) -> Apt:
+        """What comes along with the platform's packages."""
+        return apt_of(self.target.platform)
+
+    @cached_property
+    def preinstalled(self) -> frozenset[str]:
+        """What the build farm puts on every machine besides the platform's compiler: the workspace of ROS 2."""
+        return self.spread(["ros_workspace"]) if self.target.ros == 2 else frozenset()
 
     def may_bring(self, package: Package) -> frozenset[str]:
         """closure(), and all that packages whose manifests this distro does not tell bring in any other: what is not
@@ -826,6 +832,11 @@ class View:
                         waiting.append(other)
             known = self._widest[package.name] = frozenset(found)
         return known
+
+    @cached_property
+    def roles(self) -> Roles:
+        """What packages have at hand in each role, and what is handed on to them."""
+        return Roles(self)
 
     def _possibly_with(self, name: str) -> Iterable[str]:
         if name in self.workspace.packages or self.target.dependencies(name) is not None:
@@ -847,7 +858,7 @@ class View:
                 if other not in found:
                     found[other] = found[name]
                     queue.append(other)
-        return {**dict.fromkeys(_ALWAYS, ""), package.name: package.name, **found}
+        return {**dict.fromkeys(self.preinstalled, ""), package.name: package.name, **found}
 
     def spread(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""
@@ -888,7 +899,7 @@ class View:
             target = self.target
             unknown = self._unknown[package.name] = tuple(
                 n for n in self.closure(package)
-                if n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
+                if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
                 and not target.known_key(n)  # a key that the platform lacks brings nothing
                 and target.dependencies(n) is None and target.similar_dependencies(n) is None
                 and not target.other_generation(n)  # nor does a package that cannot be had
@@ -948,7 +959,9 @@ class View:
             vendored = frozenset(
                 n.removesuffix("_vendor").removeprefix("rviz_") for n in names if n.endswith("_vendor")
             )
-            installed = frozenset().union(*(self.debian(n) for n in names if n not in self.workspace.packages))
+            installed = self.apt.base.union(
+                *(self.apt.brought_by(d) for n in names if n not in self.workspace.packages for d in self.debian(n))
+            )
             known = (names, vendored, installed)
             if isinstance(names, _LASTING):
                 self._reached[id(names)] = known
@@ -1082,9 +1095,11 @@ class View:
         for found in package.build.found:
             if found.how == "pkg_check_modules" and self.active(found.conditions):
                 yield from self._modules_asked(found)
+            if found.how == "program" and self.active(found.conditions):
+                yield from self._program_run(found)
             if found.how not in ("find_package", "catkin") or not self.active(found.conditions):
                 continue
-            if found.name in ("catkin", package.name) or package.name in self.workspace.find_modules.get(
+            if found.name == package.name or package.name in self.workspace.find_modules.get(
                 found.name, ()
             ):
                 continue
@@ -1165,6 +1180,14 @@ class View:
             self.certain(found.conditions),
             found.required,
         )
+
+
+    def _program_run(self, found: Found) -> Iterator[Need]:
+        """A program that CMake starts; those that every machine has are left out."""
+        providers = tuple(self.providers.executable(found.name))
+        if providers and providers[0].name and found.name not in self.apt.base:
+            yield Need("program", found.name, providers, found.at, "test" if for_tests(found.conditions) else "build",
+                       self.certain(found.conditions))  # fmt: skip
 
 
 def _field_lost(package: str, history: History, spans: Iterable[tuple[int, int]], state: int) -> Evidence:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from .flow.launches import Launch
 
 # Raise with every change of what a digest or the CMake interpreter says.
-DIGEST_VERSION = "36"
+DIGEST_VERSION = "37"
 # Starting processes costs about as much as joining packages with this many files here.
 _ALONE_FILES = 100
 _VERSIONS = " ".join([DIGEST_VERSION, *(f"{kind}{version}" for kind, (_, _, version) in sorted(EXTRACTORS.items()))])

@@ -76,16 +76,16 @@ TEAM = {**PACK, **ament("team", "", "exec_depend:husky", "exec_depend:malamute",
 TEAM["team/package.xml"] = TEAM["team/package.xml"].replace("<export>", "<export><metapackage/>")
 
 ROWS = {
-    "a header that two declared packages bring": Row(
+    "a header that a declared package hands on": Row(
         "undeclared-package",
         "humble",
         {
             **ament("ice", HEADERS, include__ice__ice_hpp="#pragma once\n"),
-            **ament("dogs", "", "ice"),
+            **ament("dogs", "find_package(ice REQUIRED)\nament_export_dependencies(ice)", "ice"),
             **ament("cats", "", "ice"),
             **ament("sled", "add_executable(run run.cpp)", "dogs", "cats", run_cpp="#include <ice/ice.hpp>\n" + MAIN),
         },
-        ("sled/package.xml", "<depend>cats</depend>", ""),
+        ("dogs/CMakeLists.txt", "ament_export_dependencies(ice)", ""),
         ("warning", "ice"),
     ),
     "a system library declared beside one that needs it": Row(

@@ -43,105 +43,10 @@ from ..cure import Declare
 from ..evidence import circular, name_to_declare, present
 from ..rule import Hit, rule
 
-# Tools that people start on their own desk.
-_VIEWERS = (
-    "rviz",
-    "rqt",
-    "image_view",
-    "joint_state_publisher",
-    "moveit_ros_benchmarks",
-    "joint_state_publisher_gui",
-    "plotjuggler",
-    "teleop_",
-    "joy",
-    "moveit_setup_assistant",
-    "urdf_tutorial",
-    "turtlesim",
-)
-_ON_THE_DESK = frozenset(
-    [
-        "python3-matplotlib",
-        "python-matplotlib",
-        "python3-pytest",
-        "python-pytest",
-        "python-gtk2",
-        "python3-tk",
-        "python-tk",
-    ]
-)
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 LOUD = 2
 # The macros that make tests bring these headers.
 WITH_TESTS = ("gtest/", "gmock/")
-# Whoever starts a launch file has these: the launch tool itself brings them.
-_LAUNCHING = frozenset(
-    {"launch", "launch_ros", "launch_xml", "launch_yaml", "roslaunch", "launch_testing", "launch_testing_ros"}
-)
-
-
-# Client libraries and what their own headers include: always there with them, and customarily not declared apart.
-WITH_CLIENT = frozenset(
-    [
-        "roscpp",
-        "rospy",
-        "rosconsole",
-        "rostime",
-        "xmlrpcpp",
-        "roslib",
-        "cpp_common",
-        "roscpp_traits",
-        "roscpp_serialization",
-        "class_loader",
-        "pluginlib",
-        "nodelet",
-        "tf",
-        "tf2",
-        "tf2_ros",
-        "tf2_msgs",
-        "eigen_conversions",
-        "tf_conversions",
-        "message_filters",
-        "rclcpp",
-        "rclcpp_components",
-        "rclcpp_lifecycle",
-        "rclpy",
-        "rcl",
-        "rcutils",
-        "builtin_interfaces",
-        "std_msgs",
-        "geometry_msgs",
-        "sensor_msgs",
-        "nav_msgs",
-        "catkin",
-        "actionlib",
-        "dynamic_reconfigure",
-        "message_generation",
-        "message_runtime",
-        "genmsg",
-        "rcl_interfaces",
-        "opencv2",
-        "opencv3",
-    ]
-)
-# Keys that most graphs of dependencies bring anyway.
-_COMMON_KEYS = frozenset(
-    {
-        "boost",
-        "libboost-dev",
-        "libboost-all-dev",
-        "libopencv-dev",
-        "opencv2",
-        "python3-dev",
-        "python-dev",
-        "eigen",
-        "libpcl-all-dev",
-        "python",
-        "python3",
-        "liborocos-kdl-dev",
-    }
-)
-
-
 @rule(severity="error")
 def undeclared_package(view: View):
     for package in view:
@@ -226,40 +131,40 @@ def _bare(key: str) -> str:
 
 
 def _borrowed(view: View, package, borrowed: dict[str, list[Need]]):
-    """What a package uses and a single declared dependency happens to bring: it leaves when that one drops it. What two
-    declared dependencies bring seldom does, and is told only where the configuration itself asks for it."""
-    told = []
+    """What a package uses and does not declare, and what it declares brings by chance: installed along with it for
+    another role, or by a package that does not hand it on."""
     declared = view.declared(package)
-    brought_by = view.brought_by(package) if borrowed else {}
     for name, needs in borrowed.items():
-        if name.startswith(("ament_", "rosidl_", "rmw")):
-            continue
-        strong = [n for n in needs if n.certain and n.required and _leans(view, n, name)]
+        strong = [n for n in needs if n.certain and n.required and _is_chance(view, package, n)]
         if not strong:
             continue
         first = min(strong, key=weight)
-        sources = [d for d in declared if view.answered(first.providers, view.spread([d]))]
-        if not 1 <= len(sources) <= _SOURCES[first.how]:
-            continue
-        if (
-            first.how == "include"
-            and name in view.workspace.packages
-            and brought_by.get(name, "") in view.workspace.packages
-            and view.target.ros == 1
-        ):
-            continue  # one repository, built in its order
-        told.append((len(sources), weight(first), name, sources, first))
-    for rank, (_, _, name, sources, first) in enumerate(sorted(told, key=lambda t: t[:3])):
+        sources = [f"`{d}`" for d in declared if view.answered(first.providers, view.spread([d]))]
+        others = f" and {len(sources) - 2} others" if len(sources) > 2 else ""
         tag = _tag(first, package.manifest.format)
         yield Hit(
             first.at,
             name,
-            f"{_how(first)}, and `{name}` only comes along with {' and '.join(f'`{s}`' for s in sources)}",
+            f"{_how(first)}, and `{name}` only comes along with {' and '.join(sources[:2])}{others}",
             f"add `<{tag}>{name}</{tag}>` to {package.digest.manifest_path}",
             package.name,
-            severity="warning" if rank < LOUD else "note",
-            fix=_cure(view, package, first, name) if rank < LOUD else (),
+            severity="warning",
+            fix=_cure(view, package, first, name),
         )
+
+
+def _is_chance(view: View, package, need: Need) -> bool:
+    """True where what a need rests on is installed for another role than the need's, or is handed on by nobody."""
+    if need.role == "aside" or (need.how == "include" and not need.targets):
+        return False
+    if need.subject == package.build_type:
+        return not view.roles.has_build_tool(package, need.subject)
+    if not view.answered(need.providers, view.roles.at_hand(package, need.role)):
+        return True
+    # Modules and nodes are not handed on: whoever has them can use them.
+    if need.how not in ("find_package", "component", "pkg-config", "program", "include"):
+        return False
+    return not view.answered(need.providers, view.roles.handed_on(package, need.role, need.how != "include"))
 
 
 # Commands that tests are made with, and the packages they come from (their CMake extras in ament_cmake, launch and
@@ -331,40 +236,22 @@ _APART = re.compile(
 )
 
 
-# By how many declared dependencies something may come along and still be told.
-_SOURCES = {"include": 1, "import": 1, "find_package": 2, "component": 3, "pkg-config": 1}
-
-
-def _leans(view: View, need: Need, name: str) -> bool:
-    """True where losing what only comes along would stop the build, or an import of the workspace's own."""
-    ours = name in view.workspace.packages
-    ros = ours or view.target.version(name) is not None
-    if need.how == "import":
-        return ours and need.role == "run"
-    if need.role != "build" or name in WITH_CLIENT or (not ros and name in _COMMON_KEYS):
-        return False
-    return need.how in ("find_package", "component", "pkg-config") or (need.how == "include" and bool(need.targets))
-
-
 def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | None:
     if need.role == "aside":
         return "note"
     if not present(view, name):
         return None  # unreleased-package says it
-    asked = need.how in ("find_package", "component", "pkg-config")
+    asked = need.how in ("find_package", "component", "pkg-config", "program")
     if asked and (not need.required or not any(p.sure for p in need.providers)):
         return "note"
-    if need.how in ("launch", "plugin", "shell") or name in _LAUNCHING:
+    if need.role == "run" and name in view.roles.launching:
+        return "note"  # whoever starts a launch file has it
+    if need.how in ("launch", "plugin", "shell"):
         # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
         wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
-        loud = wanted and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
-        return "warning" if loud else "note"
+        return "warning" if wanted and need.role == "run" else "note"
     if need.role == "test" or need.how == "import":
-        return (
-            "warning"
-            if need.required and name not in _ON_THE_DESK and (need.role != "test" or name not in WITH_CLIENT)
-            else "note"
-        )
+        return "warning" if need.required else "note"
     if not need.certain:
         return "note"
     if need.how == "include" and not need.targets:
@@ -372,7 +259,6 @@ def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | 
         passed_on = (
             need.public
             and need.providers[0].kind == "ros"
-            and name not in WITH_CLIENT
             and not need.subject.startswith(WITH_TESTS)
         )
         if not passed_on or circular(view, package, name):
@@ -426,6 +312,7 @@ def _how(need: Need) -> str:
     return {
         "find_package": f"CMake looks for `{need.subject}`",
         "component": f"CMake asks catkin for `{need.subject}`",
+        "program": f"CMake runs `{need.subject}`",
         "pkg-config": f"pkg-config is asked for `{need.subject}`",
         "include": f"`{need.subject}` is included",
         "import": f"`{need.subject}` is imported",
