@@ -9,7 +9,6 @@ that happens to need it drops it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -73,10 +72,13 @@ class Roles:
         declared = self._view.declared(package)
         return tool in _reached((n for n, kinds in declared.items() if "buildtool" in kinds or n == tool), self.tools)
 
-    @cached_property
-    def launching(self) -> frozenset[str]:
-        """What comes along with the command that starts launch files."""
-        return self._view.spread(["ros2launch" if self._view.target.ros == 2 else "roslaunch"])
+    def comes_with_launch(self, name: str, path: str) -> bool:
+        """Whether whoever starts launch files has a package: all that comes along with the command that does, for the
+        launch files themselves; the command's own packages for what is made for them."""
+        tool = "ros2launch" if self._view.target.ros == 2 else "roslaunch"
+        if "launch" in path.rpartition("/")[2]:
+            return name in self._view.spread([tool])
+        return name == tool or name in self._view.installed_with(tool)
 
     def exports(self, name: str) -> tuple[str, ...]:
         """What a package hands on by CMake; by its manifest where its CMake is not known."""

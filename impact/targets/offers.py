@@ -89,10 +89,12 @@ class Offers:
         return history.exports(offer.stored) if offer is not None and history is not None else None
 
     def is_bundle(self, name: str) -> bool:
-        """True for a package of which the stored version has no header, module, library, program, plugin, interface or
-        launch file: it is there for what it depends on."""
+        """True for a package of which the stored version, or else the newest one, has no header, module, library,
+        program, plugin, interface or launch file: it is there for what it depends on."""
         offer, history = self.package(name), self.surfaces.history(name)
-        return offer is not None and history is not None and history.is_bundle(offer.stored)
+        if history is None:
+            return False
+        return history.is_bundle(offer.stored if offer is not None else history.versions[-1])
 
     def _offer(self, name: str) -> Offer | None:
         version = self.target.version(name)

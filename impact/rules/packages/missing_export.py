@@ -32,7 +32,52 @@ from ...model.view import View
 from ...targets.library import variables
 from ..rule import Hit, rule
 from .missing_find_package import found_names
-from .undeclared_package import LOUD, WITH_CLIENT, WITH_TESTS
+from .undeclared_package import LOUD, WITH_TESTS
+
+# Client libraries and what their own headers include: always there with them, and customarily not declared apart.
+WITH_CLIENT = frozenset(
+    [
+        "roscpp",
+        "rospy",
+        "rosconsole",
+        "rostime",
+        "xmlrpcpp",
+        "roslib",
+        "cpp_common",
+        "roscpp_traits",
+        "roscpp_serialization",
+        "class_loader",
+        "pluginlib",
+        "nodelet",
+        "tf",
+        "tf2",
+        "tf2_ros",
+        "tf2_msgs",
+        "eigen_conversions",
+        "tf_conversions",
+        "message_filters",
+        "rclcpp",
+        "rclcpp_components",
+        "rclcpp_lifecycle",
+        "rclpy",
+        "rcl",
+        "rcutils",
+        "builtin_interfaces",
+        "std_msgs",
+        "geometry_msgs",
+        "sensor_msgs",
+        "nav_msgs",
+        "catkin",
+        "actionlib",
+        "dynamic_reconfigure",
+        "message_generation",
+        "message_runtime",
+        "genmsg",
+        "rcl_interfaces",
+        "opencv2",
+        "opencv3",
+    ]
+)
 
 
 @rule(severity="warning")

@@ -244,8 +244,8 @@ def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | 
     asked = need.how in ("find_package", "component", "pkg-config", "program")
     if asked and (not need.required or not any(p.sure for p in need.providers)):
         return "note"
-    if need.role == "run" and name in view.roles.launching:
-        return "note"  # whoever starts a launch file has it
+    if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
+        return "note"
     if need.how in ("launch", "plugin", "shell"):
         # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
         wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
