@@ -10,8 +10,8 @@ alternatives but the first, and versions do not count.
 
 Ubuntu's indices need not be at hand. What comes along there is inferred in two ways, and such an answer silences
 findings and never makes one: from Debian's suites, of which Ubuntu's are copies; and from the lists of files of
-Ubuntu's suites in data/providers.sqlite.zst. There a package brings another when everything that the other one has
-comes along with it.
+Ubuntu's suites in data/providers.sqlite.zst, for packages that no Debian suite has any longer (Qt 4). There a package
+brings another when everything that the other one has comes along with it.
 """
 
 from __future__ import annotations
@@ -91,7 +91,8 @@ def graph(
                 edges[name][other] = edges[name].get(other, 0) | 1 << place
     for name, reached in seen.items():
         for other in reached:
-            edges[name][other] = edges[name].get(other, 0) | INFERRED
+            if not any(other in depends for depends in suites.values()):
+                edges[name][other] = edges[name].get(other, 0) | INFERRED
     names = sorted({*edges, *(other for found in edges.values() for other in found), *base})
     place_of = {name: place for place, name in enumerate(names)}
     brings = {

@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..conditions import Environment, all_hold
+from ..conditions.cmake import packages_asked
 from ..config import Config
 from ..facts.condition import Condition
 from ..facts.interface import Interface
@@ -30,7 +31,7 @@ from ..targets.surface.offers_python import PythonOffers
 from ..targets.target import Change, Provider, Target
 from ..targets.version import at_least
 from .cmake.build import At, Found, for_tests
-from .misspelling import Names
+from .misspelling import Names, nearest
 from .package import MemberUse, role_of_folder
 from .python.api import python_packages
 from .roles import Roles
@@ -44,9 +45,10 @@ _BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export
 class Need(NamedTuple):
     """Something a package uses of somebody else.
 
-    how: find_package, component, pkg-config, program, include, import, launch, plugin or shell. subject: as written.
-    providers: who could give it, best first. role: build, test, run or aside. certain: stands under no condition that
-    is unknown on the target. required: its absence stops the configuration (find_package) or the program.
+    how: find_package, part (a component of it), component (of catkin), pkg-config, program, include, import, launch,
+    plugin or shell. subject: as written. providers: who could give it, best first. role: build, test, run or aside.
+    certain: stands under no condition that is unknown on the target. required: its absence stops the configuration
+    (find_package) or the program.
     """
 
     how: str
@@ -61,7 +63,7 @@ class Need(NamedTuple):
 
 
 _HOW = {
-    "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "include": 1, "import": 2, "plugin": 3,
+    "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "part": 0, "include": 1, "import": 2, "plugin": 3,
     "launch": 4, "shell": 5,
 }  # fmt: skip
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
@@ -74,12 +76,13 @@ def weight(need: Need) -> tuple:
 
 class Misnamed(NamedTuple):
     """Why an include path, or a name, cannot be right, and what to write. soon: it still is, until the distro's next
-    sync."""
+    sync. never: no version of anything ever had it."""
 
     message: str
     help: str
     evidence: Evidence | None = None
     soon: bool = False
+    never: bool = False
 
 
 # How packages of interfaces are called, and what makes interfaces and runs with them.
@@ -94,6 +97,11 @@ _UMBRELLAS = frozenset({"ros", "moveit", "ecl", "pcl", "opencv2", "gazebo", "boo
 _GENERATED = ("rclcpp/node_interfaces/", "rclcpp/logging.hpp")
 # System packages so broad that they bring half of ROS along.
 _BROAD = frozenset({"mrpt"})
+# Generated headers that users include, by ROS generation; dynamic_reconfigure makes `XConfig.h`.
+_GENERATED_HEADER = {
+    1: re.compile(r"[A-Z][A-Za-z0-9]*(?<!Config)\.h\Z"),
+    2: re.compile(r"(?:msg|srv|action)/[a-z][a-z0-9_]*(?<!__struct)(?<!__traits)(?<!__builder)\.hpp\Z"),
+}
 _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 
 _UNCONFIGURED = Config()
@@ -608,7 +616,23 @@ class View:
         if head in self.workspace.packages:
             return self._moved_interface(head, rest, stem, bool(name))
         known = self._interfaces_of(head)
-        return self._lost_interface_named(head, name, known) if known and name else None
+        if not known:
+            return None
+        return self._lost_interface_named(head, name, known) if name else self._never_interface(path, rest, known[0])
+
+    def _never_interface(self, path: str, rest: str, history: History) -> Misnamed | None:
+        """What is wrong with a path that looks like that of a generated header, where no version of the package that
+        was read has such an interface, all of them were read up to the target's, and the release has no such file."""
+        head = path.partition("/")[0]
+        version = self.target.version(head) or ""
+        if not _GENERATED_HEADER[self.target.ros].match(rest) or not history.read_up_to(version):
+            return None
+        if self.providers.header_history(head, path) or self.has_released_header(head, path) is not False:
+            return None
+        close = nearest(rest.rpartition(".")[0], Names(s for s in history.by_header if ("/" in s) == ("/" in rest)))
+        ending = rest.rpartition(".")[2]
+        return Misnamed(f"no version of {head} has an interface for `{path}`",
+                        f"did you mean `{head}/{close}.{ending}`?" if close else "", never=True)  # fmt: skip
 
     def _moved_interface(self, head: str, rest: str, stem: str, once: bool) -> Misnamed | None:
         """The same where the package is in the workspace: another one there defines the interface. once: some release
@@ -1120,6 +1144,7 @@ class View:
                 certain,
                 found.required or found.how == "catkin",
             )
+            yield from self._parts_asked(found, testing, certain)
         for include in digest.includes:
             if not self.active(include.conditions):
                 continue
@@ -1182,12 +1207,23 @@ class View:
         )
 
 
+    def _parts_asked(self, found: Found, testing: bool, certain: bool) -> Iterator[Need]:
+        """Components of a system library that have a CMake configuration of their own (`boost_filesystem`,
+        `Qt5Widgets`), and so maybe a package."""
+        for component, at in found.components if found.required else ():
+            for name in (f"{found.name.lower()}_{component}", f"{found.name}{component}"):
+                providers = tuple(self.providers.installed_cmake(name))
+                if providers:
+                    yield Need("part", name, providers, at, "test" if testing else "build", certain)
+
     def _program_run(self, found: Found) -> Iterator[Need]:
-        """A program that CMake starts; those that every machine has are left out."""
+        """A program that CMake starts; those that every machine has are left out. What a package builds where a library
+        is not found, it builds on some machine."""
         providers = tuple(self.providers.executable(found.name))
         if providers and providers[0].name and found.name not in self.apt.base:
-            yield Need("program", found.name, providers, found.at, "test" if for_tests(found.conditions) else "build",
-                       self.certain(found.conditions))  # fmt: skip
+            certain = all(self.certain((c,)) or packages_asked(c.text) for c in found.conditions)
+            role = "test" if for_tests(found.conditions) else "build"
+            yield Need("program", found.name, providers, found.at, role, certain)
 
 
 def _field_lost(package: str, history: History, spans: Iterable[tuple[int, int]], state: int) -> Evidence:

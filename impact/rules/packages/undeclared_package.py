@@ -2,8 +2,10 @@
 
 What it does
     Reports packages and system libraries that CMake or pkg-config is asked for, sources include, Python imports, launch
-    files or scripts start, when neither the manifest nor anything it declares brings them, directly or in turn; or when
-    a single declared package happens to bring them. Reports what ament_auto is told to require under a name that the
+    files or scripts start, programs that ExternalProject_Add or FetchContent start, and components with a package of
+    their own, when neither the manifest nor anything it declares brings them, directly or in turn; or when they are
+    there by chance: installed for another role (a test tool brings what a node imports), or by a package that does not
+    hand them on (by its CMake exports or `build_export_depend`). What a rosdep key's packages depend on comes along. Reports what ament_auto is told to require under a name that the
     manifest does not have, commands that make tests and that no declared package brings, and the one package of its
     repository that a metapackage leaves out.
 
@@ -18,8 +20,8 @@ Severity
     declared is not known, no version of that in any distro does; and what ament_auto refuses. warning: tests, imports,
     launch files, installed headers that nothing here compiles, what only comes along with another dependency, or where
     a dependency is known nowhere and may bring it (one called as interfaces are brings interfaces). note: conditional
-    code, examples, documentation, files that nothing compiles, and all but the first few imports, launch references and
-    borrowed packages of a package.
+    code, examples, documentation, files that nothing compiles, and all but the first few imports and
+    launch references of a package.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -28,8 +30,7 @@ Use instead
     <depend>tf2_eigen</depend>
 
 Not reported
-    What several declared packages bring; client libraries and common system libraries that come through another
-    declared package; code that is switched off on the target; nodes of other workspaces that start only under an
+    What a declared package exports; modules and nodes that come along with a declared package in the same role; code that is switched off on the target; nodes of other workspaces that start only under an
     argument; names that nobody is known to provide (they are counted as unresolved).
 """
 
@@ -55,8 +56,7 @@ def undeclared_package(view: View):
         missing: dict[str, list[Need]] = {}
         borrowed: dict[str, list[Need]] = {}
         for need in view.needs(package):
-            direct = view.answered(need.providers, declared)
-            if (direct and not _by_chance(view, need, declared, closure)) or (
+            if view.answered(need.providers, declared) or (
                 need.subject.startswith(WITH_TESTS) and need.role == "test"
             ):
                 continue
@@ -114,22 +114,6 @@ def _refused(view: View, package):
             )
 
 
-def _by_chance(view: View, need: Need, declared, closure) -> bool:
-    """True where nothing brings the system library itself, only a key of another one that depends on it somewhere."""
-    first = need.providers[0]
-    if need.how not in ("find_package", "include") or first.kind != "system" or not first.name:
-        return False
-    itself = tuple(p for p in need.providers if p.kind == "ros" or first.package in (p.package, *view.debian(p.name)))
-    if view.answered(itself, closure):
-        return False
-    # `geos` is libgeos++-dev's, whatever it installs here
-    return not any(_bare(name) in _bare(first.name) for name in declared if view.answered(need.providers, {name: name}))
-
-
-def _bare(key: str) -> str:
-    return re.sub(r"^lib|-dev$|^python3?-|[\d.]+$", "", key)
-
-
 def _borrowed(view: View, package, borrowed: dict[str, list[Need]]):
     """What a package uses and does not declare, and what it declares brings by chance: installed along with it for
     another role, or by a package that does not hand it on."""
@@ -162,7 +146,7 @@ def _is_chance(view: View, package, need: Need) -> bool:
     if not view.answered(need.providers, view.roles.at_hand(package, need.role)):
         return True
     # Modules and nodes are not handed on: whoever has them can use them.
-    if need.how not in ("find_package", "component", "pkg-config", "program", "include"):
+    if need.how not in ("find_package", "part", "component", "pkg-config", "program", "include"):
         return False
     return not view.answered(need.providers, view.roles.handed_on(package, need.role, need.how != "include"))
 
@@ -241,7 +225,7 @@ def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | 
         return "note"
     if not present(view, name):
         return None  # unreleased-package says it
-    asked = need.how in ("find_package", "component", "pkg-config", "program")
+    asked = need.how in ("find_package", "part", "component", "pkg-config", "program")
     if asked and (not need.required or not any(p.sure for p in need.providers)):
         return "note"
     if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
@@ -254,6 +238,8 @@ def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | 
         return "warning" if need.required else "note"
     if not need.certain:
         return "note"
+    if need.how in ("program", "part"):
+        return "warning"
     if need.how == "include" and not need.targets:
         # Nothing here compiles an installed header on its own; whoever includes it needs what it includes.
         passed_on = (
@@ -311,6 +297,7 @@ def _stops_another(view: View, package, need: Need) -> bool:
 def _how(need: Need) -> str:
     return {
         "find_package": f"CMake looks for `{need.subject}`",
+        "part": f"CMake looks for the component `{need.subject}`",
         "component": f"CMake asks catkin for `{need.subject}`",
         "program": f"CMake runs `{need.subject}`",
         "pkg-config": f"pkg-config is asked for `{need.subject}`",

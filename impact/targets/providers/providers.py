@@ -142,6 +142,10 @@ class Providers:
             found = [provider._replace(sure=False) for provider in found]
         return _once(found)
 
+    def installed_cmake(self, name: str) -> list[Provider]:
+        """Which system packages install a CMake configuration of exactly this name, best first."""
+        return self._system("cmake", name)
+
     def _sought(self, module: str) -> list[Provider]:
         """Who brings what a find module of CMake looks for, so that it succeeds."""
         found: list[Provider] = []
