@@ -3,10 +3,10 @@
 What it does
     Reports `#include` lines whose header the target's version of the providing package does not install: removed,
     renamed, or only added in a later version; headers of platform libraries that the newest distro no longer has;
-    generated headers whose interface the version lacks, or no version has; own headers with a letter wrong; or another package of the workspace has; spellings of
-    generated headers that belong to the other ROS generation, or to C where rclcpp is used; headers of
-    generate_parameter_library by a path that its version does not make, or does not install; and paths that name the
-    folder which a platform has for one version of a library (`opencv4/opencv2/core.hpp`).
+    generated headers whose interface the version lacks, no version has, or another package of the workspace has; own
+    headers with a letter wrong; spellings of generated headers that belong to the other ROS generation, or to C where
+    rclcpp is used; headers of generate_parameter_library by a path that its version does not make, or does not install;
+    and paths that name the folder which a platform has for one version of a library (`opencv4/opencv2/core.hpp`).
 
 Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.

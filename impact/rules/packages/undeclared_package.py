@@ -5,9 +5,9 @@ What it does
     files or scripts start, programs that ExternalProject_Add or FetchContent start, and components with a package of
     their own, when neither the manifest nor anything it declares brings them, directly or in turn; or when they are
     there by chance: installed for another role (a test tool brings what a node imports), or by a package that does not
-    hand them on (by its CMake exports or `build_export_depend`). What a rosdep key's packages depend on comes along. Reports what ament_auto is told to require under a name that the
-    manifest does not have, commands that make tests and that no declared package brings, and the one package of its
-    repository that a metapackage leaves out.
+    hand them on (by its CMake exports or `build_export_depend`). What a rosdep key's packages depend on comes along.
+    Reports what ament_auto is told to require under a name that the manifest does not have, commands that make tests
+    and that no declared package brings, and the one package of its repository that a metapackage leaves out.
 
 Why it breaks
     The build works on the machine of whoever happens to have the package. On a machine that has just what the manifest
@@ -30,8 +30,9 @@ Use instead
     <depend>tf2_eigen</depend>
 
 Not reported
-    What a declared package exports; modules and nodes that come along with a declared package in the same role; code that is switched off on the target; nodes of other workspaces that start only under an
-    argument; names that nobody is known to provide (they are counted as unresolved).
+    What a declared package exports; modules and nodes that come along with a declared package in the same role; code
+    that is switched off on the target; nodes of other workspaces that start only under an argument; names that nobody
+    is known to provide (they are counted as unresolved).
 """
 
 import posixpath
