@@ -95,27 +95,38 @@ def read_suite(platform: str, lists: Path) -> Suite:
     packages = sorted(lists.glob("*_Packages*"))
     if not contents or not packages:
         raise FileNotFoundError(f"{lists}: no Contents or no Packages index; enable apt's Contents targets and update")
-    depends: dict[str, tuple[str, ...]] = {}
-    provides: dict[str, list[str]] = defaultdict(list)
     essential: set[str] = set()
     ros: set[str] = set()
     source: dict[str, str] = {}
-    for index in packages:
-        for name, fields in _paragraphs(lines_of(index)):
-            depends[name] = _relations(fields.get("Pre-Depends", "") + "," + fields.get("Depends", ""))
-            for other in _relations(fields.get("Provides", "")):
-                provides[other].append(name)
-            if fields.get("Essential") == "yes" or fields.get("Priority") == "required":
-                essential.add(name)
-            origin = fields.get("Source", name).partition(" ")[0]
-            source[name] = sys.intern(re.sub(r"-?[\d.]+$", "", origin.removesuffix("-defaults")))
-            if _ROS_SOURCE.match(origin):
-                ros.add(name)
-    real = {
+    for name, fields in _fields_of(packages):
+        if fields.get("Essential") == "yes" or fields.get("Priority") == "required":
+            essential.add(name)
+        origin = fields.get("Source", name).partition(" ")[0]
+        source[name] = sys.intern(re.sub(r"-?[\d.]+$", "", origin.removesuffix("-defaults")))
+        if _ROS_SOURCE.match(origin):
+            ros.add(name)
+    real = dependencies_of(lists)
+    return Suite(platform, tuple(contents), real, frozenset(essential), frozenset(ros), source)
+
+
+def dependencies_of(lists: Path) -> dict[str, tuple[str, ...]]:
+    """Each package of a suite to what it depends on, read from the Packages indices in an apt lists folder; virtual
+    packages are replaced by the first one that provides them."""
+    depends: dict[str, tuple[str, ...]] = {}
+    provides: dict[str, list[str]] = defaultdict(list)
+    for name, fields in _fields_of(sorted(lists.glob("*_Packages*"))):
+        depends[name] = _relations(fields.get("Pre-Depends", "") + "," + fields.get("Depends", ""))
+        for other in _relations(fields.get("Provides", "")):
+            provides[other].append(name)
+    return {
         name: tuple(d if d in depends else next(iter(provides.get(d, (d,)))) for d in found)
         for name, found in depends.items()
     }
-    return Suite(platform, tuple(contents), real, frozenset(essential), frozenset(ros), source)
+
+
+def _fields_of(indices: Iterable[Path]) -> Iterator[tuple[str, dict[str, str]]]:
+    for index in indices:
+        yield from _paragraphs(lines_of(index))
 
 
 def _paragraphs(lines: Iterable[bytes]) -> Iterator[tuple[str, dict[str, str]]]:

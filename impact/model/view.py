@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..conditions import Environment, all_hold
+from ..conditions.cmake import packages_asked
 from ..config import Config
 from ..facts.condition import Condition
 from ..facts.interface import Interface
@@ -20,6 +21,7 @@ from ..targets.availability import Availabilities, Availability, Horizon, Symbol
 from ..targets.changes import DISTROS
 from ..targets.evidence import Evidence
 from ..targets.providers import message_headers
+from ..targets.providers.apt import Apt, apt_of
 from ..targets.providers.includes import Machine, machine, machine_of
 from ..targets.providers.library import default_standard, include_roots, standard_year
 from ..targets.providers.stdlib import ever_stdlib, stdlib
@@ -29,9 +31,10 @@ from ..targets.surface.offers_python import PythonOffers
 from ..targets.target import Change, Provider, Target
 from ..targets.version import at_least
 from .cmake.build import At, Found, for_tests
-from .misspelling import Names
+from .misspelling import Names, nearest
 from .package import MemberUse, role_of_folder
 from .python.api import python_packages
+from .roles import Roles
 from .workspace import Package, Workspace, snake
 
 # Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's
@@ -39,19 +42,13 @@ from .workspace import Package, Workspace, snake
 _INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
 # Kinds that are on the machine that builds the package from source.
 _BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test", "doc"})
-# On every machine that builds ROS packages (ros_buildfarm's base image and the dependencies of catkin and ament).
-_ALWAYS = frozenset({
-    "build-essential", "cmake", "pkg-config", "python", "python3", "python-dev", "python3-dev", "git", "g++-static",
-    "libc6-dev",
-})  # fmt: skip
-
-
 class Need(NamedTuple):
     """Something a package uses of somebody else.
 
-    how: find_package, component, pkg-config, include, import, launch, plugin or shell. subject: as written.
-    providers: who could give it, best first. role: build, test, run or aside. certain: stands under no condition that
-    is unknown on the target. required: its absence stops the configuration (find_package) or the program.
+    how: find_package, part (a component of it), component (of catkin), pkg-config, program, include, import, launch,
+    plugin or shell. subject: as written. providers: who could give it, best first. role: build, test, run or aside.
+    certain: stands under no condition that is unknown on the target. required: its absence stops the configuration
+    (find_package) or the program.
     """
 
     how: str
@@ -66,7 +63,8 @@ class Need(NamedTuple):
 
 
 _HOW = {
-    "find_package": 0, "component": 0, "pkg-config": 0, "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5,
+    "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "part": 0, "include": 1, "import": 2, "plugin": 3,
+    "launch": 4, "shell": 5,
 }  # fmt: skip
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
 
@@ -78,13 +76,15 @@ def weight(need: Need) -> tuple:
 
 class Misnamed(NamedTuple):
     """Why an include path, or a name, cannot be right, and what to write. ahead: it still is, until then. closed: it is
-    said because nobody is known to have it, so that whatever brings unknown contents may."""
+    said because nobody is known to have it, so that whatever brings unknown contents may. never: no version of anything
+    ever had it."""
 
     message: str
     help: str
     evidence: Evidence | None = None
     ahead: Horizon | None = None
     closed: bool = False
+    never: bool = False
 
 
 # How packages of interfaces are called, and what makes interfaces and runs with them.
@@ -99,6 +99,11 @@ _UMBRELLAS = frozenset({"ros", "moveit", "ecl", "pcl", "opencv2", "gazebo", "boo
 _GENERATED = ("rclcpp/node_interfaces/", "rclcpp/logging.hpp")
 # System packages so broad that they bring half of ROS along.
 _BROAD = frozenset({"mrpt"})
+# Generated headers that users include, by ROS generation; dynamic_reconfigure makes `XConfig.h`.
+_GENERATED_HEADER = {
+    1: re.compile(r"[A-Z][A-Za-z0-9]*(?<!Config)\.h\Z"),
+    2: re.compile(r"(?:msg|srv|action)/[a-z][a-z0-9_]*(?<!__struct)(?<!__traits)(?<!__builder)\.hpp\Z"),
+}
 _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 
 _UNCONFIGURED = Config()
@@ -622,7 +627,23 @@ class View:
         if head in self.workspace.packages:
             return self._moved_interface(head, rest, stem, bool(name))
         known = self._interfaces_of(head)
-        return self._lost_interface_named(head, name, known) if known and name else None
+        if not known:
+            return None
+        return self._lost_interface_named(head, name, known) if name else self._never_interface(path, rest, known[0])
+
+    def _never_interface(self, path: str, rest: str, history: History) -> Misnamed | None:
+        """What is wrong with a path that looks like that of a generated header, where no version of the package that
+        was read has such an interface, all of them were read up to the target's, and the release has no such file."""
+        head = path.partition("/")[0]
+        version = self.target.version(head) or ""
+        if not _GENERATED_HEADER[self.target.ros].match(rest) or not history.read_up_to(version):
+            return None
+        if self.providers.header_history(head, path) or self.has_released_header(head, path) is not False:
+            return None
+        close = nearest(rest.rpartition(".")[0], Names(s for s in history.by_header if ("/" in s) == ("/" in rest)))
+        ending = rest.rpartition(".")[2]
+        return Misnamed(f"no version of {head} has an interface for `{path}`",
+                        f"did you mean `{head}/{close}.{ending}`?" if close else "", never=True)  # fmt: skip
 
     def _moved_interface(self, head: str, rest: str, stem: str, once: bool) -> Misnamed | None:
         """The same where the package is in the workspace: another one there defines the interface. once: some release
@@ -840,9 +861,19 @@ class View:
         """Everything on a machine that has just what the package declares, the package itself included."""
         known = self._closures.get(package.name)
         if known is None:
-            known = self.spread(self._built_with(package)).union(_ALWAYS, (package.name,))
+            known = self.spread(self._built_with(package)).union(self.preinstalled, (package.name,))
             self._closures[package.name] = known
         return known
+
+    @cached_property
+    def apt(self) -> Apt:
+        """What comes along with the platform's packages."""
+        return apt_of(self.target.platform)
+
+    @cached_property
+    def preinstalled(self) -> frozenset[str]:
+        """What the build farm puts on every machine besides the platform's compiler: the workspace of ROS 2."""
+        return self.spread(["ros_workspace"]) if self.target.ros == 2 else frozenset()
 
     def may_bring(self, package: Package) -> frozenset[str]:
         """closure(), and all that packages whose manifests this distro does not tell bring in any other: what is not
@@ -857,6 +888,11 @@ class View:
                         waiting.append(other)
             known = self._widest[package.name] = frozenset(found)
         return known
+
+    @cached_property
+    def roles(self) -> Roles:
+        """What packages have at hand in each role, and what is handed on to them."""
+        return Roles(self)
 
     def _possibly_with(self, name: str) -> Iterable[str]:
         if name in self.workspace.packages or self.target.dependencies(name) is not None:
@@ -878,7 +914,7 @@ class View:
                 if other not in found:
                     found[other] = found[name]
                     queue.append(other)
-        return {**dict.fromkeys(_ALWAYS, ""), package.name: package.name, **found}
+        return {**dict.fromkeys(self.preinstalled, ""), package.name: package.name, **found}
 
     def spread(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""
@@ -919,7 +955,7 @@ class View:
             target = self.target
             unknown = self._unknown[package.name] = tuple(
                 n for n in self.closure(package)
-                if n not in self.workspace.packages and n not in _ALWAYS and target.resolve(n) is None
+                if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
                 and not target.known_key(n)  # a key that the platform lacks brings nothing
                 and target.dependencies(n) is None and target.similar_dependencies(n) is None
                 and not target.other_generation(n)  # nor does a package that cannot be had
@@ -979,7 +1015,9 @@ class View:
             vendored = frozenset(
                 n.removesuffix("_vendor").removeprefix("rviz_") for n in names if n.endswith("_vendor")
             )
-            installed = frozenset().union(*(self.debian(n) for n in names if n not in self.workspace.packages))
+            installed = self.apt.base.union(
+                *(self.apt.brought_by(d) for n in names if n not in self.workspace.packages for d in self.debian(n))
+            )
             known = (names, vendored, installed)
             if isinstance(names, _LASTING):
                 self._reached[id(names)] = known
@@ -1113,9 +1151,11 @@ class View:
         for found in package.build.found:
             if found.how == "pkg_check_modules" and self.active(found.conditions):
                 yield from self._modules_asked(found)
+            if found.how == "program" and self.active(found.conditions):
+                yield from self._program_run(found)
             if found.how not in ("find_package", "catkin") or not self.active(found.conditions):
                 continue
-            if found.name in ("catkin", package.name) or package.name in self.workspace.find_modules.get(
+            if found.name == package.name or package.name in self.workspace.find_modules.get(
                 found.name, ()
             ):
                 continue
@@ -1136,6 +1176,7 @@ class View:
                 certain,
                 found.required or (found.how == "catkin" and not found.quiet),
             )
+            yield from self._parts_asked(found, testing, certain)
         for include in digest.includes:
             if not self.active(include.conditions):
                 continue
@@ -1196,6 +1237,25 @@ class View:
             self.certain(found.conditions),
             found.required,
         )
+
+
+    def _parts_asked(self, found: Found, testing: bool, certain: bool) -> Iterator[Need]:
+        """Components of a system library that have a CMake configuration of their own (`boost_filesystem`,
+        `Qt5Widgets`), and so maybe a package."""
+        for component, at in found.components if found.required else ():
+            for name in (f"{found.name.lower()}_{component}", f"{found.name}{component}"):
+                providers = tuple(self.providers.installed_cmake(name))
+                if providers:
+                    yield Need("part", name, providers, at, "test" if testing else "build", certain)
+
+    def _program_run(self, found: Found) -> Iterator[Need]:
+        """A program that CMake starts; those that every machine has are left out. What a package builds where a library
+        is not found, it builds on some machine."""
+        providers = tuple(self.providers.executable(found.name))
+        if providers and providers[0].name and found.name not in self.apt.base:
+            certain = all(self.certain((c,)) or packages_asked(c.text) for c in found.conditions)
+            role = "test" if for_tests(found.conditions) else "build"
+            yield Need("program", found.name, providers, found.at, role, certain)
 
 
 def _field_lost(package: str, history: History, spans: Iterable[tuple[int, int]], state: int) -> Evidence:

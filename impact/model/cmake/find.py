@@ -324,6 +324,7 @@ def fetchcontent_declare(run: Interpreter, call: Call, args: list[Word]) -> None
     """FetchContent_Declare(): names a project that is downloaded while configuring."""
     if args:
         run.properties[f"FETCH {args[0].lower()}"] = Value((args[0],))
+        run.add_tools(args)
 
 
 @handles("fetchcontent_makeavailable", "fetchcontent_populate", "fetchcontent_getproperties")
@@ -343,6 +344,7 @@ def externalproject_add(run: Interpreter, call: Call, args: list[Word]) -> None:
     """ExternalProject_Add(): a custom target that downloads and builds."""
     if args:
         run.new_target(args[0], "external", args[0].at)
+        run.add_tools(args)
 
 
 @handles("externalproject_get_property")

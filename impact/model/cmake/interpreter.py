@@ -6,6 +6,7 @@ variables is joined.
 
 from __future__ import annotations
 
+import itertools
 import posixpath
 import re
 from collections.abc import Callable, Iterable
@@ -54,6 +55,10 @@ MAX_CONDITIONS = 50
 NORMAL, BREAK, CONTINUE, RETURN, FATAL = range(5)
 
 Handler = Callable[["Interpreter", Call, list[Word]], "int | None"]
+
+
+# Keywords of ExternalProject_Add and FetchContent_Declare, to the program that downloads.
+_DOWNLOADERS = {"GIT_REPOSITORY": "git", "HG_REPOSITORY": "hg", "SVN_REPOSITORY": "svn", "CVS_REPOSITORY": "cvs"}
 
 
 class _TooMuch(Exception):
@@ -1009,6 +1014,14 @@ class Interpreter:
         """Notes what could not be told."""
         if not self.silent:
             self.unresolved[(self.place(at or self.here()), reason)] = None
+
+    def add_tools(self, args: list[Word]) -> None:
+        """Collects the programs that the arguments of ExternalProject_Add() or FetchContent_Declare() start: what
+        downloads, and the commands of steps."""
+        for keyword, value in itertools.pairwise(args):
+            program = _DOWNLOADERS.get(keyword) or (str(value) if keyword.endswith("_COMMAND") else "")
+            if program and value and "$" not in program and "/" not in program:
+                self.add_found(Found(program, "program", self.place(value.at), True, conditions=self.under(value)))
 
     def add_found(self, found: Found) -> None:
         """Collects a package looked for."""

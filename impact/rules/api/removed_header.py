@@ -3,10 +3,10 @@
 What it does
     Reports `#include` lines whose header the target's version of the providing package does not install: removed,
     renamed, or only added in a later version; headers of platform libraries that the newest distro no longer has;
-    generated headers whose interface the version lacks, or another package of the workspace has; spellings of
-    generated headers that belong to the other ROS generation, or to C where rclcpp is used; headers of
-    generate_parameter_library by a path that its version does not make, or does not install; and paths that name the
-    folder which a platform has for one version of a library (`opencv4/opencv2/core.hpp`).
+    generated headers whose interface the version lacks, no version has, or another package of the workspace has; own
+    headers with a letter wrong; spellings of generated headers that belong to the other ROS generation, or to C where
+    rclcpp is used; headers of generate_parameter_library by a path that its version does not make, or does not install;
+    and paths that name the folder which a platform has for one version of a library (`opencv4/opencv2/core.hpp`).
 
 Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
@@ -34,6 +34,7 @@ Not reported
 
 import re
 
+from ...model.misspelling import one_edit
 from ...model.package import IncludeUse, is_header
 from ...model.view import Misnamed, View
 from ...model.workspace import Package
@@ -142,6 +143,16 @@ def removed_header(view: View):
                     include.at, path, lost.message, lost.help, package.name, severity=bad, evidence=lost.evidence
                 )
                 continue
+            if (own := _misspelt(view, package, path)) is not None:
+                yield Hit(
+                    include.at,
+                    path,
+                    f"nothing has `{path}`, and `{package.name}` has `{own}`",
+                    f"include `{own}`",
+                    package.name,
+                    severity="warning" if include.role != "aside" and (include.targets or include.public) else "note",
+                )
+                continue
             wrong = view.misnamed_interface(path) or view.lost_interface(path)
             soon = view.coming_interface(path) if wrong is None else None
             if soon is not None and soon.ahead is not None:
@@ -154,6 +165,8 @@ def removed_header(view: View):
                 continue
             if wrong is None and path not in gone and path not in early and path not in view.coming:
                 quiet.add(path)
+            if wrong and wrong.never and bad == "note" and include.public and view.certain(include.conditions):
+                bad = "warning"  # nobody can compile the installed header
             if wrong and not dual:
                 yield Hit(
                     include.at,
@@ -175,6 +188,23 @@ def _will_go(
     hit = Hit(include.at, include.path, message, advice, package.name, fix=respelt(view, package, include, change),
               evidence=evidence_of(change))  # fmt: skip
     return Upcoming(hit, f"{change.package} {include.path}", ahead, doubts, _rank(include))
+
+
+def _misspelt(view: View, package: Package, path: str) -> str | None:
+    """The header of the package that an include path misses by one letter; None where somebody has what it names, or
+    may make it."""
+    if view.header(path) or len(path.rpartition("/")[2]) < _SHORTEST:
+        return None
+    bare = "/" not in path
+    for header in package.digest.headers:
+        own = header.rpartition("/")[2] if bare else f"/{header}".rpartition("/include/")[2]
+        if one_edit(path, own) and re.findall(r"\d", path) == re.findall(r"\d", own):
+            return own
+    return None
+
+
+# Letters of a file's name: shorter ones are alike by chance.
+_SHORTEST = 8
 
 
 def _in_folder(package: Package, include: IncludeUse, folder: Folder, bad: str) -> Hit:

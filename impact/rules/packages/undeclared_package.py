@@ -2,10 +2,12 @@
 
 What it does
     Reports packages and system libraries that CMake or pkg-config is asked for, sources include, Python imports, launch
-    files or scripts start, when neither the manifest nor anything it declares brings them, directly or in turn; or when
-    a single declared package happens to bring them. Reports what ament_auto is told to require under a name that the
-    manifest does not have, commands that make tests and that no declared package brings, and the one package of its
-    repository that a metapackage leaves out.
+    files or scripts start, programs that ExternalProject_Add or FetchContent start, and components with a package of
+    their own, when neither the manifest nor anything it declares brings them, directly or in turn; or when they are
+    there by chance: installed for another role (a test tool brings what a node imports), or by a package that does not
+    hand them on (by its CMake exports or `build_export_depend`). What a rosdep key's packages depend on comes along.
+    Reports what ament_auto is told to require under a name that the manifest does not have, commands that make tests
+    and that no declared package brings, and the one package of its repository that a metapackage leaves out.
 
 Why it breaks
     The build works on the machine of whoever happens to have the package. On a machine that has just what the manifest
@@ -18,8 +20,8 @@ Severity
     declared is not known, no version of that in any distro does; and what ament_auto refuses. warning: tests, imports,
     launch files, installed headers that nothing here compiles, what only comes along with another dependency, or where
     a dependency is known nowhere and may bring it (one called as interfaces are brings interfaces). note: conditional
-    code, examples, documentation, files that nothing compiles, and all but the first few imports, launch references and
-    borrowed packages of a package.
+    code, examples, documentation, files that nothing compiles, and all but the first few imports and
+    launch references of a package.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -28,9 +30,9 @@ Use instead
     <depend>tf2_eigen</depend>
 
 Not reported
-    What several declared packages bring; client libraries and common system libraries that come through another
-    declared package; code that is switched off on the target; nodes of other workspaces that start only under an
-    argument; names that nobody is known to provide (they are counted as unresolved).
+    What a declared package exports; modules and nodes that come along with a declared package in the same role; code
+    that is switched off on the target; nodes of other workspaces that start only under an argument; names that nobody
+    is known to provide (they are counted as unresolved).
 """
 
 import posixpath
@@ -43,105 +45,10 @@ from ..evidence import circular, name_to_declare, present
 from ..fix_actions import Declare
 from ..rule import Hit, rule
 
-# Tools that people start on their own desk.
-_VIEWERS = (
-    "rviz",
-    "rqt",
-    "image_view",
-    "joint_state_publisher",
-    "moveit_ros_benchmarks",
-    "joint_state_publisher_gui",
-    "plotjuggler",
-    "teleop_",
-    "joy",
-    "moveit_setup_assistant",
-    "urdf_tutorial",
-    "turtlesim",
-)
-_ON_THE_DESK = frozenset(
-    [
-        "python3-matplotlib",
-        "python-matplotlib",
-        "python3-pytest",
-        "python-pytest",
-        "python-gtk2",
-        "python3-tk",
-        "python-tk",
-    ]
-)
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 LOUD = 2
 # The macros that make tests bring these headers.
 WITH_TESTS = ("gtest/", "gmock/")
-# Whoever starts a launch file has these: the launch tool itself brings them.
-_LAUNCHING = frozenset(
-    {"launch", "launch_ros", "launch_xml", "launch_yaml", "roslaunch", "launch_testing", "launch_testing_ros"}
-)
-
-
-# Client libraries and what their own headers include: always there with them, and customarily not declared apart.
-WITH_CLIENT = frozenset(
-    [
-        "roscpp",
-        "rospy",
-        "rosconsole",
-        "rostime",
-        "xmlrpcpp",
-        "roslib",
-        "cpp_common",
-        "roscpp_traits",
-        "roscpp_serialization",
-        "class_loader",
-        "pluginlib",
-        "nodelet",
-        "tf",
-        "tf2",
-        "tf2_ros",
-        "tf2_msgs",
-        "eigen_conversions",
-        "tf_conversions",
-        "message_filters",
-        "rclcpp",
-        "rclcpp_components",
-        "rclcpp_lifecycle",
-        "rclpy",
-        "rcl",
-        "rcutils",
-        "builtin_interfaces",
-        "std_msgs",
-        "geometry_msgs",
-        "sensor_msgs",
-        "nav_msgs",
-        "catkin",
-        "actionlib",
-        "dynamic_reconfigure",
-        "message_generation",
-        "message_runtime",
-        "genmsg",
-        "rcl_interfaces",
-        "opencv2",
-        "opencv3",
-    ]
-)
-# Keys that most graphs of dependencies bring anyway.
-_COMMON_KEYS = frozenset(
-    {
-        "boost",
-        "libboost-dev",
-        "libboost-all-dev",
-        "libopencv-dev",
-        "opencv2",
-        "python3-dev",
-        "python-dev",
-        "eigen",
-        "libpcl-all-dev",
-        "python",
-        "python3",
-        "liborocos-kdl-dev",
-    }
-)
-
-
 @rule(severity="error")
 def undeclared_package(view: View):
     for package in view:
@@ -150,8 +57,7 @@ def undeclared_package(view: View):
         missing: dict[str, list[Need]] = {}
         borrowed: dict[str, list[Need]] = {}
         for need in view.needs(package):
-            direct = view.answered(need.providers, declared)
-            if (direct and not _by_chance(view, need, declared, closure)) or (
+            if view.answered(need.providers, declared) or (
                 need.subject.startswith(WITH_TESTS) and need.role == "test"
             ):
                 continue
@@ -209,57 +115,41 @@ def _refused(view: View, package):
             )
 
 
-def _by_chance(view: View, need: Need, declared, closure) -> bool:
-    """True where nothing brings the system library itself, only a key of another one that depends on it somewhere."""
-    first = need.providers[0]
-    if need.how not in ("find_package", "include") or first.kind != "system" or not first.name:
-        return False
-    itself = tuple(p for p in need.providers if p.kind == "ros" or first.package in (p.package, *view.debian(p.name)))
-    if view.answered(itself, closure):
-        return False
-    # `geos` is libgeos++-dev's, whatever it installs here
-    return not any(_bare(name) in _bare(first.name) for name in declared if view.answered(need.providers, {name: name}))
-
-
-def _bare(key: str) -> str:
-    return re.sub(r"^lib|-dev$|^python3?-|[\d.]+$", "", key)
-
-
 def _borrowed(view: View, package, borrowed: dict[str, list[Need]]):
-    """What a package uses and a single declared dependency happens to bring: it leaves when that one drops it. What two
-    declared dependencies bring seldom does, and is told only where the configuration itself asks for it."""
-    told = []
+    """What a package uses and does not declare, and what it declares brings by chance: installed along with it for
+    another role, or by a package that does not hand it on."""
     declared = view.declared(package)
-    brought_by = view.brought_by(package) if borrowed else {}
     for name, needs in borrowed.items():
-        if name.startswith(("ament_", "rosidl_", "rmw")):
-            continue
-        strong = [n for n in needs if n.certain and n.required and _leans(view, n, name)]
+        strong = [n for n in needs if n.certain and n.required and _is_chance(view, package, n)]
         if not strong:
             continue
         first = min(strong, key=weight)
-        sources = [d for d in declared if view.answered(first.providers, view.spread([d]))]
-        if not 1 <= len(sources) <= _SOURCES[first.how]:
-            continue
-        if (
-            first.how == "include"
-            and name in view.workspace.packages
-            and brought_by.get(name, "") in view.workspace.packages
-            and view.target.ros == 1
-        ):
-            continue  # one repository, built in its order
-        told.append((len(sources), weight(first), name, sources, first))
-    for rank, (_, _, name, sources, first) in enumerate(sorted(told, key=lambda t: t[:3])):
+        sources = [f"`{d}`" for d in declared if view.answered(first.providers, view.spread([d]))]
+        others = f" and {len(sources) - 2} others" if len(sources) > 2 else ""
         tag = _tag(first, package.manifest.format)
         yield Hit(
             first.at,
             name,
-            f"{_how(first)}, and `{name}` only comes along with {' and '.join(f'`{s}`' for s in sources)}",
+            f"{_how(first)}, and `{name}` only comes along with {' and '.join(sources[:2])}{others}",
             f"add `<{tag}>{name}</{tag}>` to {package.digest.manifest_path}",
             package.name,
-            severity="warning" if rank < LOUD else "note",
-            fix=_cure(view, package, first, name) if rank < LOUD else (),
+            severity="warning",
+            fix=_cure(view, package, first, name),
         )
+
+
+def _is_chance(view: View, package, need: Need) -> bool:
+    """True where what a need rests on is installed for another role than the need's, or is handed on by nobody."""
+    if need.role == "aside" or (need.how == "include" and not need.targets):
+        return False
+    if need.subject == package.build_type:
+        return not view.roles.has_build_tool(package, need.subject)
+    if not view.answered(need.providers, view.roles.at_hand(package, need.role)):
+        return True
+    # Modules and nodes are not handed on: whoever has them can use them.
+    if need.how not in ("find_package", "part", "component", "pkg-config", "program", "include"):
+        return False
+    return not view.answered(need.providers, view.roles.handed_on(package, need.role, need.how != "include"))
 
 
 # Commands that tests are made with, and the packages they come from (their CMake extras in ament_cmake, launch and
@@ -331,48 +221,31 @@ _APART = re.compile(
 )
 
 
-# By how many declared dependencies something may come along and still be told.
-_SOURCES = {"include": 1, "import": 1, "find_package": 2, "component": 3, "pkg-config": 1}
-
-
-def _leans(view: View, need: Need, name: str) -> bool:
-    """True where losing what only comes along would stop the build, or an import of the workspace's own."""
-    ours = name in view.workspace.packages
-    ros = ours or view.target.version(name) is not None
-    if need.how == "import":
-        return ours and need.role == "run"
-    if need.role != "build" or name in WITH_CLIENT or (not ros and name in _COMMON_KEYS):
-        return False
-    return need.how in ("find_package", "component", "pkg-config") or (need.how == "include" and bool(need.targets))
-
-
 def _severity(view: View, package, need: Need, name: str, blind: bool) -> str | None:
     if need.role == "aside":
         return "note"
     if not present(view, name):
         return None  # unreleased-package says it
-    asked = need.how in ("find_package", "component", "pkg-config")
+    asked = need.how in ("find_package", "part", "component", "pkg-config", "program")
     if asked and (not need.required or not any(p.sure for p in need.providers)):
         return "note"
-    if need.how in ("launch", "plugin", "shell") or name in _LAUNCHING:
+    if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
+        return "note"
+    if need.how in ("launch", "plugin", "shell"):
         # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
         wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
-        loud = wanted and need.role == "run" and name not in _LAUNCHING and not name.startswith(_VIEWERS)
-        return "warning" if loud else "note"
+        return "warning" if wanted and need.role == "run" else "note"
     if need.role == "test" or need.how == "import":
-        return (
-            "warning"
-            if need.required and name not in _ON_THE_DESK and (need.role != "test" or name not in WITH_CLIENT)
-            else "note"
-        )
+        return "warning" if need.required else "note"
     if not need.certain:
         return "note"
+    if need.how in ("program", "part"):
+        return "warning"
     if need.how == "include" and not need.targets:
         # Nothing here compiles an installed header on its own; whoever includes it needs what it includes.
         passed_on = (
             need.public
             and need.providers[0].kind == "ros"
-            and name not in WITH_CLIENT
             and not need.subject.startswith(WITH_TESTS)
         )
         if not passed_on or circular(view, package, name):
@@ -425,7 +298,9 @@ def _stops_another(view: View, package, need: Need) -> bool:
 def _how(need: Need) -> str:
     return {
         "find_package": f"CMake looks for `{need.subject}`",
+        "part": f"CMake looks for the component `{need.subject}`",
         "component": f"CMake asks catkin for `{need.subject}`",
+        "program": f"CMake runs `{need.subject}`",
         "pkg-config": f"pkg-config is asked for `{need.subject}`",
         "include": f"`{need.subject}` is included",
         "import": f"`{need.subject}` is imported",

@@ -132,6 +132,7 @@ class Providers:
         An empty provider name: CMake's own find module succeeds on every machine that builds (Threads, PkgConfig).
         """
         found = self._facts("cmake", name) + self._ros("ros_cmake", name) + self._system("cmake", name)
+        found += self._sought(name)
         if not found:
             # find_package(SDL2) also reads sdl2-config.cmake.
             found = self._system("cmake", f"{name.lower()}-config")
@@ -140,6 +141,27 @@ class Providers:
                 found += self._facts("cmake", other) + self._ros("ros_cmake", other) + self._system("cmake", other)
             found = [provider._replace(sure=False) for provider in found]
         return _once(found)
+
+    def installed_cmake(self, name: str) -> list[Provider]:
+        """Which system packages install a CMake configuration of exactly this name, best first."""
+        return self._system("cmake", name)
+
+    def _sought(self, module: str) -> list[Provider]:
+        """Who brings what a find module of CMake looks for, so that it succeeds."""
+        found: list[Provider] = []
+        for kind, names in self._find_modules.get(module, {}).items():
+            for name in names:
+                found += self.header(name) if kind == "header" else self.executable(name)
+        return found
+
+    @cached_property
+    def _find_modules(self) -> dict[str, dict[str, list[str]]]:
+        """What CMake's find modules look for, see databuild/find_modules.py."""
+        path = self._data / "find_modules.json"
+        try:
+            return msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, list[str]]])
+        except (OSError, msgspec.MsgspecError) as error:
+            raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
 
     def spellings(self, name: str) -> tuple[str, ...]:
         """Every known CMake package whose name differs from this one in letter case at most."""
@@ -189,6 +211,19 @@ class Providers:
     @cached_property
     def _system_names(self) -> frozenset[str]:
         return frozenset(name for (entries,) in self._rows("SELECT entries FROM provider") for name in entries.split())
+
+    def companies(self) -> list[tuple[str, ...]]:
+        """For every header and pkg-config file of the system the packages that bring it, best first."""
+        entries = {
+            number: tuple(dict.fromkeys(p.package for p in _decode(text) if p.package))
+            for number, text in self._rows("SELECT id, entries FROM provider")
+        }
+        return [
+            packages
+            for table in ("header", "pkgconfig")
+            for (number,) in self._rows(f"SELECT provider FROM {table} ORDER BY name")
+            if (packages := entries[number])
+        ]
 
     def cmake_platforms(self, name: str) -> tuple[str, ...]:
         """Platforms whose system packages bring a CMake configuration or find module of this name."""

@@ -86,6 +86,10 @@ class About(NamedTuple):
     date: str
 
 
+# What a package has to itself, of the parts of a BuildSurface.
+_OWN = frozenset({"targets", "libraries", "commands", "programs", "plugins", "launches", "headers"})
+
+
 class History:
     """All stored versions of one package of one ROS generation, oldest first. approximate: those that a branch stood
     for."""
@@ -141,6 +145,30 @@ class History:
             for name, values in build.items()
         }
         return BuildSurface(self.package, version, **given)
+
+    def exports(self, version: str) -> tuple[str, ...] | None:
+        """The packages, and the CMake names of system libraries, that a version hands on to its dependants; None for
+        a version that is not stored, or whose build says nothing."""
+        found: list[str] = []
+        kinds = 0
+        for scope, value in self._values("build", version, of=("build_type", "dependencies", "system")):
+            if scope == "build_type":
+                kinds += 1
+            else:
+                found.append(value)
+        return tuple(found) if kinds else None
+
+    def is_bundle(self, version: str) -> bool:
+        """True for a version that has nothing to include, import, link, start or load."""
+        if version not in self.versions:
+            return False
+        place = self.versions.index(version)
+        return not any(
+            there(spans, place)
+            for kind, rows in self._rows.items()
+            for scope, _, spans in rows
+            if kind != "surface" and (kind != "build" or scope in _OWN)
+        )
 
     def python(self, version: str) -> PythonSurface | None:
         """The Python of a version; None for one that is not stored."""
@@ -214,11 +242,15 @@ class History:
             found.setdefault(scope, []).append(value)
         return found
 
-    def _values(self, kind: str, version: str, type_: Any = Any, word: bytes = b"") -> Iterator[tuple[str, Any]]:
-        """Scope and value of each row of a kind that a version has, and in which a word stands."""
+    def _values(
+        self, kind: str, version: str, type_: Any = Any, word: bytes = b"", of: tuple[str, ...] = ()
+    ) -> Iterator[tuple[str, Any]]:
+        """Scope and value of each row of a kind that a version has, and in which a word stands. of: these scopes."""
         place = self.versions.index(version) if version in self.versions else -1
         decode = msgspec.msgpack.Decoder(type_).decode
         for scope, value, spans in self._rows.get(kind, ()):
+            if of and scope not in of:
+                continue
             if place >= 0 and (not word or word in bytes(value)) and there(spans, place):
                 yield scope, decode(value)
 

@@ -1,0 +1,154 @@
+"""What a package has at hand in each role (build, run, test), and what the packages that it declares hand on.
+
+A manifest says which packages are installed together. What a package *exports* is less: CMake hands on what
+ament_export_dependencies or CATKIN_DEPENDS and DEPENDS of catkin_package name, and a manifest promises what it declares
+as `build_export_depend`. What is installed and exported by nobody is there only by chance: it leaves when the package
+that happens to need it drops it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .view import View
+    from .workspace import Package
+
+KINDS = {
+    "build": frozenset({"build", "buildtool", "build_export", "buildtool_export"}),
+    "run": frozenset({"exec", "build_export", "buildtool_export"}),
+    "test": frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test"}),
+}
+"""Kinds of dependencies that install what a role needs. Tests are built and run where everything is."""
+
+_TOOLS = frozenset({"buildtool_export"})
+_PROMISES = _TOOLS | {"build_export"}
+_HANDED_ON = ("ament_export_dependencies", "catkin_depends", "system_depends")
+
+
+class Roles:
+    """The closures of the packages of one view."""
+
+    def __init__(self, view: View):
+        self._view = view
+        self._exports: dict[str, tuple[str, ...]] = {}
+        self._promises: dict[str, tuple[str, ...]] = {}
+        self._at_hand: dict[tuple[str, str], frozenset[str]] = {}
+        self._handed_on: dict[tuple[str, str, bool], frozenset[str]] = {}
+
+    def at_hand(self, package: Package, role: str) -> frozenset[str]:
+        """Everything that is installed along with what a package declares for a role (`build`, `run`, `test`)."""
+        known = self._at_hand.get((package.name, role))
+        if known is None:
+            declared = self._view.declared(package)
+            start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
+            known = self._at_hand[package.name, role] = self._view.spread(start) | {package.name}
+        return known
+
+    def handed_on(self, package: Package, role: str, promised: bool) -> frozenset[str]:
+        """What a package declares for a role, and what that exports in turn. promised: what its manifests promise to
+        export counts as well as what its CMake does."""
+        key = package.name, role, promised
+        known = self._handed_on.get(key)
+        if known is None:
+            declared = self._view.declared(package)
+            start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
+            known = self._handed_on[key] = _reached(start, self._either if promised else self._by_cmake)
+        return known
+
+    def _either(self, name: str) -> tuple[str, ...]:
+        return (*self.exports(name), *self.promises(name))
+
+    def _by_cmake(self, name: str) -> tuple[str, ...]:
+        return (*self.exports(name), *self.tools(name))
+
+    def tools(self, name: str) -> tuple[str, ...]:
+        """What the CMake extensions of a package need where it is used: `buildtool_export_depend`."""
+        return tuple(n for n, kind in self._dependencies(name) if kind in _TOOLS)
+
+    def has_build_tool(self, package: Package, tool: str) -> bool:
+        """Whether a package declares a tool of its own build, or a tool that exports it."""
+        declared = self._view.declared(package)
+        return tool in _reached((n for n, kinds in declared.items() if "buildtool" in kinds or n == tool), self.tools)
+
+    def comes_with_launch(self, name: str, path: str) -> bool:
+        """Whether whoever starts launch files has a package: all that comes along with the command that does, for the
+        launch files themselves; the command's own packages for what is made for them."""
+        tool = "ros2launch" if self._view.target.ros == 2 else "roslaunch"
+        if "launch" in path.rpartition("/")[2]:
+            return name in self._view.spread([tool])
+        return name == tool or name in self._view.installed_with(tool)
+
+    def exports(self, name: str) -> tuple[str, ...]:
+        """What a package hands on by CMake; by its manifest where its CMake is not known."""
+        known = self._exports.get(name)
+        if known is None:
+            known = self._exports[name] = tuple(self._exported(name))
+        return known
+
+    def promises(self, name: str) -> tuple[str, ...]:
+        """What the manifest of a package promises to hand on. A manifest of format 1 calls both that and what is needed
+        to run `run_depend`, which promises nothing."""
+        known = self._promises.get(name)
+        if known is None:
+            known = self._promises[name] = tuple(self._promised(name))
+        return known
+
+    def _exported(self, name: str) -> Iterable[str]:
+        view = self._view
+        own = view.workspace.packages.get(name)
+        if own is not None:
+            if any(f.how == "ament_auto" for f in own.build.found):
+                return self._promised(name)
+            handed = [e.item for e in own.build.exports if e.how in _HANDED_ON and view.active(e.conditions)]
+            return [key for item in handed for key in self._named(item)]
+        build = view.offers.exports(name)
+        if build is None:
+            return self._promised(name)
+        return [key for item in build for key in self._named(item)]
+
+    def _named(self, item: str) -> Iterable[str]:
+        """The package of this name, or who answers find_package() of a system library's CMake name."""
+        view = self._view
+        if item in view.workspace.packages or view.target.version(item) is not None:
+            return (item,)
+        return [provider.name for provider in view.cmake(item)]
+
+    def _promised(self, name: str) -> Iterable[str]:
+        wanted = KINDS["run"] if self._bundles(name) else _TOOLS if self._promises_nothing(name) else _PROMISES
+        return [n for n, kind in self._dependencies(name) if kind in wanted]
+
+    def _promises_nothing(self, name: str) -> bool:
+        """True where `run_depend` of format 1 is all that a manifest says, and CMake says more. Of released packages of
+        ROS 1 the format is not known."""
+        own = self._view.workspace.packages.get(name)
+        if own is not None:
+            return own.manifest.format == 1
+        return self._view.target.ros == 1 and self._view.offers.exports(name) is not None
+
+    def _bundles(self, name: str) -> bool:
+        """True for a package that has nothing of its own and is there to bring others, as a metapackage does."""
+        own = self._view.workspace.packages.get(name)
+        if own is not None:
+            return own.manifest.metapackage or not (own.build.targets or own.build.installs or own.digest.imports)
+        return self._view.offers.is_bundle(name)
+
+    def _dependencies(self, name: str) -> Iterable[tuple[str, str]]:
+        view = self._view
+        own = view.workspace.packages.get(name)
+        if own is not None:
+            return [(n, kind) for n, kinds in view.declared(own).items() for kind in kinds]
+        released = view.target.dependencies(name) or view.target.similar_dependencies(name) or ()
+        return [(d.name, d.kind) for d in released]
+
+
+def _reached(start: Iterable[str], step: Callable[[str], Iterable[str]]) -> frozenset[str]:
+    found = set(start)
+    waiting = list(found)
+    while waiting:
+        for other in step(waiting.pop()):
+            if other not in found:
+                found.add(other)
+                waiting.append(other)
+    return frozenset(found)

@@ -1,0 +1,89 @@
+"""Which Debian packages come along with one that is installed: the shipped graph, made by databuild/apt.py."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache, cached_property
+from pathlib import Path
+
+import msgspec
+
+from ..snapshot import DATA, SnapshotError
+
+INFERRED = 1 << 15
+"""Bit of a relation that was read off the lists of files of Ubuntu's suites instead of a package's own dependencies."""
+
+
+class Graph(msgspec.Struct, frozen=True, array_like=True):
+    """suites: platforms (`debian bookworm`) whose indices were read. packages: their names, sorted; the rest is places
+    in this list. base: what every machine that builds has. brings: package to (package, bits of the suites where it
+    comes along with the first one)."""
+
+    suites: tuple[str, ...]
+    packages: tuple[str, ...]
+    base: tuple[int, ...]
+    brings: dict[int, list[tuple[int, int]]]
+
+
+class Apt:
+    """The graph as one platform sees it. Of a platform whose index was not read, all that any other suite brings
+    counts: such an answer may say that something is there, and never that it is missing."""
+
+    def __init__(self, graph: Graph, platform: str):
+        self._graph = graph
+        self._place = {name: place for place, name in enumerate(graph.packages)}
+        self._inferred = platform not in graph.suites
+        self._mask = INFERRED - 1 if self._inferred else 1 << graph.suites.index(platform)
+        self._whole: dict[str, frozenset[str]] = {}
+
+    @cached_property
+    def base(self) -> frozenset[str]:
+        """Packages of every machine that builds."""
+        return frozenset(self._graph.packages[place] for place in self._graph.base)
+
+    def brought_by(self, package: str) -> frozenset[str]:
+        """A package and those that are installed along with it, as far as rosdep keys install them."""
+        known = self._whole.get(package)
+        if known is None:
+            known = self._whole[package] = frozenset(self._brought_by(package))
+        return known
+
+    def _brought_by(self, package: str) -> Iterator[str]:
+        yield package
+        python = package.partition("-")[0]
+        if python in ("python", "python3"):
+            yield python  # Debian's Python policy, of packages that no suite here has too
+        start = self._place.get(package)
+        if start is None:
+            return
+        brings, found, waiting = self._graph.brings, {start}, [start]
+        while waiting:
+            for other, bits in brings.get(waiting.pop(), ()):
+                if bits & self._mask and other not in found:
+                    found.add(other)
+                    waiting.append(other)
+        if self._inferred:
+            # What was read off lists of files is complete as it is, and following it would add up its errors.
+            found.update(other for other, bits in brings.get(start, ()) if bits & INFERRED)
+        for place in found:
+            name = self._graph.packages[place]
+            yield name
+            if self._inferred and name.startswith("python3"):
+                yield name.replace("python3", "python", 1)  # older platforms have the library for Python 2
+
+
+@cache
+def _graph(data: Path) -> Graph:
+    import zstandard
+
+    path = data / "apt.json.zst"
+    try:
+        return msgspec.json.decode(zstandard.ZstdDecompressor().decompress(path.read_bytes()), type=Graph)
+    except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+
+
+@cache
+def apt_of(platform: str, data: Path = DATA) -> Apt:
+    """The shipped graph for a platform (`ubuntu jammy`). Raises SnapshotError when it is missing or damaged."""
+    return Apt(_graph(data), platform)
