@@ -24,7 +24,7 @@ from .model.view import View
 from .model.workspace import Workspace, link
 from .report.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
 from .rules.cure import Declare, Insert, Replace
-from .rules.rule import Cure, Finding, Hit, Rule, all_rules
+from .rules.rule import Cure, Diagnostic, Finding, Hit, Rule, all_rules
 from .targets.providers import default_providers
 from .targets.resolve import Chosen, choose_targets
 from .targets.version import compare
@@ -203,11 +203,10 @@ def _splits(
         line_text=sources.line,
     )
     old = {finding.package for finding, _ in parted if not finding.new}
-    families = {name: rule.family for name, rule in rules.items()}
     marked = [finding._replace(new=finding.package not in old) for finding in found]
     allows = {path: comments for package in opened.workspace for path, comments in package.digest.allows}
-    told = after.with_settings(marked, settings, families)
-    return after.suppressed(told, allows, families=families, ran=()).kept
+    configured = after.with_settings(marked, settings, rules)
+    return after.suppressed(configured, allows, rules=rules, ran=()).kept
 
 
 def _reached(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
@@ -288,7 +287,7 @@ def open_workspace(
     if tree is None:
         tree = open_tree(root, options.rev, follow_links=options.follow_links)
     config = settings_of(root, tree, options.config, follow_links=options.follow_links)
-    asks_flow = chosen is not None and any(rule.flow for rule in chosen(config).values())
+    asks_flow = chosen is not None and any(rule.reads_flow for rule in chosen(config).values())
     with Store(options.cache) as store:
         second = code_kinds(tree) if asks_flow else None
         gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second)
@@ -469,24 +468,24 @@ def judge(
     failed; what the others found stands."""
     workspace, views = opened.workspace, opened.views
     names = [view.target.name for view in views]
-    families = {name: rule.family for name, rule in all_rules().items()}
+    known = all_rules()
     by_name = {view.target.name: view for view in views}
 
-    def made(hits: Iterable[tuple[str, str, Hit]]) -> list[Finding]:
+    def merge(diagnostics: Iterable[tuple[str, str, Diagnostic | Hit]]) -> list[Finding]:
         found = after.merge(
-            hits,
+            diagnostics,
             targets=names,
             rules=rules,
             line_text=sources.line,
             holds=lambda fix, target: all(holds(cure, by_name[target]) for cure in fix),
         )
-        return after.with_settings(found, settings, families)
+        return after.with_settings(found, settings, known)
 
     allows = {path: comments for package in workspace for path, comments in package.digest.allows}
     result = after.suppressed(
-        made(hits_of(opened, rules.values(), crashed, before, jobs)),
+        merge(hits_of(opened, rules.values(), crashed, before, jobs)),
         allows,
-        families=families,
+        rules=known,
         ran=[name for name in rules if name != "unguarded-split"],  # it speaks last, see _splits()
     )
     kept = list(result.kept)
@@ -494,7 +493,7 @@ def judge(
         from .rules.general.unused_suppression import unused
 
         kept = after.in_order(
-            [*kept, *made(("unused-suppression", "", hit) for hit in unused(workspace, result.unused))]
+            [*kept, *merge(("unused-suppression", "", hit) for hit in unused(workspace, result.unused))]
         )
     return Judged(kept, list(result.suppressed))
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..edges.console import unforeseen
 from . import memo, processes
-from .rules.rule import Hit, Rule
+from .rules.rule import Diagnostic, Hit, Rule, Scope
 from .targets.snapshot import SnapshotError
 
 if TYPE_CHECKING:
@@ -27,20 +27,47 @@ _PACKAGE_MEMORY = 8 << 20
 
 # (rule, why it failed) to the targets on which it did
 Crashes = dict[tuple[str, str], list[str]]
+# (rule, what it yields)
+Yielded = tuple[str, Diagnostic | Hit]
 
 
 def hits_of(
     opened: Opened, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None, jobs: int | None = None
-) -> Iterator[tuple[str, str, Hit]]:
-    """(rule, target, hit) of all the rules; the target is empty for rules that know none.
+) -> Iterator[tuple[str, str, Diagnostic | Hit]]:
+    """(rule, target, diagnostic) of all the rules; the target is empty for rules that know none.
 
     before: the workspace at the base, for rules that compare. crashed: gets the rules that failed; what the others
     found stands. jobs: processes to use, all available cores when None.
     """
     every = list(rules)
-    told = [rule for rule in every if rule.per_target]
-    names = [rule.name for rule in told]
-    kept: dict[str, list[tuple[str, Hit]]] = {}
+    by_target = _run_on_targets(opened, _of_scope(every, "target"), crashed, jobs)
+    on_flow = _of_flow(opened, [rule for rule in every if rule.reads_flow], crashed, before)
+    for rule in every:
+        if rule.scope == "target":
+            for view in opened.views:
+                target = view.target.name
+                yield from ((name, target, each) for name, each in by_target[target] if name == rule.name)
+        elif rule.scope == "install_space":
+            yield from _of_install(opened, rule, crashed)
+        elif rule.scope == "targets":
+            yielded = _tried(rule, "", crashed, lambda rule=rule: rule.run(opened.views))
+            yield from ((rule.name, view.target.name, each) for view, each in yielded)
+        elif rule.reads_flow:
+            yield from ((name, "", each) for name, each in on_flow if name == rule.name)
+        else:
+            yield from ((rule.name, "", each) for each in _tried(rule, "", crashed, _run(rule, opened, before)))
+
+
+def _of_scope(rules: Iterable[Rule], scope: Scope) -> list[Rule]:
+    return [rule for rule in rules if rule.scope == scope]
+
+
+def _run_on_targets(
+    opened: Opened, rules: Sequence[Rule], crashed: Crashes, jobs: int | None
+) -> dict[str, list[Yielded]]:
+    """What rules yield on each target, by its name: remembered from an earlier run where nothing changed."""
+    names = [rule.name for rule in rules]
+    found: dict[str, list[Yielded]] = {}
     fresh = []
     for place, view in enumerate(opened.views):
         known = memo.recall(opened.store, view, names)
@@ -48,32 +75,18 @@ def hits_of(
             fresh.append(place)
             memo.prepare(opened.store, view.target)
         else:
-            kept[view.target.name] = known
-    for place, said in _judged(opened, told, fresh, crashed, jobs or processes.cores()):
+            found[view.target.name] = known
+    for place, yielded in _judged(opened, rules, fresh, crashed, jobs or processes.cores()):
         view = opened.views[place]
-        kept[view.target.name] = said
+        found[view.target.name] = yielded
         if not crashed:
-            memo.remember(opened.store, view, names, said)
-    of_flow = _of_flow(opened, [rule for rule in every if rule.flow], crashed, before)
-    for rule in every:
-        if rule.name in names:
-            for view in opened.views:
-                target = view.target.name
-                yield from ((name, target, hit) for name, hit in kept[target] if name == rule.name)
-        elif rule.installed:
-            yield from _of_install(opened, rule, crashed)
-        elif rule.across:
-            hits = _tried(rule, "", crashed, lambda rule=rule: rule.run(opened.views))
-            yield from ((rule.name, view.target.name, hit) for view, hit in hits)
-        elif rule.flow:
-            yield from ((name, "", hit) for name, hit in of_flow if name == rule.name)
-        else:
-            yield from ((rule.name, "", hit) for hit in _tried(rule, "", crashed, _run(rule, opened, before)))
+            memo.remember(opened.store, view, names, yielded)
+    return found
 
 
 def _judged(
     opened: Opened, rules: Sequence[Rule], places: Sequence[int], crashed: Crashes, jobs: int
-) -> Iterator[tuple[int, list[tuple[str, Hit]]]]:
+) -> Iterator[tuple[int, list[Yielded]]]:
     """What the rules say of these views, each with its place among them."""
     packages = list(opened.workspace.packages)
     if not packages or not processes.may_fork():
@@ -91,21 +104,21 @@ def _judged(
         done[task] = _one_by_one(opened, rules, packages, size, task) if isinstance(result, processes.Died) else result
     for place, tasks_of_view in groupby(tasks, key=lambda task: task[0]):
         view = opened.views[place]
-        said: dict[str, list[tuple[str, Hit]]] = {}
+        yielded: dict[str, list[Yielded]] = {}
         for task in tasks_of_view:
             hits, unresolved, failures = done[task]
             for name, hit in hits:
-                said.setdefault(name, []).append((name, hit))
+                yielded.setdefault(name, []).append((name, hit))
             for kind, unknown in unresolved.items():
                 view.unresolved.setdefault(kind, set()).update(unknown)
             for failure in failures:
                 _note(crashed, failure, view.target.name)
-        yield place, [each for rule in rules for each in said.get(rule.name, ())]
+        yield place, [each for rule in rules for each in yielded.get(rule.name, ())]
 
 
 def _part(
     opened: Opened, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
-) -> tuple[list[tuple[str, Hit]], dict[str, set[str]], Crashes]:
+) -> tuple[list[Yielded], dict[str, set[str]], Crashes]:
     """What rules say of some packages on one view, what was not resolved, and the rules that failed."""
     place, at = task
     view = opened.views[place]
@@ -127,11 +140,11 @@ def _bytes(workspace: Workspace, packages: Collection[str]) -> int:
 
 def _one_by_one(
     opened: Opened, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
-) -> tuple[list[tuple[str, Hit]], dict[str, set[str]], Crashes]:
+) -> tuple[list[Yielded], dict[str, set[str]], Crashes]:
     """As _part, package by package, where the rules end the process on one of them: that one is named."""
     place, at = task
     singles = [(place, each) for each in range(at, min(at + size, len(packages)))]
-    hits: list[tuple[str, Hit]] = []
+    hits: list[Yielded] = []
     unresolved: dict[str, set[str]] = {}
     crashed: Crashes = {}
     found = dict(processes.forked(_part, singles, 1, opened, rules, packages, 1))
@@ -148,7 +161,7 @@ def _one_by_one(
     return hits, unresolved, crashed
 
 
-def _all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[tuple[str, Hit]]:
+def _all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[Yielded]:
     for rule in rules:
         for hit in _tried(rule, view.target.name, crashed, lambda rule=rule: rule.run(view)):
             yield rule.name, hit
@@ -156,7 +169,7 @@ def _all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[tuple[str, H
 
 def _of_flow(
     opened: Opened, rules: Sequence[Rule], crashed: Crashes, before: Workspace | None
-) -> list[tuple[str, Hit]]:
+) -> list[Yielded]:
     """What rules say of the message flow: remembered by all that it rests on, since joining it is dear."""
     if not rules:
         return []
@@ -165,35 +178,35 @@ def _of_flow(
     if known is not None:
         return known
     failed: Crashes = {}
-    said: list[tuple[str, Hit]] = []
+    yielded: list[Yielded] = []
     if processes.may_fork():
         opened.store.close()  # no other process may go on with a connection of this one
         found = dict(processes.forked(_flow_part, [0], 1, opened, rules, before))[0]
         if isinstance(found, processes.Died):
             failed[", ".join(rule.name for rule in rules), f"the check of the message flow {found.why}"] = []
         else:
-            said, failed = found
+            yielded, failed = found
     else:
-        said, failed = _flow_part(opened, rules, before, 0)
+        yielded, failed = _flow_part(opened, rules, before, 0)
     if not failed:
-        memo.remember_flow(opened.store, key, said)
+        memo.remember_flow(opened.store, key, yielded)
     crashed.update(failed)
-    return said
+    return yielded
 
 
 def _flow_part(
     opened: Opened, rules: Sequence[Rule], before: Workspace | None, _: int
-) -> tuple[list[tuple[str, Hit]], Crashes]:
+) -> tuple[list[Yielded], Crashes]:
     """What rules say of the message flow, and the rules that failed."""
     packages = opened.workspace.packages
     processes.begin_part(0, _bytes(opened.workspace, packages))
     processes.allow_memory(len(packages) * _PACKAGE_MEMORY)
     failed: Crashes = {}
-    said = [(rule.name, hit) for rule in rules for hit in _tried(rule, "", failed, _run(rule, opened, before))]
-    return said, failed
+    yielded = [(rule.name, each) for rule in rules for each in _tried(rule, "", failed, _run(rule, opened, before))]
+    return yielded, failed
 
 
-def _of_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Hit]]:
+def _of_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Diagnostic | Hit]]:
     """What a rule says of the built files, machine by machine. What a machine has changes unseen, so it is not
     remembered."""
     installed = opened.installed
@@ -206,17 +219,19 @@ def _of_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[
         yield from ((rule.name, shelf.target, hit) for hit in hits)
 
 
-def _run(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Hit]]:
+def _run(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Diagnostic | Hit]]:
     """The call of a rule that asks no target."""
-    if not rule.compares:
+    if not rule.has_base:
         return lambda: rule.run(opened.workspace)
     return lambda: rule.run(opened.workspace, before) if before is not None else ()
 
 
 def _tried(rule: Rule, target: str, crashed: Crashes, run: Callable[[], Iterable[Any]]) -> Iterator[Any]:
-    """The hits of a rule up to where it fails, if it does."""
+    """What a rule yields up to where it fails, if it does."""
     try:
-        yield from run()
+        for each in run():
+            rule.verify(each[1] if rule.scope == "targets" else each)
+            yield each
     except SnapshotError:
         raise  # no rule can do without the data
     except Exception as error:

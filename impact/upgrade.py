@@ -15,6 +15,7 @@ from .findings import rank
 from .model.build_order import build_order
 from .report.report import Report, ReportedPackage, ReportedTarget
 from .rules.rule import Finding
+from .rules.severity import Doubt
 
 
 class Upgrade(NamedTuple):
@@ -74,7 +75,7 @@ def upgrade(
         if name not in folders:
             raise CheckError(f"--packages {name}: the workspace has no such package")
     wanted = set(packages or ("", *order))
-    warning = {rule.name for rule in report.rules if rule.deprecation}
+    warning = {rule.name for rule in report.rules if Doubt.DEPRECATED in rule.doubts}
     now, then = ([finding for finding in side.report.findings if finding.package in wanted] for side in (after, before))
     told, lost = compared(now, then), compared(then, now)
     return Upgrade(

@@ -34,7 +34,7 @@ from rosimpact.impact.targets.evidence import Evidence
 
 TARGETS = ("humble", "jazzy", "rolling")
 RULES = {
-    name: Rule(name, family, severity, preview, True, lambda: iter(()), "")
+    name: Rule(name, family, severity, lambda: iter(()), preview=preview)
     for name, family, severity, preview in (
         ("removed-header", "api", "error", False),
         ("deprecated-name", "api", "note", True),
@@ -43,7 +43,6 @@ RULES = {
         ("unused-suppression", "sources", "note", False),
     )
 }
-FAMILIES = {name: rule.family for name, rule in RULES.items()}
 FIX = (Edit("a.xml", 0, 0, "x"),)
 
 
@@ -307,7 +306,7 @@ def test_settings_by_path(settings, expected):
         finding("unused-dependency", path="src/v/package.xml", severity="note"),
         finding(path="src/w/a.cpp"),
     ]
-    assert [each.severity for each in with_settings(findings, settings, FAMILIES)] == expected
+    assert [each.severity for each in with_settings(findings, settings, RULES)] == expected
 
 
 @pytest.mark.parametrize(
@@ -347,14 +346,14 @@ ALLOWED = [
 def test_suppression(comments, stay, unused):
     findings = [finding(line=line) for line in (2, 3, 4)]
     ran = {"removed-header", "undeclared-package", "unused-dependency"}
-    outcome = suppressed(findings, {"a.cpp": comments}, families=FAMILIES, ran=ran)
+    outcome = suppressed(findings, {"a.cpp": comments}, rules=RULES, ran=ran)
     assert [each.line for each in outcome.kept] == stay
     assert len(outcome.kept) + len(outcome.suppressed) == 3
     assert outcome.unused == unused
 
 
 def test_a_comment_holds_for_its_own_file_only():
-    outcome = suppressed([finding()], {"b.cpp": [Allow(1, ("*",), False)]}, families=FAMILIES, ran=set(RULES))
+    outcome = suppressed([finding()], {"b.cpp": [Allow(1, ("*",), False)]}, rules=RULES, ran=set(RULES))
     assert outcome.kept == [finding()]
     assert outcome.unused == [("b.cpp", 1, "*")]
 

@@ -241,7 +241,7 @@ CASES = sorted(path for path in (HERE / "rules").glob("*/*/before") if path.is_d
 def test_rules_per_target_see_nothing_but_digests(case, cache, tmp_path, monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
-    rules = [rule for rule in all_rules().values() if rule.per_target]
+    rules = [rule for rule in all_rules().values() if rule.scope == "target"]
     with open_workspace(case, Options(targets=("jazzy", "noetic"), cache=tmp_path / "facts")) as opened:
         for view in opened.views:
             whole = [list(rule.run(view)) for rule in rules]

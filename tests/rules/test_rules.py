@@ -46,7 +46,7 @@ def run(tmp_path_factory, made_elf) -> Run:
         targets = case / "targets"
         asked = tuple(targets.read_text().split()) if targets.exists() else ()
         options = Options(targets=asked, preview=True, cache=store, jobs=1)
-        if all_rules()[rule_of(case)].compares:
+        if all_rules()[rule_of(case)].has_base:
             return compare(case / which, case / "after", options)
         built = case / which / "installed.txt"
         if built.exists():

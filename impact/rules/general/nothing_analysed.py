@@ -15,7 +15,7 @@ from ...model.workspace import Workspace
 from ..rule import Hit, rule
 
 
-@rule(severity="error", per_target=False)
+@rule(scope="workspace", severity="error")
 def nothing_analysed(workspace: Workspace):
     if not workspace.packages:
         yield Hit(

@@ -17,7 +17,7 @@ from ...model.workspace import Workspace
 from ..rule import Hit, rule
 
 
-@rule(severity="note", per_target=False)
+@rule(scope="workspace", severity="note")
 def unreadable_file(workspace: Workspace):
     hidden = {place.manifest_path for place in workspace.hidden}
     for problem in workspace.gathered.problems:

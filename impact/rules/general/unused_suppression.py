@@ -23,7 +23,7 @@ from ...model.workspace import Workspace
 from ..rule import Hit, rule
 
 
-@rule(severity="note", per_target=False)
+@rule(scope="workspace", severity="note")
 def unused_suppression(workspace: Workspace):
     """What is unused is known only after all other rules have spoken, so check.py calls unused()."""
     return iter(())

@@ -41,7 +41,7 @@ _BELOW = frozenset(
 )  # fmt: skip
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(scope="flow", severity="warning", preview=True)
 def dead_remap(workspace: Workspace):
     for (path, line, written), rows in given(workspace, lambda start: start.renamed, lambda each: each.written):
         if any(_lives(start, renamed, workspace.ros) for start, renamed in rows):

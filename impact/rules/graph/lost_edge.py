@@ -36,7 +36,7 @@ _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
 _DOES = {"publisher": "publishes", "subscriber": "reads"}
 
 
-@rule(severity="warning", preview=True, compares=True, flow=True)
+@rule(scope="flow_change", severity="warning", preview=True)
 def lost_edge(workspace: Workspace, base: Workspace):
     now, before = (Flow(each.flow, {}) for each in (workspace, base))
     for topic in sorted({topic for kind, topic in before.known if kind == "topic"}):

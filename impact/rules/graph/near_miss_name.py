@@ -30,7 +30,7 @@ from ...model.workspace import Workspace
 from ..rule import Hit, rule
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(scope="flow", severity="warning", preview=True)
 def near_miss_name(workspace: Workspace):
     closed = {launch.path for launch in workspace.launches if not launch.missing}
     told = set()

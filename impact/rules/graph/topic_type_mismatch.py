@@ -31,7 +31,7 @@ from ..rule import Hit, rule
 _WHAT = {"subscriber": "topic", "client": "service", "action client": "action"}
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(scope="flow", severity="warning", preview=True)
 def topic_type_mismatch(workspace: Workspace):
     for taker, number in uncompared(workspace):
         yield Hit(

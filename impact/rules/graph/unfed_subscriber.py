@@ -28,7 +28,7 @@ from ..rule import Hit, rule
 from .own_topics import one_sided
 
 
-@rule(severity="note", preview=True, flow=True)
+@rule(scope="flow", severity="note", preview=True)
 def unfed_subscriber(workspace: Workspace):
     for one in one_sided(workspace, "subscriber"):
         endpoint = one.endpoint

@@ -38,7 +38,7 @@ _COMMON = frozenset(
 _COMMON_HEADS = ("qos_overrides", "bond", "diagnostic_updater", "actionlib", "lifecycle")
 
 
-@rule(severity="note", preview=True, flow=True)
+@rule(scope="flow", severity="note", preview=True)
 def unknown_parameter(workspace: Workspace):
     useless: dict[tuple[str, int], list[tuple[str, Start]]] = {}
     for (path, line, name), rows in given(workspace, lambda start: start.given, lambda each: each.name):

@@ -34,7 +34,7 @@ _EVERYWHERE = ("rcl_interfaces/", "lifecycle_msgs/", "composition_interfaces/", 
                "dynamic_reconfigure/", "roscpp/", "nodelet/", "std_srvs/", "sensor_msgs/SetCameraInfo")  # fmt: skip
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(scope="flow", severity="warning", preview=True)
 def unmatched_client(workspace: Workspace):
     served = {
         one.topic

@@ -28,7 +28,7 @@ from ..rule import Hit, rule
 from .own_topics import one_sided
 
 
-@rule(severity="note", preview=True, flow=True)
+@rule(scope="flow", severity="note", preview=True)
 def unread_topic(workspace: Workspace):
     for one in one_sided(workspace, "publisher"):
         endpoint = one.endpoint

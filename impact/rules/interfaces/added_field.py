@@ -22,7 +22,7 @@ from ..rule import Hit, rule
 from .comparison import pairs, users, wire
 
 
-@rule(severity="warning", compares=True)
+@rule(scope="change", severity="warning")
 def added_field(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
         before = {f.name for f in pair.old.fields}

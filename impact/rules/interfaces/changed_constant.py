@@ -23,7 +23,7 @@ from ..rule import Hit, rule
 from .comparison import pairs, users
 
 
-@rule(severity="warning", compares=True)
+@rule(scope="change", severity="warning")
 def changed_constant(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
         after = {c.name: c for c in pair.new.constants}

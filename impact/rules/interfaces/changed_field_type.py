@@ -22,7 +22,7 @@ from ..rule import Hit, rule
 from .comparison import pairs, type_of, users, wire
 
 
-@rule(severity="error", compares=True)
+@rule(scope="change", severity="error")
 def changed_field_type(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
         before = {f.name: f for f in pair.old.fields}

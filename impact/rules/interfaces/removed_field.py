@@ -22,7 +22,7 @@ from ..rule import Hit, rule
 from .comparison import pairs, users, wire
 
 
-@rule(severity="error", compares=True)
+@rule(scope="change", severity="error")
 def removed_field(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
         there = {f.name for f in pair.new.fields}

@@ -22,7 +22,7 @@ from ..rule import Hit, rule
 from .comparison import _users
 
 
-@rule(severity="error", compares=True)
+@rule(scope="change", severity="error")
 def removed_interface(workspace: Workspace, base: Workspace):
     now = {}
     for package in workspace:

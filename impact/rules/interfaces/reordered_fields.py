@@ -23,7 +23,7 @@ from ..rule import Hit, rule
 from .comparison import pairs, users, wire
 
 
-@rule(severity="error", compares=True)
+@rule(scope="change", severity="error")
 def reordered_fields(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
         new = [f for f in pair.new.fields if any(f.name == o.name for o in pair.old.fields)]

@@ -29,7 +29,7 @@ from ..rule import Hit, rule
 from .statements import hits
 
 
-@rule(severity="warning", compares=True)
+@rule(scope="change", severity="warning")
 def changed_trigger(workspace: Workspace, base: Workspace) -> Iterator[Hit]:
     def says(change: Change) -> str:
         return f"`{change.topic}` is published by another trigger: {change.why}"

@@ -31,7 +31,7 @@ from ..rule import Hit, rule
 from .statements import conditions, hits
 
 
-@rule(severity="warning", compares=True)
+@rule(scope="change", severity="warning")
 def tightened_publish_condition(workspace: Workspace, base: Workspace) -> Iterator[Hit]:
     def fits(change: Change) -> bool:
         return change.kind == "tightened" and not change.unreachable

@@ -29,7 +29,7 @@ from ..rule import Hit, rule
 from .statements import hits, quoted
 
 
-@rule(severity="warning", compares=True)
+@rule(scope="change", severity="warning")
 def unreachable_publish(workspace: Workspace, base: Workspace) -> Iterator[Hit]:
     def says(change: Change) -> str:
         was = f"it ran under {quoted(change.old)}"

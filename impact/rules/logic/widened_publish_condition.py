@@ -23,7 +23,7 @@ from ..rule import Hit, rule
 from .statements import conditions, hits
 
 
-@rule(severity="note", compares=True)
+@rule(scope="change", severity="note")
 def widened_publish_condition(workspace: Workspace, base: Workspace) -> Iterator[Hit]:
     def says(change: Change) -> str:
         return f"`{change.topic}` is published in more cases, {change.why}: {conditions(change)}"

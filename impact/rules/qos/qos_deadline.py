@@ -26,7 +26,7 @@ from ..rule import rule
 from .offers import meetings, refused
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(scope="flow", severity="warning", preview=True)
 def qos_deadline(workspace: Workspace):
     for pair, offered, asked in meetings(workspace):
         if offered.deadline is not None and asked.deadline is not None and offered.deadline > asked.deadline:

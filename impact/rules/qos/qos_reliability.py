@@ -27,7 +27,7 @@ from ..rule import rule
 from .offers import meetings, refused
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(scope="flow", severity="warning", preview=True)
 def qos_reliability(workspace: Workspace):
     for pair, offered, asked in meetings(workspace):
         if offered.reliability == "best_effort" and asked.reliability == "reliable":
