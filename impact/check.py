@@ -490,10 +490,10 @@ def judge(
     )
     kept = list(result.kept)
     if "unused-suppression" in rules and result.unused:
-        from .rules.general.unused_suppression import unused
+        from .rules.general.unused_suppression import find_unused
 
         kept = after.in_order(
-            [*kept, *merge(("unused-suppression", "", hit) for hit in unused(workspace, result.unused))]
+            [*kept, *merge(("unused-suppression", "", hit) for hit in find_unused(workspace, result.unused))]
         )
     return Judged(kept, list(result.suppressed))
 

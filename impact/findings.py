@@ -142,8 +142,7 @@ def _render(rule: Rule | None, by_target: Sequence[tuple[str, Diagnostic | Hit]]
         if isinstance(diagnostic, Hit):
             texts.append((target, diagnostic.message, diagnostic.help))
         else:
-            data = {"subject": diagnostic.subject, "package": diagnostic.package, **diagnostic.data}
-            kinds.setdefault(diagnostic.kind, []).append((target, data))
+            kinds.setdefault(diagnostic.kind, []).append((target, diagnostic.values))
     for kind, data in kinds.items():
         assert rule is not None, "a diagnostic without text is of a registered rule"
         message, help = rule.texts[kind].render(data)

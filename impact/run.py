@@ -650,29 +650,18 @@ def _of_surfaces(answer: Callable, format: str, output: Path | None) -> int:
 
 
 def explain(name: str | None) -> int:
-    """Prints a rule's documentation, or the list of rules."""
+    """Prints the documentation of a rule or group, or the list of them. Returns the exit status: 0, or 2 (no such
+    rule)."""
+    from .rules import explain as pages
     from .rules.rule import all_rules
 
     rules = all_rules()
-    if name is None:
-        family, lines = "", []
-        for rule in sorted(rules.values(), key=lambda r: (r.family, r.name)):
-            if rule.family != family:
-                family = rule.family
-                lines.append(f"{family}:")
-            first = rule.documentation.splitlines()[0].split(": ", 1)[-1]
-            lines.append(f"  {rule.name:26s} {rule.severity:8s} {first}")
-        return _deliver_answer(lambda: "\n".join(lines))
-    if name not in rules:
-        from difflib import get_close_matches
-
-        close = get_close_matches(name, rules, 1)
-        say(
-            f"rosimpact: no rule is called `{name}`; "
-            + (f"did you mean `{close[0]}`?" if close else "`rosimpact explain` lists them")
-        )
+    try:
+        text = pages.list_rules(rules) if name is None else pages.explain(name, rules)
+    except KeyError as error:
+        say(f"rosimpact: {error.args[0]}")
         return 2
-    return _deliver_answer(rules[name].documentation.rstrip)
+    return _deliver_answer(lambda: text)
 
 
 def env_capture(output: Path | None) -> int:

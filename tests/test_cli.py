@@ -369,6 +369,12 @@ def test_explain_lists_the_rules_and_knows_no_others(say):
     assert said.status == 2 and "did you mean `removed-header`" in said.err
 
 
+def test_explain_knows_groups(say):
+    assert "  changed-constant           changed-constant, removed-constant\n" in say("explain").out
+    said = say("explain", "changed-constant").out
+    assert said.startswith("changed-constant: ") and "\nThe name also stands for\n    removed-constant: " in said
+
+
 def test_why(say):
     example = ROOT / "examples/ros2_ws"
     said = say("why", "cv_bridge", example, "--target", "jazzy")

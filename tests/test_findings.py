@@ -29,7 +29,7 @@ from rosimpact.impact.findings import (
     without_known,
 )
 from rosimpact.impact.model.build import At
-from rosimpact.impact.rules.rule import Edit, Finding, Hit, Rule
+from rosimpact.impact.rules.rule import Edit, Finding, Hit, Rule, groups
 from rosimpact.impact.targets.evidence import Evidence
 
 TARGETS = ("humble", "jazzy", "rolling")
@@ -41,6 +41,16 @@ RULES = {
         ("undeclared-package", "packages", "error", False),
         ("unused-dependency", "packages", "note", False),
         ("unused-suppression", "sources", "note", False),
+    )
+}
+# `lost-name` was a rule, and is three now; of `lost-header` nothing is left under its own name.
+SPLIT = RULES | {
+    name: Rule(name, "api", "error", lambda: iter(()), group=group, preview=preview)
+    for name, group, preview in (
+        ("lost-name", "", False),
+        ("lost-macro", "lost-name", False),
+        ("lost-type", "lost-name", True),
+        ("lost-c-header", "lost-header", False),
     )
 }
 FIX = (Edit("a.xml", 0, 0, "x"),)
@@ -242,6 +252,75 @@ CHOSEN = [
 @pytest.mark.parametrize(("select", "ignore", "preview", "expected"), CHOSEN)
 def test_chosen(select, ignore, preview, expected):
     assert set(chosen(RULES, select=select, ignore=ignore, preview=preview)) == expected
+
+
+# (select, ignore, preview, rules that run of those that were split)
+CHOSEN_GROUPS = [
+    ((), (), False, {"lost-name", "lost-macro", "lost-c-header"}),
+    (("lost-name",), (), False, {"lost-name", "lost-macro", "lost-type"}),
+    (("lost-header",), (), False, {"lost-c-header"}),
+    ((), ("lost-name",), True, {"lost-c-header"}),
+    # a rule's own name is more specific than that of its group, and that more than the family
+    (("lost-macro",), ("lost-name",), False, {"lost-macro"}),
+    (("lost-name",), ("lost-macro",), False, {"lost-name", "lost-type"}),
+    (("lost-name",), ("api",), False, {"lost-name", "lost-macro", "lost-type"}),
+    (("api",), ("lost-name",), False, {"lost-c-header"}),
+]
+
+
+@pytest.mark.parametrize(("select", "ignore", "preview", "expected"), CHOSEN_GROUPS)
+def test_the_name_of_a_group_means_its_rules(select, ignore, preview, expected):
+    found = chosen(SPLIT, select=select, ignore=ignore, preview=preview)
+    assert {name for name in found if name.startswith("lost")} == expected
+
+
+@pytest.mark.parametrize(
+    ("severity", "expected"),
+    [
+        ({"lost-name": "note"}, ["note", "note", "error"]),
+        ({"lost-name": "note", "lost-macro": "warning"}, ["note", "warning", "error"]),
+        ({"lost-name": "warning", "api": "note"}, ["warning", "warning", "note"]),
+        ({"lost-header": "off"}, ["error", "error"]),
+    ],
+)
+def test_severities_of_groups(severity, expected):
+    findings = [finding(rule) for rule in ("lost-name", "lost-macro", "lost-c-header")]
+    settings = checked([PathSetting("**", severity=severity)], SPLIT)
+    assert [each.severity for each in with_settings(findings, settings, SPLIT)] == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "ran", "stay", "unused"),
+    [
+        ("lost-name", SPLIT, ["lost-c-header"], []),
+        ("lost-macro", SPLIT, ["lost-name", "lost-c-header"], []),
+        ("lost-header", SPLIT, ["lost-name", "lost-macro"], []),
+        # no rule of the group ran, so that the comment cannot be called unused
+        ("lost-header", ("lost-name",), ["lost-name"], []),
+        ("lost-name", ("lost-type", "lost-c-header"), ["lost-c-header"], [("a.cpp", 1, "lost-name")]),
+        ("lost-type", SPLIT, ["lost-name", "lost-macro", "lost-c-header"], [("a.cpp", 1, "lost-type")]),
+    ],
+)
+def test_comments_that_name_a_group(name, ran, stay, unused):
+    found = [finding(rule) for rule in ("lost-name", "lost-macro", "lost-c-header") if rule in ran]
+    outcome = suppressed(found, {"a.cpp": [Allow(1, (name,), False)]}, rules=SPLIT, ran=ran)
+    assert [each.rule for each in outcome.kept] == stay
+    assert outcome.unused == unused
+
+
+def test_a_rule_that_was_split_keeps_its_fingerprints():
+    def merged_as(rule, rules):
+        found = merge([(rule, "", hit())], targets=(), rules=rules, line_text=lambda path, line: "x")
+        return found[0].fingerprint
+
+    assert merged_as("lost-macro", SPLIT) == merged_as("lost-name", SPLIT)
+    assert merged_as("lost-c-header", SPLIT) == merged_as("lost-header", RULES)
+    assert merged_as("lost-c-header", SPLIT) != merged_as("lost-c-header", RULES)
+
+
+def test_groups_by_name():
+    listed = {name: [rule.name for rule in members] for name, members in groups(SPLIT).items()}
+    assert listed == {"lost-header": ["lost-c-header"], "lost-name": ["lost-name", "lost-macro", "lost-type"]}
 
 
 def test_an_unknown_rule_is_named_with_the_nearest():

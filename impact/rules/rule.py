@@ -64,8 +64,8 @@ class Diagnostic(NamedTuple):
 
     at: anything with path, line, column. subject: one name, the thing at fault, as a person would type it. package:
     the package of the place. data: the values that the rule's texts name, beside subject and package; every rule calls
-    a version `version`, the first version with a change `since`, and what to write instead `replacement`. kind: which of
-    the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity.
+    a version `version`, the first version with a change `since`, and what to write instead `replacement`. kind: which
+    of the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity.
     severity: where the policy was asked already; else empty. fix: actions that repair it, see cure.py; kept only when
     every target asked for yields the same. evidence: the change that it rests on, without targets; check.py adds how
     each target stands to it.
@@ -85,6 +85,11 @@ class Diagnostic(NamedTuple):
     def fact(self) -> object:
         """What is said of a target: two diagnostics with equal facts are one."""
         return self.kind, self.data
+
+    @property
+    def values(self) -> dict[str, Value]:
+        """The values that a text can name."""
+        return {"subject": self.subject, "package": self.package, **self.data}
 
 
 class Hit(NamedTuple):
@@ -169,14 +174,19 @@ class Rule(NamedTuple):
         return min(self.severity, severity(*diagnostic.doubts), key=SEVERITIES.index)
 
     def verify(self, diagnostic: Diagnostic | Hit) -> None:
-        """Raises ValueError when the rule has no text for a diagnostic, or the text names what its data lacks."""
+        """Raises ValueError when the rule has no text for a diagnostic, or the text cannot be rendered from its data: a
+        value is missing, or has another type than the text expects."""
         if isinstance(diagnostic, Diagnostic):
             text = self.texts.get(diagnostic.kind)
             if text is None:
                 raise ValueError(f"{self.name} has no text for diagnostics of the kind `{diagnostic.kind}`")
-            lacking = text.fields - diagnostic.data.keys() - {"subject", "package"}
+            lacking = text.fields - diagnostic.values.keys()
             if lacking:
                 raise ValueError(f"{self.name}: the data of `{diagnostic.subject}` lacks {', '.join(sorted(lacking))}")
+            try:
+                text.render([("", diagnostic.values)])
+            except (ValueError, TypeError) as error:
+                raise ValueError(f"{self.name}: the data of `{diagnostic.subject}`: {error}") from None
 
 
 _RULES: dict[str, Rule] = {}

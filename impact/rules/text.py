@@ -6,7 +6,9 @@ backticks is code, and stays so where there are several values. Formats:
     {version}                a text or number as it is
     {period:g}               a number, as str.format has it
     {users:nothing}          names, each as code, the first four of them and how many more; `nothing` without any
-    {version} on two targets that differ: 0.36.2 (jazzy), 0.41.0 (rolling)
+    [[, from {since} on]]    left out where one of its fields is empty
+
+Where the value of a field differs between targets, each value names its targets: 0.36.2 (jazzy), 0.41.0 (rolling).
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ ByTarget = Sequence[tuple[str, Mapping[str, Value]]]
 _MOST_NAMES = 4
 _CODE_FIELD = re.compile(r"`\{(\w+)\}`")
 _CODE = "code"
+_OPTIONAL = re.compile(r"\[\[(.*?)\]\]")
 
 
 class Text:
@@ -32,19 +35,30 @@ class Text:
 
     def __init__(self, message: str, help: str = "") -> None:
         self.message, self.help = message, help
-        self.fields = frozenset(name for text in (message, help) for _, name, _, _ in Formatter().parse(text) if name)
+        self.fields = frozenset((*_fields_of(message), *_fields_of(help)))
 
     def render(self, data: ByTarget) -> tuple[str, str]:
         """Message and help for what is said of one or several targets. Raises KeyError for a field without a value."""
         return render_template(self.message, data), render_template(self.help, data)
 
 
+def _fields_of(template: str) -> list[str]:
+    return [name for _, name, _, _ in Formatter().parse(template) if name]
+
+
 def render_template(template: str, data: ByTarget) -> str:
     """A template with the values of its fields; where they differ between targets, each with its targets."""
     # A field as code is put in backticks value by value, so that the names of targets stay outside of them.
     template = _CODE_FIELD.sub(rf"{{\1:{_CODE}}}", template)
-    names = {name for _, values in data for name in values}
-    fields = {name: [(target, values[name]) for target, values in data if name in values] for name in names}
+    fields = {
+        name: [(target, values[name]) for target, values in data if name in values] for name in _fields_of(template)
+    }
+
+    def keep(part: re.Match[str]) -> str:
+        known = all(value != "" and value != () for name in _fields_of(part[1]) for _, value in fields[name])
+        return part[1] if known else ""
+
+    template = _OPTIONAL.sub(keep, template)
     return _Renderer().vformat(template, (), fields)
 
 

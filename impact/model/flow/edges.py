@@ -45,11 +45,6 @@ class Pair(NamedTuple):
     taker: Sure
     launch: str = ""
 
-    @property
-    def together(self) -> str:
-        """A clause that says why both run together, empty where nothing tells."""
-        return f", and `{self.launch}` starts both" if self.launch else ""
-
 
 class Flow:
     """A graph, asked for what is sure in it. surely: ids of nodes that surely run under their names, all when None.

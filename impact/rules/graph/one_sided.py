@@ -1,5 +1,4 @@
-"""Topics that live within the workspace, so that what one side lacks is worth a note: shared by the rules on topics
-that have one side alone."""
+"""Topics of the workspace that have publishers and no subscriber, or subscribers and no publisher."""
 
 from __future__ import annotations
 
@@ -9,7 +8,7 @@ from ...model.flow.edges import Sure, begins, whole_flow
 from ...model.workspace import Workspace
 
 _SIDES = {"publisher": "subscriber", "subscriber": "publisher"}
-# Read or written by tools, by operators, or by every node.
+# Topics that tools, operators or all nodes use.
 _TOOLS = frozenset(
     ("tf", "tf_static", "clock", "rosout", "parameter_events", "diagnostics", "robot_description", "joint_states",
      "cmd_vel", "odom", "initialpose", "goal", "goal_pose", "clicked_point", "map", "scan", "transition_event",
@@ -18,13 +17,13 @@ _TOOLS = frozenset(
 )  # fmt: skip
 
 
-def one_sided(workspace: Workspace, role: str) -> Iterator[Sure]:
-    """Endpoints of a role (publisher or subscriber) of a type that nothing in the workspace has on the other side, one
-    a topic. Topics are left out that tools and people outside of the workspace may use: those of types that the
-    workspace does not define, private ones, and what is known of tools."""
+def find_one_sided(workspace: Workspace, role: str) -> Iterator[Sure]:
+    """Endpoints of a role (publisher or subscriber) whose type nothing in the workspace has on the other side, one for
+    each topic. Topics that tools and people outside of the workspace may use are left out: those of types that the
+    workspace does not define, private ones, and known topics of tools."""
     flow = whole_flow(workspace)
     met = {one.type for one in flow.graph.endpoints if one.role == _SIDES[role]}
-    told: set[object] = set()
+    reported: set[object] = set()
     for one in flow.sure(role):
         endpoint = one.endpoint
         type_ = flow.type_of(endpoint)
@@ -34,8 +33,8 @@ def one_sided(workspace: Workspace, role: str) -> Iterator[Sure]:
         if role == "subscriber" and flow.may_have("publisher", type_):
             continue
         place = (endpoint.path, endpoint.line)
-        if endpoint.implied or private or not told.isdisjoint((endpoint.topic, place)):
+        if endpoint.implied or private or not reported.isdisjoint((endpoint.topic, place)):
             continue
         if endpoint.topic.rpartition("/")[2] not in _TOOLS and "debug" not in endpoint.topic:
-            told.update((endpoint.topic, place))
+            reported.update((endpoint.topic, place))
             yield one

@@ -1,4 +1,4 @@
-"""What launch files give to the nodes they start, line by line: shared by the rules on remappings and parameters."""
+"""Remappings and parameters that launch files set for the nodes they start, line by line."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from ...model.flow.launches import Start
 from ...model.workspace import Workspace
 
 
-class Placed(Protocol):
-    """Something given at a line of a file."""
+class Setting(Protocol):
+    """A remapping or parameter at a line of a file."""
 
     @property
     def path(self) -> str: ...
@@ -19,16 +19,16 @@ class Placed(Protocol):
     def line(self) -> int: ...
 
 
-T = TypeVar("T", bound=Placed)
+T = TypeVar("T", bound=Setting)
 
 
-def given(
+def group_by_line(
     workspace: Workspace, of: Callable[[Start], Iterable[T]], name: Callable[[T], str]
 ) -> Iterator[tuple[tuple[str, int, str], list[tuple[Start, T]]]]:
-    """Path, line and name of each thing given, with all starts that it is given to, in the order of the launches.
+    """(path, line, name) of each setting, with all starts that it applies to, in the order of the launch files.
 
-    of: what a start is given; name: what it is called. Lines that give it to a program outside of the workspace too are
-    left out.
+    of: the settings of a start. name: the name of a setting. Lines that also apply to a program outside of the
+    workspace are left out.
     """
     found: dict[tuple[str, int, str], list[tuple[Start, T]]] = {}
     elsewhere = {place for launch in workspace.launches for place in launch.elsewhere}
