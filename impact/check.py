@@ -312,7 +312,7 @@ def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
     for place in workspace.hidden:
         other = shown(paths.get(place.name) or ".")
         yield PathProblem(
-            place.manifest_path, f"not analysed, since another package named `{place.name}` is in {other}"
+            place.manifest_path, f"not analysed, because another package named `{place.name}` is in {other}"
         )
 
 
@@ -338,8 +338,8 @@ def open_tree(root: Path, rev: str, *, follow_links: bool = False) -> Tree:
     bare = (root / "objects").is_dir() and (root / "refs").is_dir() and (root / "HEAD").is_file()
     if not follow_links and (link := _leaving_link(root)):
         raise TreeError(
-            f"`{shown(link)}` is a link of the repository that leads out of it, and is not followed; give the folder "
-            "that it leads to, or --follow-links"
+            f"`{shown(link)}` is a link that leads out of its repository, and is not followed; give the folder that "
+            "it leads to, or --follow-links"
         )
     # A change can add all that makes a folder look like a bare repository, and show another workspace in it.
     bare = bare and enclosing_repository(os.path.realpath(root)) is None

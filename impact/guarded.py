@@ -1,5 +1,5 @@
-"""What a finding rests on, joined with all targets asked for: who has the change since when, and what to write where
-no one spelling is right on all of them."""
+"""What a finding rests on, for all targets together: which of them have the change, since when, and what to write when
+they need different names."""
 
 from __future__ import annotations
 
@@ -142,13 +142,13 @@ def _lowest(versions: Iterable[str]) -> str:
 
 
 def _guarded(split: Split) -> str:
-    """What to write where neither spelling is right everywhere."""
+    """What to write when neither name works on all targets."""
     evidence = split.evidence
     where = f"{_listed(split.old_only)} {'has' if len(split.old_only) == 1 else 'have'} only `{split.old}`"
     if evidence.side == "header":
         return f"`#if __has_include(<{split.new}>)`, include it, `#else` include `{split.old}`: {where}"
     if evidence.side == "python":
-        return f"take `{split.new}` where it is there (`try`, or `hasattr`), else `{split.old}`: {where}"
+        return f"use `{split.new}` if it is available (`try`, or `hasattr`), else `{split.old}`: {where}"
     package = evidence.package
     if evidence.side == "c++" and split.first:
         test = version_test(package, evidence.library, split.first, ros=split.ros, oldest=split.oldest)
@@ -158,8 +158,8 @@ def _guarded(split: Split) -> str:
         cmake = f"`if({package}_VERSION VERSION_GREATER_EQUAL {split.first})`"
         if evidence.side in _CMAKE:
             return f"{cmake} use `{split.new}`, else `{split.old}`: {where}"
-        return f"use `{split.new}` or `{split.old}` by a definition that CMake sets {cmake}: {where}"
-    return f"use `{split.new}` or `{split.old}`, whichever is there: {where}"
+        return f"choose between `{split.new}` and `{split.old}` with a definition that CMake sets {cmake}: {where}"
+    return f"use `{split.new}` or `{split.old}`, whichever is available: {where}"
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -38,8 +38,8 @@ FAIL_ON = ("error", "warning", "note", "never")
 _TEXT_OR_JSON = ("text", "json")
 
 
-_READ_SO_FAR = "interrupted; what was read is kept, and the next run goes on from there"
-_PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run goes on from there"
+_READ_SO_FAR = "interrupted; what was read is kept, and the next run continues from there"
+_PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run continues from there"
 
 
 def _fail(message: str, format: str, output: Path | None, path: object) -> int:
@@ -79,7 +79,7 @@ def _deliver_answer(
 
 
 def _one_of(option: str, given: str, known: Sequence[str]) -> None:
-    """Raises UserError where an option is given a word that it does not know."""
+    """Raises UserError when an option has a value that it does not know."""
     if given not in known:
         raise UserError(f"{option} {given}: unknown; choose one of {', '.join(known)}")
 
@@ -100,7 +100,7 @@ def check(
         _one_of("--format", format, FORMATS)
         _one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
         if prune_baseline and baseline is None:
-            raise UserError("--prune-baseline: needs the baseline to prune; give it with --baseline")
+            raise UserError("--prune-baseline: no baseline was given; name it with --baseline")
         known = _baseline(baseline)
         for file in (output, write_baseline, baseline if prune_baseline else None):
             _check_output(file, path)
@@ -141,7 +141,7 @@ def _write_step_summary(report: Report) -> None:
     try:
         write_step_summary(report, os.environ)
     except OSError as error:
-        say(f"rosimpact: the step summary cannot be written: {error.strerror}; check what GITHUB_STEP_SUMMARY names")
+        say(f"rosimpact: the step summary cannot be written: {error.strerror}; check GITHUB_STEP_SUMMARY")
 
 
 def _baseline(file: Path | None) -> str:
@@ -165,7 +165,7 @@ def _new_baseline(file: Path, report: Report, path: Path) -> int:
     from .findings import baseline, in_order
 
     if not report.packages:
-        raise UserError(f"{file}: not written, since nothing was analysed")
+        raise UserError(f"{file}: not written, because nothing was analysed")
     found = in_order([*report.findings, *report.known])
     _save(file, baseline(found), path)
     say(f"rosimpact: {file}: {counted(len(found), 'finding')}")
@@ -179,7 +179,7 @@ def _prune(file: Path, known: str, report: Report, path: Path) -> None:
     text, gone = pruned(known_from(known), [*report.findings, *report.known])
     if gone:
         _save(file, text, path)
-    say(f"rosimpact: {file}: {gone} cured, taken out")
+    say(f"rosimpact: {file}: {gone} fixed, removed")
 
 
 def _fixed(path: Path, checked: Checked) -> bool:
@@ -187,7 +187,7 @@ def _fixed(path: Path, checked: Checked) -> bool:
     from . import fix
 
     if not isinstance(checked.tree, WorkingTree):
-        raise UserError("--fix: a revision cannot be changed; leave --rev out, or print the changes with --diff")
+        raise UserError("--fix: a revision cannot be changed; remove --rev, or print the changes with --diff")
     applied = _applied(checked)
     done = 0
     for name, data in applied.files.items():
@@ -223,8 +223,8 @@ def _patch(checked: Checked, output: Path | None) -> tuple[str, bool]:
         if output is None and is_obeyed(part):
             incomplete = True
             say(
-                f"rosimpact: {shown(name)}: its changes are not printed, since the lines around them hold what a "
-                "terminal or CI would obey; write them to a file with --output"
+                f"rosimpact: {shown(name)}: its changes are not printed, because the lines around them contain "
+                "control sequences or CI commands; write them to a file with --output"
             )
         else:
             parts.append(part)
@@ -417,7 +417,7 @@ def impact(
 
     def answer() -> str:
         if not base:
-            raise UserError("--base: needed, the revision that the change is compared with, such as origin/main")
+            raise UserError("--base: missing; give the revision to compare with, such as origin/main")
         from .flow import impact_report
         from .flow.impact import chosen
         from .impact import reached
@@ -570,9 +570,9 @@ def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask,
         from .targets.clones import Clones
 
         if not distros:
-            raise UserError("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
+            raise UserError("--distro: missing; name the distros to read, such as --distro humble --distro jazzy")
         if dask is not None and jobs is not None:
-            raise UserError("--jobs: is for this machine, and with --dask the cluster works; give one of the two")
+            raise UserError("--jobs: has no effect with --dask, which uses a cluster; give only one of the two")
         _check_output(output, "")
         report = None if quiet else steps()
         versions = "all" if all_versions else "newest"
@@ -674,7 +674,7 @@ def env_capture(output: Path | None) -> int:
         machine = capture()
         _deliver(to_json(machine), output, "json")
         if not machine.distro:
-            say("rosimpact: no ROS distro was found here: set `distro` in the file before it is used as a target")
+            say("rosimpact: no ROS distro was found here; set `distro` in the file before you use it as a target")
         if output is not None:
             say(f"rosimpact: {output}: written; use it with --target {output}")
         return 0

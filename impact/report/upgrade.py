@@ -25,17 +25,17 @@ SCHEMA = 1
 def verdict(found: Upgrade) -> str:
     """One line: safe, or what breaks.
 
-    `humble → jazzy breaks 3 of 46 packages: 3 errors and 1 warning to work off, in 9 places`
+    `humble → jazzy breaks 3 of 46 packages: 3 errors and 1 warning to fix, in 9 places`
     """
     way = f"{visible(found.old.name)} → {visible(found.new.name)}"
     total = counted(len(found.packages), "package")
     if not found.breaks:
-        return f"{way} is safe: nothing that is known breaks in {total}"
+        return f"{way} is safe: no known break in {total}"
     broken = {item.package for item in found.breaks if item.severity == "error"}
     touched = broken or {item.package for item in found.breaks}
     what = " and ".join(counted(n, severity) for severity, n in by_severity(found.breaks).items() if n)
     places = counted(sum(len(item.findings) for item in found.breaks), "place")
-    return f"{way} {'breaks' if broken else 'may break'} {len(touched):,} of {total}: {what} to work off, in {places}"
+    return f"{way} {'breaks' if broken else 'may break'} {len(touched):,} of {total}: {what} to fix, in {places}"
 
 
 def by_fixes(found: Upgrade) -> str:
