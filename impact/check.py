@@ -18,7 +18,7 @@ from .config import Config, ConfigError, PathSetting, load, parse
 from .facts.store import Store
 from .gather import Gathered, gather
 from .guarded import Split, with_evidence
-from .judge import Crashes, hits_of
+from .judge import Crashes, run_rules
 from .model.flow.wanted import code_kinds
 from .model.view import View
 from .model.workspace import Workspace, link
@@ -483,7 +483,7 @@ def judge(
 
     allows = {path: comments for package in workspace for path, comments in package.digest.allows}
     result = after.suppressed(
-        merge(hits_of(opened, rules.values(), crashed, before, jobs)),
+        merge(run_rules(opened, rules.values(), crashed, before, jobs)),
         allows,
         rules=known,
         ran=[name for name in rules if name != "unguarded-split"],  # it speaks last, see _splits()

@@ -202,7 +202,7 @@ def test_a_process_that_dies_once_loses_nothing(tmp_path, at_once, monkeypatch):
     assert died.exists() and told(alone) == told(together)
     died.unlink()
     monkeypatch.setattr(workspace, "_join", join)
-    monkeypatch.setattr(judge, "_part", dying(judge._part))
+    monkeypatch.setattr(judge, "_run_part", dying(judge._run_part))
     together = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "three"))
     assert died.exists() and told(alone) == told(together)
 
@@ -245,7 +245,7 @@ def test_rules_that_end_their_process_on_a_package_are_named_and_lose_no_other(t
     def of_link_4(opened, rules, packages, size, task):
         return "link_4" in packages[task[1] : task[1] + size]
 
-    monkeypatch.setattr(judge, "_part", _dying_on(judge._part, of_link_4))
+    monkeypatch.setattr(judge, "_run_part", _dying_on(judge._run_part, of_link_4))
     report = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "two"))
     assert "the check of `link_4` crashed" in report.failure
     found = [f for f in report.findings if f.package != "link_4" and "link_4" not in f.message]
@@ -262,14 +262,14 @@ def test_a_rule_that_comes_to_no_end_costs_its_package_alone(tmp_path, monkeypat
     """In a workspace that is too small for several processes."""
     ws = ring(tmp_path / "ws", 3)
     whole = check(ws, Options(("jazzy",), cache=tmp_path / "one"))
-    part = judge._part
+    part = judge._run_part
 
     def of_link_1(opened, rules, packages, size, task):
         here = "link_1" in packages[task[1] : task[1] + size]
         return part(opened, endless if here else rules, packages, size, task)
 
     endless = [next(iter(all_rules().values()))._replace(run=_endless)]
-    monkeypatch.setattr(judge, "_part", of_link_1)
+    monkeypatch.setattr(judge, "_run_part", of_link_1)
     monkeypatch.setattr(judge, "_bytes", lambda workspace, packages: -900_000)
     monkeypatch.setattr(judge, "_PACKAGE_BYTES", 0)
     report = check(ws, Options(("jazzy",), cache=tmp_path / "two"))

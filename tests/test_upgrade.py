@@ -91,7 +91,7 @@ def test_the_verdict_comes_first_and_the_work_in_build_order(say, ws):
     assert "  help: include `cv_bridge/cv_bridge.hpp`, there since iron" in first
     assert "deprecated on kilted" in lines and "StaticSingleThreadedExecutor` is deprecated" in said.out
     assert "OpenCV" not in said.out, "what is broken on both is counted alone"
-    assert f"1 error on humble already: rosimpact check {ws} --target humble lists it" in lines[-1]
+    assert f"1 error already on humble: rosimpact check {ws} --target humble lists it" in lines[-1]
 
 
 def test_what_it_says_can_be_fixed_is_fixed_by_the_command_it_names(say, ws):

@@ -50,15 +50,15 @@ def by_fixes(found: Upgrade) -> str:
 
 
 def rest(found: Upgrade) -> list[str]:
-    """What is not the upgrade's, as clauses."""
+    """The findings that the upgrade does not cause, as clauses."""
     old, new = visible(found.old.name), visible(found.new.name)
-    told = []
+    clauses = []
     if found.both:
         them = "it" if len(found.both) == 1 else "them"
-        told.append(f"{_counts(found.both)} on {old} already: {found.check_old} lists {them}")
+        clauses.append(f"{_counts(found.both)} already on {old}: {found.check_old} lists {them}")
     if found.over:
-        told.append(f"{_counts(found.over)} of {old} {'is' if len(found.over) == 1 else 'are'} not there on {new}")
-    return told
+        clauses.append(f"{_counts(found.over)} only on {old}, not on {new}")
+    return clauses
 
 
 def _counts(findings: Sequence[Finding]) -> str:
