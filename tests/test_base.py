@@ -264,7 +264,7 @@ def test_a_workspace_that_a_repository_links_elsewhere(tmp_path, target, tracked
     if not tracked:
         (tmp_path / "work/ws").symlink_to(target)
     if refused:
-        with pytest.raises(TreeError, match="leads out of it, and is not followed"):
+        with pytest.raises(TreeError, match="leads out of its repository, and is not followed"):
             check(tmp_path / "work/ws")
     found = check(tmp_path / "work/ws", Options(follow_links=refused))
     assert [f.package for f in found.findings if f.severity == "error"] == ["a"]

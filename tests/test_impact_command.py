@@ -104,7 +104,7 @@ def test_a_revision_against_itself_reaches_nothing(ws: Path, say):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        ((), "--base: needed"),
+        ((), "--base: missing"),
         (("--base", "nowhere"), "nowhere"),
         (("--base", "HEAD", "-f", "dot"), "--format dot: unknown; choose one of text, json, markdown"),
     ],

@@ -99,7 +99,7 @@ def _summary(found: Machines, style: Style) -> str:
     ]
     told = ", ".join(parts) or "nothing breaks on only one of them"
     both = f"{counted(found.both, 'finding')} on both" if found.both else ""
-    versions = f"{len(found.versions):,} packages that it uses have different versions, and {found.others:,} others"
+    versions = f"different versions: {len(found.versions):,} of what it uses, {found.others:,} others"
     return f" {style.symbols[4]} ".join(part for part in (told, both, versions) if part)
 
 
