@@ -108,11 +108,11 @@ def read_pinned(path: Path) -> dict[str, str]:
     return {name.strip("/"): version for name, version in found.items()}
 
 
-def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
+def open_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     """The workspace as it was in another tree, seen by the same targets."""
     second = code_kinds(tree) if opened.gathered.second is not None else None
     gathered = gather(tree, opened.store, jobs=jobs, second=second)
-    workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.watched(opened.store), jobs)
+    workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.load_tracked_names(opened.store), jobs)
     views = [View(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
     # What is installed is of no revision.
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import NamedTuple
 
-from .check import Checked, CheckError, Opened, Options, chosen_rules, judged, open_workspace
+from .check import Checked, CheckError, Opened, Options, check_opened, open_workspace, select_rules
 from .findings import rank
 from .rules.rule import Finding
 
@@ -22,7 +22,7 @@ class Sides(NamedTuple):
 
 
 @contextmanager
-def sides(
+def open_sides(
     path: str | os.PathLike[str],
     first: str,
     second: str,
@@ -35,10 +35,10 @@ def sides(
     nothing could be analysed.
     """
     options = options._replace(targets=(first, second))
-    with open_workspace(path, options, progress, lambda config: chosen_rules(options, config)) as opened:
+    with open_workspace(path, options, progress, lambda config: select_rules(options, config)) as opened:
         if len(opened.targets) < 2:
             raise CheckError(f"{first} and {second} are the same target; give two")
-        one, other = (judged(path, options, alone) for alone in opened.one_by_one())
+        one, other = (check_opened(path, options, alone) for alone in opened.one_by_one())
         for checked in (one, other):
             if checked.report.failure:
                 raise CheckError(checked.report.failure)
@@ -52,7 +52,7 @@ class Compared(NamedTuple):
     both: list[Finding]
 
 
-def compared(findings: Iterable[Finding], other: Iterable[Finding]) -> Compared:
+def compare_findings(findings: Iterable[Finding], other: Iterable[Finding]) -> Compared:
     """Findings of one side against those of the other, by rule, package, path, line and subject."""
     there: dict[tuple, int] = {}
     for finding in other:
@@ -79,7 +79,7 @@ class Item(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def items(findings: Iterable[Finding], order: Sequence[str]) -> list[Item]:
+def group_items(findings: Iterable[Finding], order: Sequence[str]) -> list[Item]:
     """Findings as things to do, package by package in an order; in a package the gravest first, then by place.
 
     What belongs to no package comes first, and a package that the order does not name last.

@@ -17,7 +17,7 @@ from . import memo
 from .config import Config, ConfigError, PathSetting, load, parse
 from .facts.store import Store
 from .gather import Gathered, gather
-from .guarded import Split, with_evidence
+from .guarded import Split, add_evidence
 from .judge import Crashes, run_rules
 from .model.flow.wanted import code_kinds
 from .model.view import View
@@ -107,11 +107,11 @@ def run(
 ) -> Checked:
     """check(), with the configuration and the tree that it was made with. Raises as check() does."""
     started = time.perf_counter()
-    with open_workspace(path, options, progress, lambda config: chosen_rules(options, config)) as opened:
-        return judged(path, options, opened, base_tree=base_tree, started=started)
+    with open_workspace(path, options, progress, lambda config: select_rules(options, config)) as opened:
+        return check_opened(path, options, opened, base_tree=base_tree, started=started)
 
 
-def judged(
+def check_opened(
     path: str | os.PathLike[str],
     options: Options,
     opened: Opened,
@@ -126,9 +126,9 @@ def judged(
     started = time.perf_counter() if started is None else started
     rules = all_rules()
     tree, store, gathered, workspace, targets, views, config, installed, shelves = opened
-    chosen = chosen_rules(options, config)
+    chosen = select_rules(options, config)
     settings = _settings(rules, config)
-    sources = Sources(reader(tree))
+    sources = Sources(make_reader(tree))
     crashed: Crashes = {}
     reached: Impact | None = None
     notes: list[str] = []
@@ -137,31 +137,31 @@ def judged(
 
         if base_tree is None:
             base_tree, notes = bases.base_tree(tree, options.base)
-        before = bases.at_base(base_tree, opened, jobs=options.jobs)
-        old = judge(before, chosen, settings, Sources(reader(base_tree)), crashed, jobs=options.jobs)
-        now = judge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
-        found: Sequence[Finding] = after.marked_new(now.kept, old.kept)
+        before = bases.open_base(base_tree, opened, jobs=options.jobs)
+        old = run_and_merge(before, chosen, settings, Sources(make_reader(base_tree)), crashed, jobs=options.jobs)
+        now = run_and_merge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
+        found: Sequence[Finding] = after.mark_new(now.kept, old.kept)
         reached = _reached(workspace, before.workspace, crashed)
     else:
-        now = judge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
+        now = run_and_merge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
         found = now.kept
     if any(finding.evidence for finding in found):
         for view in views:
-            memo.prepare(store, view.target)
-        found, parted = with_evidence(found, views)
+            memo.load_changes(store, view.target)
+        found, parted = add_evidence(found, views)
         if parted and "unguarded-split" in chosen:
-            found = after.in_order([*found, *_splits(parted, opened, chosen, settings, sources)])
+            found = after.sort_findings([*found, *_splits(parted, opened, chosen, settings, sources)])
     originals: dict[str, bytes] = {}
     if any(finding.fix for finding in found):
         from . import fix
 
-        found = fix.made(found, reader(tree), originals)
+        found = fix.make_fixes(found, make_reader(tree), originals)
     known: Sequence[Finding] = ()
     if options.baseline:
-        found, known = after.without_known(found, after.known_from(options.baseline))
+        found, known = after.split_by_baseline(found, after.read_baseline(options.baseline))
     notes += store.notes
-    failures = [] if workspace.packages else [nothing_analysed(path, opened)]
-    failures += [f"the rule {rule} failed{on(crashed[rule, why])}: {why}" for rule, why in crashed]
+    failures = [] if workspace.packages else [explain_nothing_analysed(path, opened)]
+    failures += [f"the rule {rule} failed{format_targets(crashed[rule, why])}: {why}" for rule, why in crashed]
     report = Report(
         version=__version__,
         data=targets[0].target.data_date if targets else "",
@@ -205,8 +205,8 @@ def _splits(
     old = {finding.package for finding, _ in parted if not finding.new}
     marked = [finding._replace(new=finding.package not in old) for finding in found]
     allows = {path: comments for package in opened.workspace for path, comments in package.digest.allows}
-    configured = after.with_settings(marked, settings, rules)
-    return after.suppressed(configured, allows, rules=rules, ran=()).kept
+    configured = after.apply_settings(marked, settings, rules)
+    return after.suppress(configured, allows, rules=rules, ran=()).kept
 
 
 def _reached(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
@@ -286,12 +286,12 @@ def open_workspace(
     root = Path(path)
     if tree is None:
         tree = open_tree(root, options.rev, follow_links=options.follow_links)
-    config = settings_of(root, tree, options.config, follow_links=options.follow_links)
+    config = load_settings(root, tree, options.config, follow_links=options.follow_links)
     asks_flow = chosen is not None and any(rule.reads_flow for rule in chosen(config).values())
     with Store(options.cache) as store:
         second = code_kinds(tree) if asks_flow else None
         gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second)
-        workspace = link(tree, gathered, store, None, memo.watched(store), options.jobs)
+        workspace = link(tree, gathered, store, None, memo.load_tracked_names(store), options.jobs)
         gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
         targets = choose_targets(options.targets, config, workspace, tree)
         asked = frozenset(chosen.target.distro for chosen in targets)
@@ -316,7 +316,7 @@ def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
         )
 
 
-def settings_of(root: Path, tree: Tree, file: Path | None, *, follow_links: bool = False) -> Config:
+def load_settings(root: Path, tree: Tree, file: Path | None, *, follow_links: bool = False) -> Config:
     """The configuration: the file given, else rosimpact.toml on disk, else that of the revision. Raises ConfigError."""
     config = load(root, file, follow_links=follow_links)
     name = "rosimpact.toml"
@@ -371,7 +371,7 @@ def _leaving_link(root: Path) -> str:
     return ""
 
 
-def reader(tree: Tree) -> Callable[[str], bytes | None]:
+def make_reader(tree: Tree) -> Callable[[str], bytes | None]:
     """Bytes of a path, None when there are none to be had."""
 
     def read(path: str) -> bytes | None:
@@ -383,7 +383,7 @@ def reader(tree: Tree) -> Callable[[str], bytes | None]:
     return read
 
 
-def nothing_analysed(path: str | os.PathLike[str], opened: Opened) -> str:
+def explain_nothing_analysed(path: str | os.PathLike[str], opened: Opened) -> str:
     """Why there is no package, and what to do, for a workspace without any."""
     where = shown(os.fspath(path))
     ignored = [PathProblem(place.path or ".", place.ignored) for place in opened.workspace.discovered.ignored]
@@ -420,7 +420,7 @@ def _alone(names: Container[str], shelves: Iterable[Shelf]) -> Iterator[Reported
             yield ReportedTarget(shelf.target, "", "", shelf.platform, "where --install lies", (note,))
 
 
-def chosen_rules(options: Options, config: Config) -> dict[str, Rule]:
+def select_rules(options: Options, config: Config) -> dict[str, Rule]:
     """The rules to run. What is asked for on the command line goes over the configuration, list by list.
 
     Raises SettingsError for a name that is neither a rule nor a family.
@@ -428,7 +428,7 @@ def chosen_rules(options: Options, config: Config) -> dict[str, Rule]:
     rules = all_rules()
     select, ignore = options.select or config.select, options.ignore or config.ignore
     try:
-        return after.chosen(rules, select=select, ignore=ignore, preview=options.preview)
+        return after.choose_rules(rules, select=select, ignore=ignore, preview=options.preview)
     except after.SettingsError as error:
         option = "--select or --ignore" if options.select or options.ignore else f"{config.path}: [check]"
         raise after.SettingsError(f"{option}: {error}") from None
@@ -438,12 +438,12 @@ def _settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, .
     """Settings by path, those for the whole workspace first, so that the others go over them."""
     everywhere = (PathSetting("**", severity=config.severity),) if config.severity else ()
     try:
-        after.checked(everywhere, rules)
+        after.verify_settings(everywhere, rules)
     except after.SettingsError as error:
         text = str(error).removeprefix('[paths."**"]: ')
         raise after.SettingsError(f"{config.path}: [check]: {text}") from None
     try:
-        return (*everywhere, *after.checked(config.paths, rules))
+        return (*everywhere, *after.verify_settings(config.paths, rules))
     except after.SettingsError as error:
         raise after.SettingsError(f"{config.path}: {error}") from None
 
@@ -455,7 +455,7 @@ class Judged(NamedTuple):
     suppressed: list[Finding]
 
 
-def judge(
+def run_and_merge(
     opened: Opened,
     rules: Mapping[str, Rule],
     settings: Sequence[PathSetting],
@@ -477,12 +477,12 @@ def judge(
             targets=names,
             rules=rules,
             line_text=sources.line,
-            holds=lambda fix, target: all(holds(cure, by_name[target]) for cure in fix),
+            holds=lambda fix, target: all(is_right_on(cure, by_name[target]) for cure in fix),
         )
-        return after.with_settings(found, settings, known)
+        return after.apply_settings(found, settings, known)
 
     allows = {path: comments for package in workspace for path, comments in package.digest.allows}
-    result = after.suppressed(
+    result = after.suppress(
         merge(run_rules(opened, rules.values(), crashed, before, jobs)),
         allows,
         rules=known,
@@ -492,18 +492,18 @@ def judge(
     if "unused-suppression" in rules and result.unused:
         from .rules.general.unused_suppression import find_unused
 
-        kept = after.in_order(
+        kept = after.sort_findings(
             [*kept, *merge(("unused-suppression", "", hit) for hit in find_unused(workspace, result.unused))]
         )
     return Judged(kept, list(result.suppressed))
 
 
-def on(targets: Sequence[str]) -> str:
+def format_targets(targets: Sequence[str]) -> str:
     """` on jazzy, robot`, empty without targets."""
     return f" on {', '.join(targets)}" if targets else ""
 
 
-def holds(cure: Cure, view: View) -> bool:
+def is_right_on(cure: Cure, view: View) -> bool:
     """Whether a cure is right on a target where the rule found nothing to cure.
 
     A declaration is when the package is there, an include when its header surely is; anything else cannot be told.

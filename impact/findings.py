@@ -36,7 +36,7 @@ class Suppression(NamedTuple):
     """What allow comments did: findings left, findings silenced, and (path, line, rule) of comments without effect."""
 
     kept: list[Finding]
-    suppressed: list[Finding]
+    suppress: list[Finding]
     unused: list[tuple[str, int, str]]
 
 
@@ -82,10 +82,10 @@ def merge(
         for by_target in facts
     ]
     grouped = {rule.name: rule.group for rule in rules.values() if rule.group}
-    return fingerprinted(in_order(findings), line_text, grouped)
+    return add_fingerprints(sort_findings(findings), line_text, grouped)
 
 
-def in_order(findings: Iterable[Finding]) -> list[Finding]:
+def sort_findings(findings: Iterable[Finding]) -> list[Finding]:
     """Findings by path, line, column, rule and subject, the graver first: the order of every report."""
     return sorted(findings, key=_sort_key)
 
@@ -152,8 +152,8 @@ def _render(rule: Rule | None, by_target: Sequence[tuple[str, Diagnostic | Hit]]
     order = [target for target, _ in by_target]
     texts.sort(key=lambda text: order.index(text[0]))
     return (
-        joined([(target, message) for target, message, _ in texts]),
-        joined([(target, help) for target, _, help in texts]),
+        join_texts([(target, message) for target, message, _ in texts]),
+        join_texts([(target, help) for target, _, help in texts]),
     )
 
 
@@ -162,7 +162,7 @@ def _sort_key(finding: Finding) -> tuple:
             finding.message)  # fmt: skip
 
 
-def joined(texts: Sequence[tuple[str, str]]) -> str:
+def join_texts(texts: Sequence[tuple[str, str]]) -> str:
     """One text for what is said by target, naming the targets where the words differ.
 
     >>> joined([("jazzy", "`x.h` is gone in tf2 0.36"), ("rolling", "`x.h` is gone in tf2 0.41")])
@@ -203,7 +203,7 @@ def joined(texts: Sequence[tuple[str, str]]) -> str:
 _LONGEST_LINE = 10_000
 
 
-def fingerprinted(
+def add_fingerprints(
     findings: Iterable[Finding], line_text: Callable[[str, int], str], groups: Mapping[str, str] | None = None
 ) -> list[Finding]:
     """Findings with a fingerprint that stays the same when lines above them come and go.
@@ -234,7 +234,7 @@ def _digest(text: str) -> str:
     return blake2b(text.encode("utf-8", "surrogatepass"), digest_size=12).hexdigest()
 
 
-def marked_new(findings: Iterable[Finding], base: Iterable[Finding]) -> list[Finding]:
+def mark_new(findings: Iterable[Finding], base: Iterable[Finding]) -> list[Finding]:
     """Findings with `new` False where the base had the same fact, at least as severe and on the same targets.
 
     Matched one to one in three passes: same fingerprint; same rule, path, package and subject (its line was edited);
@@ -266,7 +266,7 @@ def _covers(old: Finding, finding: Finding) -> bool:
     return rank(old.severity) >= rank(finding.severity) and set(finding.targets) <= set(old.targets)
 
 
-def chosen(
+def choose_rules(
     rules: Mapping[str, Rule], *, select: Sequence[str] = (), ignore: Sequence[str] = (), preview: bool = False
 ) -> dict[str, Rule]:
     """The rules to run. select and ignore hold names of rules, groups or families, or `all`; the more specific wins.
@@ -310,7 +310,7 @@ def _unknown_rule(name: str, known: Sequence[str]) -> str:
     return f"no rule or family is called `{name}`; {hint}"
 
 
-def checked(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) -> Sequence[PathSetting]:
+def verify_settings(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) -> Sequence[PathSetting]:
     """The settings, when every name in them is a rule, a group, a family or `all` and every severity is one.
 
     Raises SettingsError otherwise.
@@ -327,7 +327,7 @@ def checked(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) -> Seque
     return settings
 
 
-def with_settings(
+def apply_settings(
     findings: Iterable[Finding], settings: Sequence[PathSetting], rules: Mapping[str, Rule]
 ) -> list[Finding]:
     """Findings under the per-path settings that match them; of several that match, later ones go over earlier ones.
@@ -433,7 +433,7 @@ def _glob_class(content: str) -> re.Pattern[str] | None:
         return None
 
 
-def suppressed(
+def suppress(
     findings: Iterable[Finding],
     allows: Mapping[str, Sequence[Allow]],
     *,
@@ -496,7 +496,7 @@ def _reach(comments: Sequence[Allow]) -> dict[int, dict[str, tuple[int, int]]]:
     return lines
 
 
-def baseline(findings: Iterable[Finding]) -> str:
+def format_baseline(findings: Iterable[Finding]) -> str:
     """The text of a baseline file that knows these findings: by content, so that moved lines stay known.
 
     Only `fingerprint` and `count` are read again; the rest is for the person who reviews the file.
@@ -519,7 +519,7 @@ def baseline(findings: Iterable[Finding]) -> str:
     return json_text({"schema": 1, "findings": entries}) + "\n"
 
 
-def known_from(text: str | bytes) -> Counter[str]:
+def read_baseline(text: str | bytes) -> Counter[str]:
     """Fingerprints a baseline file knows, with their counts. Raises SettingsError when it is not a baseline file."""
     try:
         data = load_json(text)
@@ -537,7 +537,7 @@ def known_from(text: str | bytes) -> Counter[str]:
         raise SettingsError(f"the baseline cannot be read ({error}); write it anew with --write-baseline") from None
 
 
-def without_known(findings: Iterable[Finding], known: Counter[str]) -> tuple[list[Finding], list[Finding]]:
+def split_by_baseline(findings: Iterable[Finding], known: Counter[str]) -> tuple[list[Finding], list[Finding]]:
     """(findings a baseline does not know, findings it knows)."""
     left = Counter(known)
     fresh: list[Finding] = []
@@ -551,10 +551,10 @@ def without_known(findings: Iterable[Finding], known: Counter[str]) -> tuple[lis
     return fresh, old
 
 
-def pruned(known: Counter[str], findings: Iterable[Finding]) -> tuple[str, int]:
+def prune_baseline(known: Counter[str], findings: Iterable[Finding]) -> tuple[str, int]:
     """(the baseline's text without what is cured, how many entries went). Findings it does not know are not added."""
-    _, old = without_known(findings, known)
-    return baseline(old), sum(known.values()) - len(old)
+    _, old = split_by_baseline(findings, known)
+    return format_baseline(old), sum(known.values()) - len(old)
 
 
 def fails(findings: Iterable[Finding], fail_on: str = "error") -> bool:

@@ -36,7 +36,7 @@ class Split(NamedTuple):
     ros: int
 
 
-def with_evidence(
+def add_evidence(
     findings: Iterable[Finding], views: Sequence[View]
 ) -> tuple[list[Finding], list[tuple[Finding, Split]]]:
     """The findings with how every target stands to the change that each rests on, and with the guarded form as help
@@ -62,10 +62,10 @@ def _joined(
     if not views:
         return None, None
     seen = seen_on(evidence, [view.target for view in views], spoken_of, views[0].providers)
-    return seen, split_of(seen, spoken_of, views) if seen is not None else None
+    return seen, find_split(seen, spoken_of, views) if seen is not None else None
 
 
-def split_of(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[View]) -> Split | None:
+def find_split(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[View]) -> Split | None:
     """How the targets differ, when on some only the one and on others only the other spelling is there; else None.
 
     evidence: as seen_on() gives it. spoken_of: targets on which the name that is used is not there.

@@ -70,17 +70,17 @@ def _run_on_targets(
     found: dict[str, list[Yielded]] = {}
     fresh = []
     for place, view in enumerate(opened.views):
-        known = memo.recall(opened.store, view, names)
+        known = memo.load_results(opened.store, view, names)
         if known is None:
             fresh.append(place)
-            memo.prepare(opened.store, view.target)
+            memo.load_changes(opened.store, view.target)
         else:
             found[view.target.name] = known
     for place, yielded in _run_in_parts(opened, rules, fresh, crashed, jobs or processes.cores()):
         view = opened.views[place]
         found[view.target.name] = yielded
         if not crashed:
-            memo.remember(opened.store, view, names, yielded)
+            memo.store_results(opened.store, view, names, yielded)
     return found
 
 
@@ -174,7 +174,7 @@ def _run_on_flow(
     if not rules:
         return []
     key = memo.flow_key(opened.workspace, before, [rule.name for rule in rules])
-    known = memo.recall_flow(opened.store, key)
+    known = memo.load_flow_results(opened.store, key)
     if known is not None:
         return known
     failed: Crashes = {}
@@ -189,7 +189,7 @@ def _run_on_flow(
     else:
         yielded, failed = _run_flow_part(opened, rules, before, 0)
     if not failed:
-        memo.remember_flow(opened.store, key, yielded)
+        memo.store_flow_results(opened.store, key, yielded)
     crashed.update(failed)
     return yielded
 

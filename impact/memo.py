@@ -60,7 +60,7 @@ class _Judgement(msgspec.Struct, frozen=True, array_like=True):
     unresolved: dict[str, tuple[str, ...]]
 
 
-def watched(store: Store) -> Watched:
+def load_tracked_names(store: Store) -> Watched:
     """The names that rules look out for, as an earlier run gathered them from the same tables."""
     name = hashlib.sha1(f"{code_stamp()} {data_stamp()}".encode()).digest()
     data = store.memo("watched", name)
@@ -75,7 +75,7 @@ def watched(store: Store) -> Watched:
     return names
 
 
-def key(view: View, rules: Iterable[str]) -> bytes:
+def results_key(view: View, rules: Iterable[str]) -> bytes:
     """The key of a view's judgement by these rules."""
     found = hashlib.sha1(view.workspace.identity)
     config = view.config
@@ -90,9 +90,9 @@ def key(view: View, rules: Iterable[str]) -> bytes:
     return found.digest()
 
 
-def recall(store: Store, view: View, rules: Sequence[str]) -> list[Yielded] | None:
+def load_results(store: Store, view: View, rules: Sequence[str]) -> list[Yielded] | None:
     """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
-    found = _recalled(store, key(view, rules))
+    found = _recalled(store, results_key(view, rules))
     if found is None:
         return None
     hits, unresolved = found
@@ -101,10 +101,10 @@ def recall(store: Store, view: View, rules: Sequence[str]) -> list[Yielded] | No
     return hits
 
 
-def remember(store: Store, view: View, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
+def store_results(store: Store, view: View, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
     """Keeps what the rules yielded for later runs."""
     unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
-    _keep(store, key(view, rules), diagnostics, unresolved)
+    _keep(store, results_key(view, rules), diagnostics, unresolved)
 
 
 def flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
@@ -113,13 +113,13 @@ def flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str
     return hashlib.sha1(repr((stamps, data_stamp(), sorted(rules))).encode()).digest()
 
 
-def recall_flow(store: Store, key: bytes) -> list[Yielded] | None:
+def load_flow_results(store: Store, key: bytes) -> list[Yielded] | None:
     """(rule, hit) on the message flow of an earlier run, None when there was none. key: a flow_key()."""
     found = _recalled(store, key)
     return found[0] if found is not None else None
 
 
-def remember_flow(store: Store, key: bytes, diagnostics: Iterable[Yielded]) -> None:
+def store_flow_results(store: Store, key: bytes, diagnostics: Iterable[Yielded]) -> None:
     """Keeps what rules yielded on the message flow for later runs."""
     _keep(store, key, diagnostics, {})
 
@@ -142,7 +142,7 @@ def _recalled(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[
         return None
 
 
-def prepare(store: Store, target: Target) -> None:
+def load_changes(store: Store, target: Target) -> None:
     """Gives a target, and the newest distro that it is compared with, the changes an earlier run worked out."""
     newest = target.newest()
     for one in (target, newest) if newest is not None else (target,):

@@ -148,11 +148,11 @@ def _baseline(file: Path | None) -> str:
     """The text of a baseline file, checked, so that a wrong one is named before the work starts."""
     if file is None:
         return ""
-    from .findings import known_from
+    from .findings import read_baseline
 
     try:
         text = read_file(file, limits().baseline)
-        known_from(text)
+        read_baseline(text)
         return text.decode("utf-8-sig")
     except OSError as error:
         raise UserError(f"{file}: {error.strerror}; write a baseline with --write-baseline {file}") from None
@@ -162,21 +162,21 @@ def _baseline(file: Path | None) -> str:
 
 def _new_baseline(file: Path, report: Report, path: Path) -> int:
     """Writes all of today's findings, those that an older baseline knows included."""
-    from .findings import baseline, in_order
+    from .findings import format_baseline, sort_findings
 
     if not report.packages:
         raise UserError(f"{file}: not written, because nothing was analysed")
-    found = in_order([*report.findings, *report.known])
-    _save(file, baseline(found), path)
+    found = sort_findings([*report.findings, *report.known])
+    _save(file, format_baseline(found), path)
     say(f"rosimpact: {file}: {counted(len(found), 'finding')}")
     return 2 if report.failure else 0
 
 
 def _prune(file: Path, known: str, report: Report, path: Path) -> None:
     """Takes what is cured out of a baseline file."""
-    from .findings import known_from, pruned
+    from .findings import prune_baseline, read_baseline
 
-    text, gone = pruned(known_from(known), [*report.findings, *report.known])
+    text, gone = prune_baseline(read_baseline(known), [*report.findings, *report.known])
     if gone:
         _save(file, text, path)
     say(f"rosimpact: {file}: {gone} fixed, removed")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 import rosimpact.impact
-from rosimpact.impact.check import CheckError, Options, check, check_workspace, holds, open_workspace
+from rosimpact.impact.check import CheckError, Options, check, check_workspace, is_right_on, open_workspace
 from rosimpact.impact.config import ConfigError, load
 from rosimpact.impact.findings import SettingsError
 from rosimpact.impact.rules.cure import Declare, Insert, Remove, Replace
@@ -99,7 +99,7 @@ def test_a_target_more_takes_nothing_away():
 def test_a_cure_is_right_elsewhere_only_where_that_is_known(cure, on_jazzy, on_humble):
     with open_workspace(EXAMPLE, Options(targets=("jazzy", "humble"))) as opened:
         jazzy, humble = opened.views
-        assert (holds(cure, jazzy), holds(cure, humble)) == (on_jazzy, on_humble)
+        assert (is_right_on(cure, jazzy), is_right_on(cure, humble)) == (on_jazzy, on_humble)
 
 
 def test_configuration(tmp_path):

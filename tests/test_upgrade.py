@@ -9,7 +9,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from rosimpact.impact.between import compared, items
+from rosimpact.impact.between import compare_findings, group_items
 from rosimpact.impact.rules.rule import Finding
 
 ROOT = Path(__file__).parents[1]
@@ -260,12 +260,12 @@ def finding(
     ],
 )
 def test_a_finding_is_new_unless_the_other_side_has_it_as_gravely(other, new):
-    assert [len(group) for group in compared([finding()], other)] == ([1, 0] if new else [0, 1])
+    assert [len(group) for group in compare_findings([finding()], other)] == ([1, 0] if new else [0, 1])
 
 
 def test_one_cause_in_a_package_is_one_item():
     found = [finding(line=3), finding("warning", line=1), finding(line=2, package="b"), finding(line=4, subject="y.h")]
-    made = items(found, ["b", "a"])
+    made = group_items(found, ["b", "a"])
     assert [(item.package, item.subject, item.severity, [f.line for f in item.findings]) for item in made] == [
         ("b", "x.h", "error", [2]),
         ("a", "x.h", "error", [3, 1]),

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from rosimpact.impact.findings import baseline
+from rosimpact.impact.findings import format_baseline
 from rosimpact.impact.report import evidence, github, html, markdown, sarif, text
 from rosimpact.impact.report import json as json_report
 from rosimpact.impact.rules.rule import Finding
@@ -120,4 +120,4 @@ def test_the_page_has_it_with_its_source_and_the_comment_is_as_short_as_before(t
 
 
 def test_baselines_do_not_know_it(told, team):
-    assert baseline(told.findings) == baseline(team.findings)
+    assert format_baseline(told.findings) == format_baseline(team.findings)

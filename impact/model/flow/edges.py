@@ -257,6 +257,6 @@ def begins(endpoint: Endpoint, with_: str) -> bool:
     return endpoint.written.startswith(f'"{with_}')
 
 
-def said(node: Node) -> str:
+def display_name(node: Node) -> str:
     """A node as a message names it: its name in a running system where a launch tells it, else what is started."""
     return node.name if node.started else node.executable or node.plugin or node.id

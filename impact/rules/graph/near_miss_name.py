@@ -25,7 +25,7 @@ Not reported
 """
 
 from ...model.build import At
-from ...model.flow.edges import Flow, Sure, flows, said, unstarted
+from ...model.flow.edges import Flow, Sure, display_name, flows, unstarted
 from ...model.flow.slips import NearNames
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
@@ -53,7 +53,7 @@ def near_miss_name(workspace: Workspace):
             reported.add((one.path, one.line))
             data = {
                 "launch": (path,) if path else (),
-                "node": said(giver.node),
+                "node": display_name(giver.node),
                 "replacement": other.topic,
                 "place": f"{other.path}:{other.line}",
             }

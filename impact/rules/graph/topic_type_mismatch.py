@@ -23,7 +23,7 @@ Not reported
 """
 
 from ...model.build import At
-from ...model.flow.edges import Pair, met, said, uncompared
+from ...model.flow.edges import Pair, display_name, met, uncompared
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -57,7 +57,7 @@ def topic_type_mismatch(workspace: Workspace):
                 "what": _WHAT[taker.role],
                 "type": type,
                 "other": other,
-                "node": said(pair.giver.node),
+                "node": display_name(pair.giver.node),
                 "place": f"{giver.path}:{giver.line}",
                 "launch": pair.launch,
             }

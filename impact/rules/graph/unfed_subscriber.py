@@ -22,7 +22,7 @@ Not reported
 """
 
 from ...model.build import At
-from ...model.flow.edges import said
+from ...model.flow.edges import display_name
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text
@@ -41,5 +41,5 @@ from .one_sided import find_one_sided
 def unfed_subscriber(workspace: Workspace):
     for one in find_one_sided(workspace, "subscriber"):
         endpoint = one.endpoint
-        data = {"type": endpoint.type, "node": said(one.node)}
+        data = {"type": endpoint.type, "node": display_name(one.node)}
         yield Diagnostic(At(endpoint.path, endpoint.line), endpoint.topic, one.node.package, data)

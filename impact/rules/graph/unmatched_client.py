@@ -23,7 +23,7 @@ Not reported
 """
 
 from ...model.build import At
-from ...model.flow.edges import Flow, Sure, begins, flows, said, unstarted
+from ...model.flow.edges import Flow, Sure, begins, display_name, flows, unstarted
 from ...model.flow.slips import NearNames, is_in_namespace, is_slip
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
@@ -62,7 +62,7 @@ def unmatched_client(workspace: Workspace):
             data = {
                 "launch": (path,) if path else (),
                 "what": "service" if one.role == "client" else "action",
-                "node": said(giver.node),
+                "node": display_name(giver.node),
                 "replacement": other.topic,
                 "place": f"{other.path}:{other.line}",
             }

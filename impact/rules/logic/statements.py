@@ -8,7 +8,7 @@ from ...flow.logic_changes import Change
 from ...flow.reach import EVERYWHERE
 from ...flow.two_states import publishing
 from ...model.build import At
-from ...model.flow.edges import said
+from ...model.flow.edges import display_name
 from ...model.flow.graph import Endpoint, Graph
 from ...model.workspace import Workspace
 from ..rule import Diagnostic
@@ -43,7 +43,7 @@ def readers_of(graph: Graph, change: Change) -> list[Endpoint]:
 
 def _names(graph: Graph, readers: list[Endpoint]) -> tuple[str, ...]:
     nodes = {node.id: node for node in graph.nodes}
-    return tuple(dict.fromkeys(said(nodes[one.node]) if one.node in nodes else one.function for one in readers))
+    return tuple(dict.fromkeys(display_name(nodes[one.node]) if one.node in nodes else one.function for one in readers))
 
 
 def _code(condition: str | None) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...model.build import At
-from ...model.flow.edges import Pair, met, said
+from ...model.flow.edges import Pair, display_name, met
 from ...model.flow.graph import Qos
 from ...model.workspace import Workspace
 from ..rule import Diagnostic
@@ -45,7 +45,7 @@ def incompatible(pair: Pair, kind: str = "", **data: Value) -> Diagnostic:
     """The diagnostic at a subscriber. Its data also has `node` and `place` of the publisher, and `launch`."""
     giver, taker = pair.giver.endpoint, pair.taker.endpoint
     data = {
-        "node": said(pair.giver.node),
+        "node": display_name(pair.giver.node),
         "place": f"{giver.path}:{giver.line}",
         "launch": pair.launch,
         **data,
