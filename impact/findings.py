@@ -36,7 +36,7 @@ class Suppression(NamedTuple):
     """What allow comments did: findings left, findings silenced, and (path, line, rule) of comments without effect."""
 
     kept: list[Finding]
-    suppress: list[Finding]
+    suppressed: list[Finding]
     unused: list[tuple[str, int, str]]
 
 
