@@ -10,9 +10,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from rosimpact.impact import memo
-from rosimpact.impact.check import Options, check, open_workspace
-from rosimpact.impact.model import watch
+from rosimpact.impact.analysis import result_cache as memo
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options, open_workspace
+from rosimpact.impact.model import tracked_names as watch
 from rosimpact.impact.model.view import View
 from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import all_rules

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from rosimpact.impact.between import compare_findings, group_items
+from rosimpact.impact.analysis.target_compare import compare_findings, group_items
 from rosimpact.impact.rules.rule import Finding
 
 ROOT = Path(__file__).parents[1]

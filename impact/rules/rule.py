@@ -39,7 +39,7 @@ from functools import cache
 from typing import Literal, NamedTuple
 
 from ..targets.evidence import Evidence
-from .cure import Declare, Insert, Remove, Replace
+from .fix_actions import Declare, Insert, Remove, Replace
 from .severity import Doubt, severity
 from .text import Text, Value
 
@@ -66,9 +66,9 @@ class Diagnostic(NamedTuple):
     the package of the place. data: the values that the rule's texts name, beside subject and package; every rule calls
     a version `version`, the first version with a change `since`, and what to write instead `replacement`. kind: which
     of the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity.
-    severity: where the policy was asked already; else empty. fix: actions that repair it, see cure.py; kept only when
-    every target asked for yields the same. evidence: the change that it rests on, without targets; check.py adds how
-    each target stands to it.
+    severity: where the policy was asked already; else empty. fix: actions that repair it, see fix_actions.py; kept only
+    when every target asked for yields the same. evidence: the change that it rests on, without targets; check.py adds
+    how each target stands to it.
     """
 
     at: object

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.cli import app
+from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
 
 HERE = Path(__file__).parent

@@ -17,11 +17,11 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.base import compare
-from rosimpact.impact.check import Options, check
-from rosimpact.impact.report.report import Report
+from rosimpact.impact.analysis.check import check, compare
+from rosimpact.impact.analysis.report import Report
+from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.rules.rule import all_rules
-from rosimpact.impact.targets.loader import own_machine
+from rosimpact.impact.targets.machine.loader import own_machine
 
 HERE = Path(__file__).parent
 CASES = sorted(path.parent for path in HERE.glob("*/*/before"))

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from rosimpact.impact.base import compare
-from rosimpact.impact.check import Options, check
-from rosimpact.impact.cli import app
+from rosimpact.impact.analysis.check import check, compare
+from rosimpact.impact.analysis.session import Options
+from rosimpact.impact.cli.app import app
 from rosimpact.impact.rules.rule import all_rules
 from typer.testing import CliRunner
 

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 
 CASE = Path(__file__).parent / "api/changed_signature/before"
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 
 Files = dict[str, str]
 Said = Callable[[Files, str, str], list[tuple[str, str]]]

@@ -17,7 +17,7 @@ Use instead
     src/gripper_copy/package.xml        <name>gripper_copy</name>
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text

@@ -10,7 +10,7 @@ Severity
     note: other tools report what else is wrong with the file; the coverage line counts it too.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text

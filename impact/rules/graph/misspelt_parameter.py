@@ -24,7 +24,7 @@ Not reported
     outside of the workspace; values in a file's `/**`, which is for every node.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text

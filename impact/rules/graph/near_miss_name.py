@@ -24,9 +24,9 @@ Not reported
     publish.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import Flow, Sure, display_name, flows, unstarted
-from ...model.flow.slips import NearNames
+from ...model.flow.misspelling import NearNames
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text

@@ -22,7 +22,7 @@ Not reported
     Nodes that use several types for one name, if one of them fits; type adapters.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import Pair, display_name, met, uncompared
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ...model.flow.launches import Start
-from ...model.flow.slips import is_slip
+from ...model.flow.misspelling import is_slip
 from ...model.workspace import Workspace
 from .launch_settings import group_by_line
 

@@ -21,7 +21,7 @@ Not reported
     private topics and topics for debugging; types that something in the workspace publishes on another topic.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import display_name
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule

@@ -24,7 +24,7 @@ Not reported
     (misspelt-parameter).
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text

@@ -22,9 +22,9 @@ Not reported
     not known, depends on a node that a launch file may rename, or may get the client's namespace when it is started.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import Flow, Sure, begins, display_name, flows, unstarted
-from ...model.flow.slips import NearNames, is_in_namespace, is_slip
+from ...model.flow.misspelling import NearNames, is_in_namespace, is_slip
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text

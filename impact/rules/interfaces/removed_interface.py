@@ -16,7 +16,7 @@ Use instead
     Keep the definition for one release, and publish both.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..severity import Doubt

@@ -1,0 +1,194 @@
+"""What rules said of a workspace on a target, remembered by what it rests on: content, data, settings and our own code.
+
+A second run on unchanged files then judges nothing anew. Time plays no part: the key is made of content ids.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+
+import msgspec
+from msgspec import structs
+
+from ..cache import code_stamp
+from ..facts.store import Store, encodable
+from ..model import tracked_names as watch
+from ..model.cmake.build import At
+from ..model.flow.file_selection import stamp
+from ..model.package import Watched
+from ..model.view import View
+from ..model.workspace import Workspace
+from ..rules.fix_actions import Declare, Insert, Remove, Replace
+from ..rules.rule import Cure, Diagnostic, Edit, Hit
+from ..rules.severity import Doubt
+from ..rules.text import Value
+from ..targets.evidence import Evidence
+from ..targets.snapshot import data_stamp
+from ..targets.surface.fields import default_fields
+from ..targets.surface.store import shipped
+from ..targets.target import Change, Target
+
+# (rule, what it yields)
+Yielded = tuple[str, Diagnostic | Hit]
+_CURES: dict[str, type] = {kind.__name__: kind for kind in (Declare, Remove, Replace, Insert, Edit)}
+
+
+class _Stored(msgspec.Struct, frozen=True, array_like=True):
+    """A diagnostic as stored: its rule, its place taken apart, its doubts by name, its cures as (kind, fields).
+
+    One whose rule wrote its text itself has no kind, and the text as data.
+    """
+
+    rule: str
+    path: str
+    line: int
+    column: int
+    subject: str
+    package: str
+    severity: str
+    fix: tuple[tuple[str, tuple[str | int, ...]], ...]
+    evidence: Evidence | None
+    kind: str | None
+    data: dict[str, str | int | float | tuple[str, ...]]
+    doubts: tuple[str, ...] = ()
+
+
+class _Judgement(msgspec.Struct, frozen=True, array_like=True):
+    diagnostics: tuple[_Stored, ...]
+    unresolved: dict[str, tuple[str, ...]]
+
+
+def load_tracked_names(store: Store) -> Watched:
+    """The names that rules look out for, as an earlier run gathered them from the same tables."""
+    name = hashlib.sha1(f"{code_stamp()} {data_stamp()}".encode()).digest()
+    data = store.memo("watched", name)
+    if data is not None:
+        with contextlib.suppress(msgspec.MsgspecError):
+            known = msgspec.msgpack.decode(data, type=Watched)
+            return structs.replace(known, fields=default_fields(), surfaces=shipped())
+    names = watch.watched()
+    # The table of fields and the surfaces are read from files of their own, where they are asked.
+    bare = structs.replace(names, fields=None, surfaces=None)
+    store.remember("watched", encodable([(name, bare)]))
+    return names
+
+
+def results_key(view: View, rules: Iterable[str]) -> bytes:
+    """The key of a view's judgement by these rules."""
+    found = hashlib.sha1(view.workspace.identity)
+    config = view.config
+    found.update(
+        repr(
+            (
+                *(code_stamp(), view.target.identity(), view.horizon, sorted(rules)),
+                *(config.private, config.underlays, config.repos),
+            )
+        ).encode()
+    )
+    return found.digest()
+
+
+def load_results(store: Store, view: View, rules: Sequence[str]) -> list[Yielded] | None:
+    """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
+    found = _recalled(store, results_key(view, rules))
+    if found is None:
+        return None
+    hits, unresolved = found
+    for kind, names in unresolved.items():
+        view.unresolved.setdefault(kind, set()).update(names)
+    return hits
+
+
+def store_results(store: Store, view: View, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
+    """Keeps what the rules yielded for later runs."""
+    unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
+    _keep(store, results_key(view, rules), diagnostics, unresolved)
+
+
+def flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
+    """The key of what these rules say of a workspace's message flow. before: the workspace at the base."""
+    stamps = [stamp(each) for each in (workspace, before) if each is not None]
+    return hashlib.sha1(repr((stamps, data_stamp(), sorted(rules))).encode()).digest()
+
+
+def load_flow_results(store: Store, key: bytes) -> list[Yielded] | None:
+    """(rule, hit) on the message flow of an earlier run, None when there was none. key: a flow_key()."""
+    found = _recalled(store, key)
+    return found[0] if found is not None else None
+
+
+def store_flow_results(store: Store, key: bytes, diagnostics: Iterable[Yielded]) -> None:
+    """Keeps what rules yielded on the message flow for later runs."""
+    _keep(store, key, diagnostics, {})
+
+
+def _keep(
+    store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
+) -> None:
+    stored = tuple(_packed(rule, diagnostic) for rule, diagnostic in diagnostics)
+    store.remember("judgement", encodable([(key, _Judgement(stored, unresolved))]))
+
+
+def _recalled(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[str, ...]]] | None:
+    data = store.memo("judgement", key)
+    if data is None:
+        return None
+    try:
+        judgement = msgspec.msgpack.decode(data, type=_Judgement)
+        return [(stored.rule, _unpacked(stored)) for stored in judgement.diagnostics], judgement.unresolved
+    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError, TypeError):
+        return None
+
+
+def load_changes(store: Store, target: Target) -> None:
+    """Gives a target, and the newest distro that it is compared with, the changes an earlier run worked out."""
+    newest = target.newest()
+    for one in (target, newest) if newest is not None else (target,):
+        if one.has_changes():
+            continue
+        name = hashlib.sha1(one.identity().encode()).digest()
+        data = store.memo("changes", name)
+        if data is not None:
+            try:
+                one.set_changes(msgspec.msgpack.decode(data, type=tuple[Change, ...]))
+                continue
+            except msgspec.MsgspecError:
+                pass
+        store.remember("changes", encodable([(name, [tuple(change) for change in one.changes()])]))
+
+
+def _packed(rule: str, diagnostic: Diagnostic | Hit) -> _Stored:
+    at = diagnostic.at
+    kind: str | None = None
+    data: Mapping[str, Value]
+    if isinstance(diagnostic, Hit):
+        data, doubts = {"message": diagnostic.message, "help": diagnostic.help}, ()
+    else:
+        kind, data, doubts = diagnostic.kind, diagnostic.data, diagnostic.doubts
+    return _Stored(
+        rule,
+        getattr(at, "path", ""),
+        getattr(at, "line", 0),
+        getattr(at, "column", 0),
+        diagnostic.subject,
+        diagnostic.package,
+        diagnostic.severity,
+        tuple((type(cure).__name__, tuple(cure)) for cure in diagnostic.fix),
+        diagnostic.evidence,
+        kind,
+        dict(data),
+        tuple(doubt.name for doubt in doubts),
+    )
+
+
+def _unpacked(stored: _Stored) -> Diagnostic | Hit:
+    at = At(stored.path, stored.line, stored.column)
+    fix: tuple[Cure, ...] = tuple(_CURES[kind](*fields) for kind, fields in stored.fix)
+    package, severity, evidence = stored.package, stored.severity, stored.evidence
+    if stored.kind is None:
+        message, help = str(stored.data["message"]), str(stored.data["help"])
+        return Hit(at, stored.subject, message, help, package, severity, fix, evidence)
+    doubts = tuple(Doubt[name] for name in stored.doubts)
+    return Diagnostic(at, stored.subject, package, stored.data, stored.kind, doubts, severity, fix, evidence)
