@@ -567,7 +567,7 @@ SILENT = {
         ("package.xml", "== jazzy", "== humble"),
     ),
     "a module that Python lost, with an except branch": Silent(
-        "python-version",
+        "removed-python-module",
         ("jazzy",),
         ament(
             "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
@@ -578,7 +578,7 @@ SILENT = {
         ("run.py", "try:\n    import imp\nexcept ImportError:\n    import importlib as imp\n", "import imp\n"),
     ),
     "a module that Python lost, under a version test": Silent(
-        "python-version",
+        "removed-python-module",
         ("jazzy",),
         ament(
             "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
@@ -961,4 +961,5 @@ def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path):
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
-    assert [(f.severity, f.subject) for f in report.findings if f.rule == "python-version"] == [(severity, module)]
+    found = [(f.severity, f.subject) for f in report.findings if f.rule == "removed-python-module"]
+    assert found == [(severity, module)]

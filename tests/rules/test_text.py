@@ -3,8 +3,8 @@
 import re
 
 import pytest
-from rosimpact.impact.findings import merge
-from rosimpact.impact.model.build import At
+from rosimpact.impact.analysis.findings import merge
+from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Diagnostic, Hit, Rule, all_rules
 from rosimpact.impact.rules.severity import Doubt
 from rosimpact.impact.rules.text import Text, list_names, render_template

@@ -1,72 +1,49 @@
-"""python-version: a Python file does not parse, or imports a removed module, on a target's Python.
+"""python-version: a Python file uses syntax that a target's Python does not accept.
 
 What it does
-    Reports syntax that only Python 2 takes where the target has Python 3, syntax newer than the target's Python, and
-    modules and names of the standard library that the target's Python no longer has.
+    Reports syntax that only Python 2 accepts if the target has Python 3, and syntax newer than the target's Python.
 
 Why it breaks
-    The node stops at its first line: SyntaxError or ModuleNotFoundError.
+    The node stops with a SyntaxError before it runs.
 
 Severity
-    error for files that are nodes, scripts or modules of the package; warning for tests, for imports inside functions
-    and for distutils, which setuptools brings back where it is installed; note for examples.
+    error for files that are nodes, scripts or modules of the package; warning for tests; note for examples.
 
 Example
     except urllib2.URLError, e:
 
 Use instead
     except urllib.error.URLError as e:
-
-Not reported
-    Imports with an except branch, and code under a test of the Python version.
 """
 
 from ...model.view import View
-from ...targets.providers.stdlib import stood_in_for
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .python_files import doubts_of_role
 
-_SEVERITY = {"run": "error", "build": "error", "test": "warning", "aside": "note"}
 
-
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "older": Text("{subject} is a syntax error in Python {version}", help="use syntax that Python 3 accepts"),
+        "newer": Text(
+            "{subject} needs Python {since}, but the target has {version}",
+            help="use syntax that the Python of every target accepts",
+        ),
+    },
+)
 def python_version(view: View):
-    if view.target.python_major < 3:
-        return
     minor = view.target.python
+    if view.target.python_major < 3 or not minor:
+        return
     for package in view:
-        told = set()
+        reported = set()
         for use in package.digest.syntax:
-            severity = _SEVERITY.get(use.role, "note")
-            if use.needs == 2 and minor and use.at.path not in told:
-                told.add(use.at.path)
-                yield Hit(
-                    use.at,
-                    use.what,
-                    f"Python 3.{minor} refuses {use.what}",
-                    "write it so that Python 3 takes it",
-                    package.name,
-                    severity=severity,
-                )
-            elif use.needs > 2 and minor and use.needs > minor:
-                yield Hit(
-                    use.at,
-                    use.what,
-                    f"{use.what} needs Python 3.{use.needs}, and the target has 3.{minor}",
-                    "write it so that every target's Python takes it",
-                    package.name,
-                    severity=severity,
-                )
-        for item in package.digest.imports:
-            if not minor or not view.certain(item.conditions):
-                continue
-            if view.left_python(item.module) and item.module.split(".")[0] not in view.workspace.modules:
-                severity = _SEVERITY.get(item.role, "note")
-                milder = item.lazy or stood_in_for(item.module)
-                yield Hit(
-                    item.at,
-                    item.module,
-                    f"module `{item.module}` is not in Python 3.{minor}",
-                    "use its successor, with an except branch where both must work",
-                    package.name,
-                    severity="warning" if milder and severity == "error" else severity,
-                )
+            data = {"version": f"3.{minor}", "since": f"3.{use.needs}"}
+            doubts = doubts_of_role(use.role)
+            if use.needs == 2 and use.at.path not in reported:
+                reported.add(use.at.path)
+                yield Diagnostic(use.at, use.what, package.name, data, kind="older", doubts=doubts)
+            elif use.needs > max(2, minor):
+                yield Diagnostic(use.at, use.what, package.name, data, kind="newer", doubts=doubts)
