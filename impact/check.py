@@ -87,15 +87,17 @@ def check(
     options: Options = DEFAULTS,
     progress: Progress | None = None,
     *,
+    tree: Tree | None = None,
     base_tree: Tree | None = None,
 ) -> Report:
     """Checks a workspace and says what breaks, and for whom.
 
     path: a workspace, package, or git repository. progress: called with (done, total) bytes while files are parsed.
-    base_tree: the tree to compare with, instead of the revision that the options name.
+    tree: what is read instead of what is at the path. base_tree: the tree to compare with, instead of the revision that
+    the options name.
     Raises CheckError, TreeError, TargetError, SettingsError, SnapshotError or ConfigError with a text for the user.
     """
-    return run(path, options, progress, base_tree=base_tree).report
+    return run(path, options, progress, tree=tree, base_tree=base_tree).report
 
 
 def run(
@@ -103,11 +105,12 @@ def run(
     options: Options = DEFAULTS,
     progress: Progress | None = None,
     *,
+    tree: Tree | None = None,
     base_tree: Tree | None = None,
 ) -> Checked:
     """check(), with the configuration and the tree that it was made with. Raises as check() does."""
     started = time.perf_counter()
-    with open_workspace(path, options, progress, lambda config: chosen_rules(options, config)) as opened:
+    with open_workspace(path, options, progress, lambda config: chosen_rules(options, config), tree) as opened:
         return judged(path, options, opened, base_tree=base_tree, started=started)
 
 
@@ -318,10 +321,10 @@ def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
 
 
 def settings_of(root: Path, tree: Tree, file: Path | None, *, follow_links: bool = False) -> Config:
-    """The configuration: the file given, else rosimpact.toml on disk, else that of the revision. Raises ConfigError."""
+    """The configuration: the file given, else rosimpact.toml on disk, else that of the tree. Raises ConfigError."""
     config = load(root, file, follow_links=follow_links)
     name = "rosimpact.toml"
-    if config.path is None and isinstance(tree, GitTree) and tree.exists(name) and not tree.is_dir(name):
+    if config.path is None and not isinstance(tree, WorkingTree) and tree.exists(name) and not tree.is_dir(name):
         try:
             data = tree.read(name, limits().settings)
         except OSError as error:
