@@ -5,12 +5,13 @@ usage: mutation.py [--rev REV ...] [--number 40] [--seed 1] [--timeout 900] [FOL
 Of the given folders (impact/rules, impact/model and impact/facts without any) `number` places are drawn, in modules as
 likely as they are long, and for each of them one of the changes that cosmic-ray's operators can make there (`pip
 install cosmic-ray`). Each change is made in a copy of the tree; the tests that are about the changed module run until
-one fails. `killed`: one failed; `timed out`:
-they did not end; `survived`: all passed. With several revisions the changes are drawn from the first one and made in
-all of them, so that their tests can be compared; a file that a revision does not have word for word is left out there.
+one fails. `killed`: one failed; `timed out`: they did not end; `survived`: all passed. With several revisions the
+changes are drawn from the first one and made in all of them, so that their tests can be compared; a file that a revision
+does not have word for word is left out there.
 
-Tests of a module: for a rule those of its cases, the cases of all rules, then the files below tests/rules that name the rule; for another
-module the files of its room's tests that import it or lie in the folder of its name, then the cases of all rules.
+Tests of a module: for a rule those of its cases, the cases of all rules, then the files below tests/rules that name
+the rule; for another module the files of its room's tests that import it or lie in the folder of its name, then the
+cases of all rules.
 """
 
 from __future__ import annotations
@@ -126,8 +127,7 @@ def find_tests(folder: Path, pattern: re.Pattern[str] = re.compile("")) -> list[
 
 def run_tests(tree: Path, tests: Iterable[list[str]], packages: Path, timeout: float) -> str:
     """Runs tests until one fails, and returns `killed`, `timed out` or `survived`."""
-    environment = {**os.environ, "PYTHONPATH": f"{packages}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"}
-    environment |= {"PYTHONDONTWRITEBYTECODE": "1"}
+    environment = {**os.environ, "PYTHONPATH": str(packages), "PYTHONDONTWRITEBYTECODE": "1"}
     end = time.monotonic() + timeout
     for arguments in tests:
         command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist"]
