@@ -6,8 +6,8 @@ Of the given folders (impact/rules, impact/model and impact/facts without any) `
 likely as they are long, and for each of them one of the changes that cosmic-ray's operators can make there (`pip
 install cosmic-ray`). Each change is made in a copy of the tree; the tests that are about the changed module run until
 one fails. `killed`: one failed; `timed out`: they did not end; `survived`: all passed. With several revisions the
-changes are drawn from the first one and made in all of them, so that their tests can be compared; a file that a revision
-does not have word for word is left out there.
+changes are drawn from the first one and made in all of them, so that their tests can be compared; a file that a
+revision does not have word for word is left out there.
 
 Tests of a module: for a rule those of its cases, the cases of all rules, then the files below tests/rules that name
 the rule; for another module the files of its room's tests that import it or lie in the folder of its name, then the
