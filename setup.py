@@ -2,7 +2,7 @@
 
 from setuptools import find_packages, setup
 
-ROOMS = ("impact", "corpus", "classifier", "edges")
+ROOMS = ("impact", "corpus", "classifier", "databuild", "edges")
 
 setup(
     packages=[f"rosimpact.{name}" for name in find_packages(include=[*ROOMS, *(f"{room}.*" for room in ROOMS)])],
@@ -12,8 +12,7 @@ setup(
         "rosimpact.impact.targets": ["data/*"],
         "rosimpact.impact.report": ["*.css", "*.html", "*.js", "*.json"],
         "rosimpact.impact.model.flow": ["*.toml"],
-        "rosimpact.impact.flow": ["*.html"],
-        "rosimpact.impact.flow.drawing": ["assets/*"],
+        "rosimpact.impact.report.graph": ["assets/*"],
         "rosimpact.corpus": ["py.typed", "labels.jsonl", "GUIDE.md"],
         "rosimpact.classifier": ["py.typed", "data/*"],
     },

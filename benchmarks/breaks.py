@@ -39,8 +39,8 @@ def start(score_path: str, repos: str, breaks: str | None) -> None:
         return True
 
     def check(command, folder, targets, timeout=300):
-        from rosimpact.impact.check import Options
-        from rosimpact.impact.check import check as run
+        from rosimpact.impact.analysis.check import check as run
+        from rosimpact.impact.analysis.session import Options
 
         git, commit = pathlib.Path(folder, "REVISION").read_text().split("\n")
         began = time.monotonic()

@@ -135,7 +135,7 @@ def serve(count: int, port) -> None:
 def measured(arguments: list[str], environment: dict[str, str]) -> tuple[float, float, int]:
     """Wall seconds, seconds of CPU and peak memory in MB of one `rosimpact` process."""
     start = time.perf_counter()
-    command = [sys.executable, "-c", "from rosimpact.impact.cli import main; main()", *arguments]
+    command = [sys.executable, "-c", "from rosimpact.impact.cli.app import main; main()", *arguments]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, env=environment)
     _, status, usage = os.wait4(process.pid, 0)
     if os.waitstatus_to_exitcode(status) != 0:

@@ -63,7 +63,7 @@ def _closed(text: str, at: int, opening: str, closing: str) -> int:
 
 def measured(repository: str, listed: bool) -> Counter[str]:
     """Prints a repository's line and returns its counts."""
-    from rosimpact.impact.check import open_tree
+    from rosimpact.impact.analysis.session import open_tree
     from rosimpact.impact.facts.store import Store
     from rosimpact.impact.model.flow.workspace import code_of, facts_of, graph_of, linked
 

@@ -91,7 +91,7 @@ def main() -> None:
         command = [
             sys.executable,
             "-m",
-            "rosimpact.impact.cli",
+            "rosimpact.impact.cli.app",
             "logic",
             args.repository,
             "--format",

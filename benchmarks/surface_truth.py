@@ -276,8 +276,8 @@ def _message(change, old: Text, new: Text) -> str:
 
 def precision(folder: Path, count: int, listed: int) -> int:
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.targets.clones import Clones
-    from rosimpact.impact.targets.surface import State, compare
+    from rosimpact.impact.model.surface.clones import Clones
+    from rosimpact.impact.targets.surface.compare import State, compare
     from rosimpact.impact.targets.version import parts
 
     clones = Clones(folder)
@@ -336,8 +336,8 @@ def precision(folder: Path, count: int, listed: int) -> int:
 def recall(folder: Path, table: Path, listed: int) -> int:
     import yaml
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.targets.clones import Clone, VersionError
-    from rosimpact.impact.targets.surface import State, compare_states
+    from rosimpact.impact.model.surface.clones import Clone, VersionError
+    from rosimpact.impact.targets.surface.compare import State, compare_states
     from rosimpact.impact.tree import TreeError
 
     entries = [e for e in yaml.safe_load(table.read_text()) if str(e["verified"]).startswith("git")]

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import time
 
-_COMMAND = [sys.executable, "-c", "from rosimpact.impact.cli import main; main()", "triage"]
+_COMMAND = [sys.executable, "-c", "from rosimpact.impact.cli.app import main; main()", "triage"]
 
 
 def timed(arguments: list[str], text: str) -> tuple[float, str]:

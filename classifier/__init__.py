@@ -1,3 +1,3 @@
 """Triage: sends a new bug report to the check that fits it."""
 
-from ..corpus import __version__ as __version__
+from ..edges.version import __version__ as __version__

@@ -5,17 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .check import Options, check, check_workspace
-    from .report.report import Report
+    from .analysis.check import check, check_workspace
+    from .analysis.report import Report
+    from .analysis.session import Options
     from .rules.rule import Finding
 
 __all__ = ["Finding", "Options", "Report", "check", "check_workspace"]
 
 _WHERE = {
-    "check": "check",
-    "check_workspace": "check",
-    "Options": "check",
-    "Report": "report.report",
+    "check": "analysis.check",
+    "check_workspace": "analysis.check",
+    "Options": "analysis.check",
+    "Report": "analysis.report",
     "Finding": "rules.rule",
 }
 

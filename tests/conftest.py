@@ -124,7 +124,7 @@ def say(capfd, cache, monkeypatch) -> Callable[..., Said]:
         monkeypatch.delenv(name, raising=False)
 
     def run(*arguments: object) -> Said:
-        from rosimpact.impact import cli
+        from rosimpact.impact.cli import app as cli
 
         monkeypatch.setattr(sys, "argv", ["rosimpact", *map(os.fsdecode, map(str, arguments))])
         capfd.readouterr()
@@ -145,6 +145,6 @@ _IN_ONE_PROCESS = ("rules", "model", "report", "targets", "facts")
 def one_process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """A fork of a process that has grown to a gigabyte of tests takes longer than most of them."""
     if request.path.relative_to(Path(__file__).parent).parts[0] in _IN_ONE_PROCESS:
-        from rosimpact.impact import processes
+        from rosimpact.edges import processes
 
         monkeypatch.setattr(processes, "may_fork", lambda: False)

@@ -16,7 +16,8 @@ from typing import NamedTuple
 
 import pygit2
 import pytest
-from rosimpact.impact.targets import providers, snapshot
+from rosimpact.impact.targets import snapshot
+from rosimpact.impact.targets.providers.providers import providers
 
 MANIFEST = """<?xml version="1.0"?>
 <package format="3">
@@ -450,7 +451,7 @@ def test_a_rule_that_fails_is_named_and_the_others_are_heard(say, ws, monkeypatc
 
 
 def test_an_unforeseen_error_is_one_line(say, ws, monkeypatch):
-    from rosimpact.impact import check as checking
+    from rosimpact.impact.analysis import check as checking
 
     monkeypatch.setattr(checking, "link", lambda *a: 1 / 0)
     said = say("check", ws, "--format", "json")

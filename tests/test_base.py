@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pygit2
 import pytest
-from rosimpact.impact.base import BaseError, base_tree, compare, read_pinned
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check, compare
+from rosimpact.impact.analysis.revision_compare import BaseError, base_tree, read_pinned
+from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.tree import GitTree, TreeError, WorkingTree
 
 MANIFEST = """<package format="3">

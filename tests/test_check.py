@@ -6,11 +6,12 @@ from pathlib import Path
 
 import pytest
 import rosimpact.impact
-from rosimpact.impact.check import CheckError, Options, check, check_workspace, holds, open_workspace
+from rosimpact.impact.analysis.check import check, check_workspace, holds
+from rosimpact.impact.analysis.findings import SettingsError
+from rosimpact.impact.analysis.session import CheckError, Options, open_workspace
 from rosimpact.impact.config import ConfigError, load
-from rosimpact.impact.findings import SettingsError
-from rosimpact.impact.rules.cure import Declare, Insert, Remove, Replace
-from rosimpact.impact.targets.distro import TargetError
+from rosimpact.impact.rules.fix_actions import Declare, Insert, Remove, Replace
+from rosimpact.impact.targets.distro.distro import TargetError
 from rosimpact.impact.tree import TreeError
 
 EXAMPLE = Path(__file__).parents[1] / "examples/ros2_ws"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from rosimpact.corpus import __version__
+from rosimpact.edges.version import __version__
 from rosimpact.impact.rules.rule import all_rules
 
 ROOT = Path(__file__).parents[1]
@@ -181,9 +181,9 @@ def test_nothing_analysed_leaves_the_baseline_alone(say, tmp_path):
 @pytest.fixture
 def curable(ws, monkeypatch):
     """A rule whose finding is cured by declaring a dependency."""
-    from rosimpact.impact.model.build import At
+    from rosimpact.impact.model.cmake.build import At
     from rosimpact.impact.rules import rule as registry
-    from rosimpact.impact.rules.cure import Declare
+    from rosimpact.impact.rules.fix_actions import Declare
     from rosimpact.impact.rules.rule import Hit
 
     def lacks(view):
@@ -225,7 +225,7 @@ def test_fixes_are_written_and_what_remains_is_reported(say, curable):
 
 
 def test_a_fix_that_cannot_be_written_is_named(say, curable, monkeypatch):
-    from rosimpact.impact import fix
+    from rosimpact.impact.analysis import fix
 
     def denied(root, path, data, original):
         raise PermissionError(13, "Permission denied", path)
@@ -238,7 +238,7 @@ def test_a_fix_that_cannot_be_written_is_named(say, curable, monkeypatch):
 
 
 def test_a_file_that_changed_since_it_was_read_is_not_fixed(say, curable, monkeypatch):
-    from rosimpact.impact import fix
+    from rosimpact.impact.analysis import fix
 
     write, manifest = fix.write, curable / "a/package.xml"
     edited = MANIFEST.replace("</package>", "  <!-- edited -->\n</package>")
@@ -301,7 +301,7 @@ def refusing(ws, tmp_path):
 @pytest.mark.parametrize("name", [".git/config", "report.json", "reports/secret", "reports/new", "history/config",
                                   "pipe", "a", "a/", "/proc/version", "a/package.xml/x", "x" * 5000, ""])  # fmt: skip
 def test_outputs_are_refused_before_the_work(say, refusing, tmp_path, monkeypatch, option, name):
-    from rosimpact.impact import run
+    from rosimpact.impact.cli import run
 
     monkeypatch.setattr(run, "run_check", lambda *_: pytest.fail("the work was begun"))
     monkeypatch.chdir(refusing)
@@ -412,7 +412,7 @@ def test_version_is_that_of_the_distribution(say):
 
 def test_help_loads_nothing_heavy():
     code = (
-        "import sys; from rosimpact.impact.cli import main; sys.argv = ['rosimpact', '--help']\n"
+        "import sys; from rosimpact.impact.cli.app import main; sys.argv = ['rosimpact', '--help']\n"
         "try: main()\nexcept SystemExit: pass\n"
         "print(*sorted(m for m in sys.modules if m.split('.')[0] in "
         "{'yaml', 'rich', 'pygit2', 'catkin_pkg', 'joblib', 'sqlite3', 'msgspec', 'requests'}))"
@@ -424,7 +424,7 @@ def test_help_loads_nothing_heavy():
 
 def test_a_check_loads_no_more_than_it_needs(ws, cache):
     code = (
-        "import sys; from rosimpact.impact.check import check, Options\n"
+        "import sys; from rosimpact.impact.analysis.check import check, Options\n"
         f"check({str(ws)!r}, Options(targets=('jazzy',)))\ncheck({str(ws)!r}, Options(targets=('jazzy',)))\n"
         "print(*sorted(m for m in ('rich', 'pygit2', 'joblib', 'requests', 'github', 'sklearn') if m in sys.modules))"
     )

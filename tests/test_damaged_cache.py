@@ -20,7 +20,7 @@ MANIFEST = """\
 <depend>rclcpp</depend><export><build_type>ament_cmake</build_type></export></package>
 """
 CMAKE = "cmake_minimum_required(VERSION 3.8)\nproject(a)\nfind_package(rclcpp)\nadd_executable(a a.cpp)\n"
-PROGRAM = "from rosimpact.impact.cli import main; main()"
+PROGRAM = "from rosimpact.impact.cli.app import main; main()"
 
 
 def answered(out: str) -> tuple[dict, list[str]]:
@@ -61,7 +61,8 @@ def filled(workspace, tmp_path_factory) -> tuple[Path, int, dict]:
 
 def test_any_change_of_any_file_gives_the_same_answer(workspace, filled, say, tmp_path, monkeypatch):
     """In this process, which is many times faster than one for each change."""
-    from rosimpact.impact.targets import providers, snapshot
+    from rosimpact.impact.targets import snapshot
+    from rosimpact.impact.targets.providers.providers import providers
 
     cache, status, expected = filled
     chance = random.Random(15)

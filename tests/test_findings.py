@@ -8,9 +8,7 @@ import hypothesis
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.config import PathSetting
-from rosimpact.impact.facts.place import Allow
-from rosimpact.impact.findings import (
+from rosimpact.impact.analysis.findings import (
     SettingsError,
     _reach,
     baseline,
@@ -28,7 +26,9 @@ from rosimpact.impact.findings import (
     with_settings,
     without_known,
 )
-from rosimpact.impact.model.build import At
+from rosimpact.impact.config import PathSetting
+from rosimpact.impact.facts.place import Allow
+from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Edit, Finding, Hit, Rule
 from rosimpact.impact.targets.evidence import Evidence
 

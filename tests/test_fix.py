@@ -9,7 +9,7 @@ import pytest
 from catkin_pkg.package import parse_package_string
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.fix import (
+from rosimpact.impact.analysis.fix import (
     Applied,
     apply,
     declare_dependency,
@@ -22,7 +22,7 @@ from rosimpact.impact.fix import (
     unified_diff,
     write,
 )
-from rosimpact.impact.rules.cure import Declare, Insert, Remove, Replace
+from rosimpact.impact.rules.fix_actions import Declare, Insert, Remove, Replace
 from rosimpact.impact.rules.rule import Edit, Finding
 
 HEAD = '<package format="{}">\n  <name>p</name>\n  <version>1.0.0</version>\n  <description>d</description>\n'

@@ -8,12 +8,12 @@ import time
 
 import pygit2
 import pytest
-from rosimpact.impact import gather as gather_module
-from rosimpact.impact import processes
+from rosimpact.edges import processes
 from rosimpact.impact import tree as tree_module
+from rosimpact.impact.facts import extract as gather_module
 from rosimpact.impact.facts import kinds
+from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.gather import gather
 from rosimpact.impact.tree import GitTree, PathProblem, WorkingTree
 
 MANIFEST = "<package format='3'><name>p</name><version>1.0.0</version></package>"
@@ -396,7 +396,7 @@ def test_interrupted_and_resumed(tmp_path, small_chunks, jobs):
 
 SLOW_RUN = """
 import sys, time
-from rosimpact.impact import gather as module
+from rosimpact.impact.facts import extract as module
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.tree import WorkingTree

@@ -6,7 +6,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from rosimpact.impact.cli import app
+from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
 
 TALKER = """

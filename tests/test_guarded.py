@@ -1,10 +1,11 @@
 """Where the targets asked for need different spellings, the help is the guarded form, and following it is right."""
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
+from rosimpact.impact.conditions import Environment, all_hold
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.model.conditions import Environment, all_hold
-from rosimpact.impact.targets.version_macros import version_test
+from rosimpact.impact.targets.providers.version_macros import version_test
 
 MANIFEST = """<package format="3">
   <name>winch</name><version>1.0.0</version><description>d</description>

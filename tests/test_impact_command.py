@@ -150,7 +150,7 @@ def test_what_fails_there_does_not_take_the_findings_along(ws: Path, say, monkey
     def fails(*_):
         raise RuntimeError("broken")
 
-    monkeypatch.setattr("rosimpact.impact.flow.impact.impact_of", fails)
+    monkeypatch.setattr("rosimpact.impact.analysis.downstream.impact_of", fails)
     said = say("check", ws, "--base", "HEAD", "-t", "jazzy")
     assert said.status == 2
     assert "impact failed" in said.text

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from rosimpact.edges.limits import Limits
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.installed import read_installed
-from rosimpact.impact.targets.loader import own_machine
+from rosimpact.impact.model.install_space import read_installed
+from rosimpact.impact.targets.machine.loader import own_machine
 
 MANIFEST = """\
 <?xml version="1.0"?>
@@ -412,7 +412,7 @@ def test_what_is_no_built_file_is_checked_around(tmp_path, made_elf, say):
 
 
 def test_a_tree_of_more_files_or_folders_than_its_limits(tmp_path, made_elf, monkeypatch):
-    monkeypatch.setattr("rosimpact.impact.installed.limits", lambda: Limits(entries=20, depth=5))
+    monkeypatch.setattr("rosimpact.impact.model.install_space.limits", lambda: Limits(entries=20, depth=5))
     put(tmp_path, "a/liba.so", made_elf("EM_X86_64", []))
     put(tmp_path, "b/" + "deep/" * 9 + "libb.so", made_elf("EM_X86_64", []))
     for n in range(30):

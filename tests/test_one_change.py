@@ -11,9 +11,10 @@ from pathlib import Path
 
 import pytest
 import rule_cases
-from rosimpact.impact import memo
-from rosimpact.impact.check import Options, check, open_workspace
-from rosimpact.impact.model import watch
+from rosimpact.impact.analysis import result_cache as memo
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options, open_workspace
+from rosimpact.impact.model import tracked_names as watch
 from rosimpact.impact.model.view import View
 from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import all_rules

@@ -5,12 +5,14 @@ import signal
 from pathlib import Path
 
 import pytest
-from rosimpact.impact import judge, processes
-from rosimpact.impact.check import Options, check
+from rosimpact.edges import processes
+from rosimpact.impact.analysis import run_rules as judge
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.model import workspace
 from rosimpact.impact.rules.rule import all_rules
-from rosimpact.impact.targets.distro import DistroTarget
-from rosimpact.impact.targets.providers import default_providers
+from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.providers.providers import default_providers
 
 needs_fork = pytest.mark.skipif(not processes.may_fork(), reason="processes are forked on Linux only")
 
@@ -85,7 +87,7 @@ def test_a_rule_that_fails_on_one_package_is_named_once(tmp_path, at_once, monke
             yield from ()
 
     rules = {**all_rules(), "unresolvable-key": rule._replace(run=run)}
-    monkeypatch.setattr("rosimpact.impact.check.all_rules", lambda: rules)
+    monkeypatch.setattr("rosimpact.impact.analysis.check.all_rules", lambda: rules)
     report = check(ws, Options(("humble", "jazzy"), jobs=2, cache=tmp_path / "cache"))
     assert report.failure.count("the rule unresolvable-key failed on humble, jazzy: RuntimeError") == 1
     assert any(finding.rule == "undeclared-package" for finding in report.findings)

@@ -26,7 +26,7 @@ def test_findings_are_the_same_with_any_hash_seed(tmp_path):
         command = [
             sys.executable,
             "-c",
-            "import sys; from rosimpact.impact.cli import main; sys.exit(main())",
+            "import sys; from rosimpact.impact.cli.app import main; sys.exit(main())",
             "check",
             "ws",
             "--target",

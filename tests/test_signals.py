@@ -24,7 +24,7 @@ import os, sys
 from rosimpact.edges import interrupts
 interrupts.install()
 os.write({0}, b"s")
-from rosimpact.edges.start import main
+from rosimpact.impact.cli.start import main
 sys.argv[0] = "rosimpact"
 sys.exit(main())
 """
@@ -195,7 +195,7 @@ def limited(kind: int, limit: int):
     return apply
 
 
-COMMAND = [sys.executable, "-c", "import sys; from rosimpact.edges.start import main; sys.exit(main())"]
+COMMAND = [sys.executable, "-c", "import sys; from rosimpact.impact.cli.start import main; sys.exit(main())"]
 
 
 @pytest.mark.parametrize("files", [5, 12, 18, 24])
@@ -276,7 +276,8 @@ def test_what_runs_out_is_no_fault_of_rosimpact(capfd, error, words):
 
 
 def test_a_start_that_fails_is_one_line():
-    code = "import sys; sys.modules['rosimpact.impact.cli'] = None\nfrom rosimpact.edges.start import main; main()"
+    code = "import sys; sys.modules['rosimpact.impact.cli.app'] = None\n"
+    code += "from rosimpact.impact.cli.start import main; main()"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert run.returncode == 2 and run.stdout == ""
     assert run.stderr.startswith("rosimpact: ") and len(run.stderr.splitlines()) == 1

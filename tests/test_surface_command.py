@@ -5,8 +5,8 @@ import re
 import subprocess
 
 import pytest
-from rosimpact.impact.cli import app
-from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.cli.app import app
+from rosimpact.impact.targets.distro.distro import DistroTarget
 from typer.testing import CliRunner
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
@@ -83,10 +83,10 @@ New: 1 (1 method)
 
 def test_a_line_fits_eighty_columns(repos, tmp_path):
     from rosimpact.impact.facts.store import Store
+    from rosimpact.impact.model.surface.clones import Clone
+    from rosimpact.impact.report.style import PLAIN
     from rosimpact.impact.report.surface import Difference, Source, diff_text, show_text
-    from rosimpact.impact.report.text import PLAIN
-    from rosimpact.impact.targets.clones import Clone
-    from rosimpact.impact.targets.surface import State, compare_states
+    from rosimpact.impact.targets.surface.compare import State, compare_states
 
     clone = Clone(repos / "ros2+rclcpp")
     with Store(tmp_path / "other") as store:
@@ -174,7 +174,7 @@ def test_hashes_of_messages():
 
 
 def test_build(repos, tmp_path):
-    from rosimpact.impact.targets.surface_store import Surfaces
+    from rosimpact.impact.targets.surface.store import Surfaces
 
     file = tmp_path / "surfaces.sqlite"
     result = run("build", "--distro", "humble", "--packages", "rclcpp", "--repos", repos, "-o", file, "--jobs", 1)

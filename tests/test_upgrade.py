@@ -9,7 +9,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from rosimpact.impact.between import compared, items
+from rosimpact.impact.analysis.target_compare import compared, items
 from rosimpact.impact.rules.rule import Finding
 
 ROOT = Path(__file__).parents[1]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.why import Answer, Offer, answers, as_text
+from rosimpact.impact.analysis.why import Answer, Offer, answers, as_text
 
 EXAMPLE = Path(__file__).parents[1] / "examples/ros2_ws"
 
@@ -97,7 +97,7 @@ def test_answers_as_text(found, expected):
 
 
 def test_what_is_recognised_as_a_workspace(tmp_path, monkeypatch):
-    from rosimpact.impact.why import is_workspace
+    from rosimpact.impact.analysis.why import is_workspace
 
     assert not is_workspace(tmp_path)
     (tmp_path / "src/a/b").mkdir(parents=True)

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from ..targets.surface_changes import Event, Line, Overload
+    from ..targets.surface.changes import Event, Line, Overload
 
 CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))
 """Kinds of names that are called."""

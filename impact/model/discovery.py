@@ -21,10 +21,10 @@ import msgspec
 
 from ...edges.documents import DocumentError, load_yaml
 from ...edges.limits import limits
+from ...edges.patterns import PatternError, cost_of, matches
+from ..facts.extract import Gathered
 from ..facts.manifest import Manifest
-from ..gather import Gathered
 from ..tree import PathProblem, Tree, inside
-from .patterns import PatternError, cost_of, matches
 
 _FILES = frozenset(
     ("package.xml", "CMakeLists.txt", "setup.py", "setup.cfg", "pyproject.toml", "colcon.pkg", "manifest.xml")

@@ -11,7 +11,7 @@ from collections.abc import Container, Iterable
 from functools import lru_cache
 
 from ..facts.condition import Condition
-from .build import Defined
+from .cmake.build import Defined
 
 _ASKED = re.compile(r"(?:defined\s*\(\s*(?P<whether>[A-Za-z_]\w*)\s*\)|(?P<value>[A-Za-z_]\w*))\Z")
 

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from ..targets.fields import ROS1_SUFFIXES, Definition, Fields, Member
+from ..targets.surface.fields import ROS1_SUFFIXES, Definition, Fields, Member
 
 
 class Interface(NamedTuple):

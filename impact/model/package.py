@@ -23,16 +23,16 @@ from ..facts.python import PythonFile
 from ..facts.python_objects import PythonUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, first_places, initialises, names_a_variable, place_in, places_of_use, python_text
-from ..targets.fields import Fields
-from ..targets.message_headers import type_in
-from .build import At, Build
+from ..targets.providers.message_headers import type_in
+from ..targets.surface.fields import Fields
+from .cmake.build import At, Build
 from .macros import Macros
 
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
     from .api import Changes
-    from .api_python import Changing
     from .members import Interface as Meant
+    from .python.api import Changing
     from .settings import Setting
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
@@ -282,7 +282,7 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     @cached_property
     def changing_python(self) -> Changing | None:
         """Python names that surfaces tell to have changed."""
-        from .api_python import Changing
+        from .python.api import Changing
 
         return Changing(self.surfaces) if self.surfaces is not None else None
 
@@ -755,7 +755,7 @@ class _Join:
     def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""
         from .members import Scope, interfaces_imported
-        from .members_python import PythonUses
+        from .python.members import PythonUses
 
         table = self.watched.fields
         if table is None:
@@ -780,7 +780,7 @@ class _Join:
 
     def python_api(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
         """Uses of Python names of other packages that may not be the same in all versions."""
-        from .api_python import python_packages, uses_of
+        from .python.api import python_packages, uses_of
 
         changing = self.watched.changing_python
         if changing is None:

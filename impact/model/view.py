@@ -12,26 +12,26 @@ from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from ..conditions import Environment, all_hold
 from ..config import Config
 from ..facts.condition import Condition
 from ..facts.interface import Interface
-from ..targets import message_headers
 from ..targets.changes import DISTROS
-from ..targets.distro import known_distros
+from ..targets.distro.distro import known_distros
 from ..targets.evidence import Evidence
-from ..targets.fields import History, before, default_fields, there
-from ..targets.includes import Machine, machine, machine_of
-from ..targets.library import default_standard, include_roots, standard_year
-from ..targets.offers import Offers
-from ..targets.offers_python import PythonOffers
-from ..targets.stdlib import ever_stdlib, stdlib
+from ..targets.providers import message_headers
+from ..targets.providers.includes import Machine, machine, machine_of
+from ..targets.providers.library import default_standard, include_roots, standard_year
+from ..targets.providers.stdlib import ever_stdlib, stdlib
+from ..targets.surface.fields import History, before, default_fields, there
+from ..targets.surface.offers import Offers
+from ..targets.surface.offers_python import PythonOffers
 from ..targets.target import Change, Provider, Target
 from ..targets.version import at_least
-from .api_python import python_packages
-from .build import At, Found, for_tests
-from .conditions import Environment, all_hold
+from .cmake.build import At, Found, for_tests
+from .misspelling import Names
 from .package import MemberUse, role_of_folder
-from .spelling import Names
+from .python.api import python_packages
 from .workspace import Package, Workspace, snake
 
 # Dependency kinds whose packages a machine has once the package itself is installed (bloom's mapping to Debian's

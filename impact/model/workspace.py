@@ -17,13 +17,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
+from ...edges import processes
 from ...edges.limits import limits_stamp
-from .. import processes
+from ..facts.extract import Gathered
 from ..facts.kinds import EXTRACTORS
 from ..facts.manifest import Manifest
-from ..gather import Gathered
-from ..targets.fields import snake
-from .build import Build, extras_of, interpret
+from ..targets.surface.fields import snake
+from .cmake.build import Build
+from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
 from .package import Digest, Watched, build_type_of, digest_of
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ...edges.console import visible
-from .report import cells
-from .text import Style, painted
+from ..analysis.report import cells
+from .style import Style, painted
 
 UNBROKEN = sys.maxsize
 """A width at which no line is broken: for files and pipes, where a line is what `grep` finds."""

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 
 from ...edges.console import counted, visible, visible_lines
 from ...edges.files import append_file
+from ..analysis.report import Report, count_by_severity, coverage_text, focus, fresh
 from ..rules.rule import Finding
-from . import evidence, markdown
-from .report import Report, count_by_severity, coverage_text, focus, fresh
+from . import evidence, markdown, markdown_text
 
 SHOWN = 10
 _COMMAND = {"error": "error", "warning": "warning", "note": "notice"}
@@ -54,9 +54,9 @@ def step_summary(report: Report) -> str:
     if findings:
         lines += ["| | place | finding | targets |", "|---|---|---|---|"]
     for finding in findings[:500]:
-        place = markdown.cell(markdown.code(f"{finding.path}:{finding.line}"))
-        message = markdown.cell(markdown.escaped(finding.message))
-        targets = markdown.cell(markdown.escaped(", ".join(finding.targets)))
+        place = markdown_text.cell(markdown_text.code(f"{finding.path}:{finding.line}"))
+        message = markdown_text.cell(markdown_text.escaped(finding.message))
+        targets = markdown_text.cell(markdown_text.escaped(", ".join(finding.targets)))
         lines.append(f"| {finding.severity} | {place} | {message} | {targets} |")
     if len(findings) > 500:
         lines.append(f"\nand {len(findings) - 500:,} more")

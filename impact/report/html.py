@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import visible_in_page
+from ..analysis.report import Report, count_by_severity, coverage_text, focus, fresh, matrix
 from ..rules.rule import Finding
 from . import evidence
 from .markdown import verdict
 from .page import page
-from .report import Report, count_by_severity, coverage_text, focus, fresh, matrix
 
 _LONGEST_LINE = 400
 _MOST_EFFECTS = 200
@@ -59,7 +59,7 @@ def _impact(report: Report) -> dict[str, Any] | None:
     """What the change reaches: a summary, and change, subject, place, why and reached nodes of each; None without."""
     if report.impact is None or not report.impact.effects:
         return None
-    from ..flow.impact_report import names_of, summary
+    from .impact import names_of, summary
 
     names = names_of(report.impact)
     rows = []

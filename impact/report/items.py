@@ -6,12 +6,13 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...edges.console import counted, visible
+from ..analysis.report import Report
 from . import json
-from .report import Report
-from .text import Style, finding_lines, painted
+from .style import Style, painted
+from .text import finding_lines
 
 if TYPE_CHECKING:
-    from ..between import Item
+    from ..analysis.target_compare import Item
     from ..rules.rule import Finding
 
 _PLACES = 5

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import json_text
+from ..analysis.report import Coverage, Report
 from ..rules.rule import Finding
 from . import evidence
-from .report import Coverage, Report
 
 SCHEMA = 1
 
@@ -42,7 +42,7 @@ def render(report: Report) -> str:
         if value:
             data[key] = value
     if report.impact is not None and report.impact.effects:
-        from ..flow.impact_report import compact
+        from .impact import compact
 
         data["impact"] = compact(report.impact)
     return dumped(data)

@@ -6,15 +6,16 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...edges.console import counted, visible
+from ..analysis.report import ReportedTarget, cells
 from . import json
 from .columns import Piece, laid_out
 from .items import as_data, by_severity, item_lines
-from .report import ReportedTarget, cells
-from .text import Style, described, painted
+from .style import Style, painted
+from .text import described
 
 if TYPE_CHECKING:
-    from ..between import Item
-    from ..machines import Machines, Use
+    from ..analysis.machine_compare import Machines, Use
+    from ..analysis.target_compare import Item
 
 FORMATS = ("text", "json")
 SCHEMA = 1

@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
-from ...edges.console import counted, visible
+from ...edges.console import counted
+from ..analysis.report import Report, count_by_severity, coverage_text, fresh
 from ..rules.rule import Finding
-from .report import Report, count_by_severity, coverage_text, fresh
+from .markdown_text import _LONGEST, code, escaped
 
 _LINES = 10
 _SYMBOL = {"error": "❌", "warning": "⚠️", "note": "💡"}
-_LONGEST = 300
-_SPAN = re.compile(r"(`[^`]+`)")
-_WORD = re.compile(r"\S+")
-_LINKED = re.compile(r"@(?=\w)|#(?=\d)|\$|://|\bwww\.|\b(?:mailto|xmpp):|\bGH-(?=\d)", re.IGNORECASE)
-_COMMIT = re.compile(r"\b[0-9a-f]{7,40}\b", re.IGNORECASE)
-_BEFORE, _BEHIND = "([{\"'", ")]}\"',.;:"
-
-
 def render(report: Report) -> str:
     """Markdown of at most ten lines: the verdict by target, the worst findings, what they rest on."""
     findings = fresh(report)
@@ -27,7 +20,7 @@ def render(report: Report) -> str:
     order = {"error": 0, "warning": 1}
     told = sorted((each for each in findings if each.severity in order), key=lambda each: order[each.severity])
     if report.impact is not None and report.impact.effects:
-        from ..flow.impact_report import summary
+        from .impact import summary
 
         tail.insert(0, f"\nMessage flow: {escaped(summary(report.impact))}")
     room = _LINES - len(head) - len("\n".join(tail).split("\n"))
@@ -99,54 +92,3 @@ def _tail(report: Report, findings: list[Finding]) -> str:
     return " · ".join(parts)
 
 
-def escaped(text: str) -> str:
-    """Text that Markdown shows as it is on one line: what stands in single backticks is code, all else is inert.
-
-    Words that GitHub makes a link of (mentions, issues, commits, addresses) are code too: nothing else stops it.
-    """
-    parts: list[str] = []
-    for index, part in enumerate(_SPAN.split(visible(text))):
-        shown = code(part[1:-1]) if index % 2 else _without_links(part)
-        # Two spans that touch would be one with other ends.
-        touches = parts and parts[-1].endswith("`") and shown.startswith("`")
-        parts += [f" {shown}" if touches else shown] if shown else []
-    return "".join(parts)
-
-
-def _without_links(text: str) -> str:
-    parts: list[str] = []
-    last = 0
-    for match in _links(text):
-        word = match[0].rstrip(_BEHIND)
-        inner = word.lstrip(_BEFORE)
-        start = match.start() + len(word) - len(inner)
-        parts += [_inert(text[last:start]), code(inner) if inner else ""]
-        last = start + len(inner)
-    return "".join([*parts, _inert(text[last:])])
-
-
-def _links(text: str) -> Iterator[re.Match[str]]:
-    """Words, or commits in them, that GitHub makes a link of."""
-    for word in _WORD.finditer(text):
-        if _LINKED.search(word[0]):
-            yield word
-        else:
-            yield from _COMMIT.finditer(text, *word.span())
-
-
-def _inert(text: str) -> str:
-    return re.sub(r"[\\`*_~\[\]<>&|$]", r"\\\g<0>", text)
-
-
-def code(text: str) -> str:
-    """Text as inline code on one line, whatever backticks it holds."""
-    text = visible(text)
-    longest = max((len(run) for run in re.findall("`+", text)), default=0)
-    fence = "`" * (longest + 1)
-    pad = " " if not text or text.startswith("`") or text.endswith("`") else ""
-    return f"{fence}{pad}{text}{pad}{fence}"
-
-
-def cell(markdown: str) -> str:
-    """Markdown of one line as a table's cell holds it: a bar is escaped there even in code."""
-    return re.sub(r"\\(?=\|)", r"\\ ", markdown.replace("\\|", "|")).replace("|", "\\|")

@@ -9,9 +9,9 @@ from typing import Any
 from urllib.parse import quote
 
 from ...edges.console import escape_json, visible, visible_bytes_in_json
+from ..analysis.report import Report, focus
 from ..rules.rule import Edit, Finding, Rule
 from . import evidence
-from .report import Report, focus
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _ROOT = "%SRCROOT%"

@@ -10,11 +10,12 @@ import msgspec
 
 from ...edges.console import json_text, visible
 from ..facts.surface import FUNCTIONS, declared
-from ..targets.surface import Change, Surface
-from ..targets.surface_python import Names, signature
+from ..targets.surface.compare import Change
+from ..targets.surface.python import Names, signature
+from ..targets.surface.surface import Surface
 from .columns import Piece, laid_out
-from .markdown import cell, code, escaped
-from .text import Style, painted
+from .markdown_text import cell, code, escaped
+from .style import Style, painted
 
 FORMATS = ("text", "json", "markdown")
 

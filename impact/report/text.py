@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections import Counter, defaultdict
-from collections.abc import Mapping
-from typing import NamedTuple, TextIO
 
 from ...edges.console import counted, cut_visibly, visible
-from ..rules.rule import Finding
-from . import evidence
-from .report import (
+from ..analysis.report import (
     Report,
     ReportedTarget,
     Shown,
@@ -22,52 +16,18 @@ from .report import (
     fresh,
     matrix,
 )
+from ..rules.rule import Finding
+from . import evidence
+from .style import PLAIN, Style, painted
 
 _TAB = "    "
-_COLOURS = {"error": "1;31", "warning": "1;33", "note": "1;36", "dim": "2", "bold": "1", "good": "32", "help": "36"}
-
-
-class Style(NamedTuple):
-    """How to write. symbols: error, warning, ok, arrow, dot of matrix and separators. colours: terminal codes by role,
-    empty for none. severities: those whose findings are written out; the rest is counted. width: columns.
-    excerpts: how many findings with one message are shown with their code; further ones are listed by place."""
-
-    symbols: tuple[str, str, str, str, str] = ("✗", "!", "·", "→", "·")
-    colours: Mapping[str, str] = {}
-    severities: tuple[str, ...] = ("error", "warning")
-    width: int = 120
-    excerpts: int = 3
-
-
-ASCII_SYMBOLS = ("x", "!", ".", "->", "-")
-PLAIN = Style()
-
-
-def style_for(stream: TextIO, *, severities: tuple[str, ...] = PLAIN.severities) -> Style:
-    """The style that suits a stream: colours on a terminal unless NO_COLOR is set or TERM is dumb (FORCE_COLOR asks for
-    them elsewhere), ASCII where the encoding is not Unicode, the terminal's width."""
-    encoding = (getattr(stream, "encoding", None) or "ascii").lower().replace("-", "")
-    terminal = bool(getattr(stream, "isatty", lambda: False)())
-    coloured = terminal and os.environ.get("TERM") != "dumb"
-    if os.environ.get("FORCE_COLOR"):
-        coloured = True
-    if os.environ.get("NO_COLOR"):
-        coloured = False
-    return Style(
-        symbols=PLAIN.symbols if encoding.startswith("utf") else ASCII_SYMBOLS,
-        colours=_COLOURS if coloured else {},
-        severities=severities,
-        width=max(40, shutil.get_terminal_size((120, 40)).columns) if terminal else PLAIN.width,
-    )
-
-
 def render(report: Report, style: Style = PLAIN) -> str:
     """The report as text that ends in a line end."""
     lines = _targets(report, style)
     shown = [finding for finding in fresh(report) if finding.severity in style.severities]
     lines += _packages(report, shown, style)
     if report.impact is not None and report.impact.effects:
-        from ..flow.impact_report import short
+        from .impact import short
 
         lines += [
             "",
@@ -79,11 +39,6 @@ def render(report: Report, style: Style = PLAIN) -> str:
         lines += ["", *table]
     lines += ["", _summary(report, style)]
     return "\n".join(lines) + "\n"
-
-
-def painted(style: Style, role: str, text: str) -> str:
-    code = style.colours.get(role)
-    return f"\x1b[{code}m{text}\x1b[0m" if code else text
 
 
 def _targets(report: Report, style: Style) -> list[str]:

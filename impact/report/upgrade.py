@@ -7,16 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...edges.console import counted, visible
+from ..analysis.report import ReportedTarget, count_by_severity, coverage_text
 from . import html, json
 from .items import as_data, by_severity, item_lines, short_lines
 from .page import page
-from .report import ReportedTarget, count_by_severity, coverage_text
-from .text import Style, described, heading, painted
+from .style import Style, painted
+from .text import described, heading
 
 if TYPE_CHECKING:
-    from ..between import Item
+    from ..analysis.target_compare import Item
+    from ..analysis.upgrade import Upgrade
     from ..rules.rule import Finding
-    from ..upgrade import Upgrade
 
 FORMATS = ("text", "json", "html")
 SCHEMA = 1

@@ -9,7 +9,7 @@ from functools import cache
 from typing import NamedTuple
 
 from ..targets.evidence import Evidence
-from .cure import Declare, Insert, Remove, Replace
+from .fix_actions import Declare, Insert, Remove, Replace
 
 SEVERITIES = ("note", "warning", "error")
 

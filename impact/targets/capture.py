@@ -19,7 +19,7 @@ from typing import NamedTuple
 from ...edges import files
 from ...edges.documents import DocumentError, load_json
 from ...edges.limits import limits
-from .distro import DistroTarget, TargetError
+from .distro.distro import DistroTarget, TargetError
 from .version import compare
 
 SCHEMA = 1

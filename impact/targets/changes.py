@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 
 import msgspec
 
-from .providers import Providers, default_providers
+from .providers.providers import Providers, default_providers
 from .snapshot import DATA, SnapshotError
 from .target import Change, Target
 from .version import at_least
@@ -259,7 +259,7 @@ def _released(distro: str) -> str:
 
 @cache
 def _release_days() -> dict[str, str]:
-    from .distro import known_distros
+    from .distro.distro import known_distros
 
     return {known.name: known.released for known in known_distros() if known.released}
 

@@ -11,17 +11,17 @@ from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from .changes import DISTROS, Row, all_rows, reached, version_of
-from .distro import DistroTarget, known_distros, releases
-from .offers import declarations, effect, there_at
-from .providers import Providers
+from .distro.distro import DistroTarget, known_distros, releases
+from .providers.providers import Providers
+from .surface.offers import declarations, effect, there_at
 from .target import Change, Target
 from .uses import all_uses
 from .version import at_least, parts
 
 if TYPE_CHECKING:
-    from .offers import Offered
-    from .surface_changes import Event, Line
-    from .surface_store import Surfaces
+    from .surface.changes import Event, Line
+    from .surface.offers import Offered
+    from .surface.store import Surfaces
 
 
 class OnTarget(NamedTuple):
@@ -163,7 +163,7 @@ def _uses():
 @cache
 def surfaces() -> Surfaces:
     """The shipped surfaces."""
-    from .surface_store import shipped
+    from .surface.store import shipped
 
     return shipped()
 

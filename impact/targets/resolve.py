@@ -17,7 +17,7 @@ from ...edges.limits import limits
 from ..config import check_inside, lies_in
 from ..tree.ignore import git_folder
 from . import snapshot as snapshots
-from .distro import DistroTarget, Known, TargetError, known_distros
+from .distro.distro import DistroTarget, Known, TargetError, known_distros
 from .platform import CODENAMES, normal_platform
 from .snapshot import Snapshot
 
@@ -344,7 +344,7 @@ def choose_targets(
     chosen = _chosen(asked, config, workspace, tree, data)
     if not (config.underlays or config.rosdep_sources or config.index):
         return chosen
-    from .surroundings import surroundings
+    from .distro.surroundings import surroundings
 
     return tuple(Chosen(target.surrounded(*surroundings(config, target.distro)), reason) for target, reason in chosen)
 

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from rosimpact.classifier import evaluate, training
-from rosimpact.impact.cli import app
+from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
 
 

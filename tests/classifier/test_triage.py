@@ -13,7 +13,7 @@ import pytest
 from rosimpact.classifier.model import load
 from rosimpact.classifier.triage import CHECKS, Post, checks, from_text, is_address, post_of, triage
 from rosimpact.corpus.polite import Clock
-from rosimpact.impact.cli import app
+from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
 
 UPDATE = "does not compile since the upgrade from humble to jazzy\nerror: undefined symbol after apt upgrade on jazzy"
@@ -176,7 +176,7 @@ class TestStream:
         assert run(str(file)).stdout == run("-", input=self.ROWS).stdout
 
     def test_an_answer_comes_before_the_next_question(self):
-        command = [sys.executable, "-c", "from rosimpact.impact.cli import main; main()", "triage", "--jsonl", "-"]
+        command = [sys.executable, "-c", "from rosimpact.impact.cli.app import main; main()", "triage", "--jsonl", "-"]
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
             assert process.stdin and process.stdout
             for id in ("1", "2"):
@@ -188,7 +188,7 @@ class TestStream:
 
     def test_whoever_reads_may_stop(self, tmp_path):
         (tmp_path / "r.jsonl").write_text(self.ROWS * 500)
-        command = [sys.executable, "-c", "from rosimpact.impact.cli import main; main()", "triage"]
+        command = [sys.executable, "-c", "from rosimpact.impact.cli.app import main; main()", "triage"]
         with subprocess.Popen(
             [*command, tmp_path / "r.jsonl"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
         ) as process:

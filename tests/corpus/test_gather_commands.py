@@ -14,7 +14,7 @@ from rosimpact.corpus.gather import Progress
 from rosimpact.corpus.progress import Estimate, Reporter, described
 from rosimpact.corpus.report import Report, read_reports, write_rows
 from rosimpact.corpus.store import Taken, open_reports
-from rosimpact.impact.cli import app
+from rosimpact.impact.cli.app import app
 from server import Fault, Services, archived, askbot_item, issue, question, stamp
 from typer.testing import CliRunner
 

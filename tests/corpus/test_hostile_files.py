@@ -17,7 +17,7 @@ from rosimpact.corpus.robust import read_robust
 from rosimpact.corpus.sources.markup import markdown
 from rosimpact.corpus.sources.ros_answers import Archive, SavedPages
 from rosimpact.corpus.store import Gathered, Store, open_reports
-from rosimpact.impact.cli import app
+from rosimpact.impact.cli.app import app
 from server import archived
 from typer.testing import CliRunner
 

@@ -57,7 +57,7 @@ class Terminal:
             [
                 sys.executable,
                 "-c",
-                "from rosimpact.impact.cli import main; main()",
+                "from rosimpact.impact.cli.app import main; main()",
                 "corpus",
                 "label",
                 *map(str, arguments),

@@ -121,7 +121,7 @@ def test_text_on_a_pipe_has_no_colours_and_cuts_nothing(say, files):
 
 
 def test_text_where_only_ascii_can_be_shown(files):
-    command = [sys.executable, "-c", "from rosimpact.impact.cli import main; main()", "corpus", "stats", "--labels"]
+    command = [sys.executable, "-c", "from rosimpact.impact.cli.app import main; main()", "corpus", "stats", "--labels"]
     said = subprocess.run(
         [*command, str(files / "labels.jsonl")],
         env={**os.environ, "PYTHONIOENCODING": "ascii"},

@@ -15,7 +15,7 @@ from rosimpact.corpus.curves import pooled_share, survival
 from rosimpact.corpus.figures import apart, names
 from rosimpact.corpus.report import KINDS, LABELS, CorpusError, Report, read_labels
 from rosimpact.corpus.study import command, run
-from rosimpact.impact.cli import app
+from rosimpact.impact.cli.app import app
 from rosimpact.impact.rules.rule import all_rules
 from typer.testing import CliRunner
 

@@ -192,7 +192,7 @@ def test_a_note_is_one_line(capsys):
 
 def run(command, *, encoding="", **streams):
     around = {**os.environ, "PYTHONIOENCODING": encoding} if encoding else dict(os.environ)
-    code = "from rosimpact.impact.cli import main; main()"
+    code = "from rosimpact.impact.cli.app import main; main()"
     return subprocess.run(
         [sys.executable, "-c", code, *command], env=around, check=False, timeout=60,
         **({"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | streams),

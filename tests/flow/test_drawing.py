@@ -12,14 +12,14 @@ import networkx
 import pytest
 from msgspec import structs
 from robot import DRIVER, robot
-from rosimpact.impact.flow.drawing import draw
-from rosimpact.impact.flow.drawing.dot import quoted
-from rosimpact.impact.flow.drawing.edges import guard_text
-from rosimpact.impact.flow.drawing.json import schema
-from rosimpact.impact.flow.drawing.mermaid import MOST, ROOM, escaped
-from rosimpact.impact.flow.select import NothingSelected
+from rosimpact.impact.model.flow.connections import guard_text
 from rosimpact.impact.model.flow.graph import GuardAt
-from rosimpact.impact.report.text import PLAIN
+from rosimpact.impact.model.flow.select import NothingSelected
+from rosimpact.impact.report.graph import draw
+from rosimpact.impact.report.graph.dot import quoted
+from rosimpact.impact.report.graph.json import schema
+from rosimpact.impact.report.graph.mermaid import MOST, ROOM, escaped
+from rosimpact.impact.report.style import PLAIN
 
 ROOT = Path(__file__).parents[2]
 NOW = robot()

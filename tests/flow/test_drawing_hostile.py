@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.impact.flow.drawing import draw
 from rosimpact.impact.model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
+from rosimpact.impact.report.graph import draw
 
 PARTS = st.sampled_from([
     '"', "\\", "\\N", "\\\\", "]", "[", ";", "#", "%%{init: {}}%%", "\nclick a href x\n", "\r", "\x1b[2J",

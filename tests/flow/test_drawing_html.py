@@ -7,7 +7,6 @@ from itertools import pairwise
 import pytest
 from msgspec import structs
 from robot import DRIVER, robot
-from rosimpact.impact.flow.drawing import draw
 from rosimpact.impact.model.flow.graph import (
     Callback,
     Coverage,
@@ -23,6 +22,7 @@ from rosimpact.impact.model.flow.graph import (
     Unresolved,
     Way,
 )
+from rosimpact.impact.report.graph import draw
 
 NOW = robot()
 OTHER = DRIVER.replace("if (ready_) ", "").replace("rclcpp::SensorDataQoS()", "10").replace('"calibrate"', '"tune"')

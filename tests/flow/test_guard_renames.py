@@ -1,8 +1,8 @@
 """Renamed names, as two texts and what is proposed."""
 
 import pytest
-from rosimpact.impact.flow.guard_renames import propose_renames
-from rosimpact.impact.flow.guards import Reading, compare
+from rosimpact.impact.logic.guard_renames import propose_renames
+from rosimpact.impact.logic.guards import Reading, compare
 from rosimpact.impact.model.flow.graph import GuardAt
 
 CPP = """

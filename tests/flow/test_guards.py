@@ -4,8 +4,8 @@ import subprocess
 import sys
 
 import pytest
-from rosimpact.impact.flow.guard_solver import limited_questions
-from rosimpact.impact.flow.guards import Reading, compare, compare_ways, explain, explain_ways, impossible
+from rosimpact.impact.logic.guard_solver import limited_questions
+from rosimpact.impact.logic.guards import Reading, compare, compare_ways, explain, explain_ways, impossible
 from rosimpact.impact.model.flow.graph import GuardAt
 
 
@@ -201,7 +201,7 @@ def test_too_much_work_is_changed():
 def test_what_says_the_same_needs_no_solver():
     program = """
 import sys
-from rosimpact.impact.flow.guards import compare
+from rosimpact.impact.logic.guards import compare
 from rosimpact.impact.model.flow.graph import GuardAt
 old = [GuardAt("if", "a && !b.empty()", "a.cpp", 1)]
 new = [GuardAt("unless", "b.size() == 0", "a.cpp", 1), GuardAt("if", "(this->a)", "a.cpp", 2)]

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import jsonschema
 import pytest
+from rosimpact.impact.analysis.downstream import NOTHING, Impact, chosen, impact_of
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.flow import impact_report
-from rosimpact.impact.flow.impact import NOTHING, Impact, chosen, impact_of
 from rosimpact.impact.model.flow.workspace import linked
-from rosimpact.impact.report.text import PLAIN
+from rosimpact.impact.report import impact as impact_report
+from rosimpact.impact.report.style import PLAIN
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>{}</name><version>1.0.0</version><description>x</description>

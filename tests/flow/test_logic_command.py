@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pygit2
 import pytest
-from rosimpact.impact.cli import app
+from rosimpact.impact.cli.app import app
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.flow.logic import Logic, Range, read
+from rosimpact.impact.logic.repository import Logic, Range, read
 from typer.testing import CliRunner
 
 MANIFEST = "<package><name>beep</name><buildtool_depend>catkin</buildtool_depend></package>"
@@ -162,6 +162,6 @@ def test_an_interrupted_run_keeps_what_it_read(tmp_path, monkeypatch) -> None:
 
     with Store(tmp_path / "cache") as store, pytest.raises(KeyboardInterrupt):
         read(str(repository), Range(), store, 1, stop)
-    monkeypatch.setattr("rosimpact.impact.flow.logic._digest_chunk", lambda *_: pytest.fail("digested anew"))
+    monkeypatch.setattr("rosimpact.impact.logic.repository._digest_chunk", lambda *_: pytest.fail("digested anew"))
     changes = logic(repository, tmp_path / "cache").changes
     assert [change.kind for _, change in changes] == ["tightened"] * 59 + ["new"]

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import pygit2
 import pytest
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.flow.history import History
-from rosimpact.impact.flow.logic import Coverage, Logic, Range, chosen, read
-from rosimpact.impact.flow.logic_report import apart, as_json, text
-from rosimpact.impact.flow.timeline import render
+from rosimpact.impact.logic.history import History
+from rosimpact.impact.logic.repository import Coverage, Logic, Range, chosen, read
+from rosimpact.impact.report.logic import apart, as_json, text
+from rosimpact.impact.report.timeline import render
 
 Tree = dict[str, str]
 
@@ -582,8 +582,8 @@ def test_subscribers_of_a_topic_that_is_left_are_named_too(made: Made) -> None:
 
 
 def test_a_second_run_reads_nothing_anew_and_says_the_same(made: Made, monkeypatch) -> None:
-    monkeypatch.setattr("rosimpact.impact.flow.logic._digest_chunk", lambda *_: pytest.fail("digested anew"))
-    monkeypatch.setattr("rosimpact.impact.flow.logic._compare_chunk", lambda *_: pytest.fail("compared anew"))
+    monkeypatch.setattr("rosimpact.impact.logic.repository._digest_chunk", lambda *_: pytest.fail("digested anew"))
+    monkeypatch.setattr("rosimpact.impact.logic.repository._compare_chunk", lambda *_: pytest.fail("compared anew"))
     with Store(made.cache) as store:
         assert read(made.path, Range(), store) == made.logic
 

@@ -1,8 +1,8 @@
 """What lies downstream in a message-flow graph."""
 
 import pytest
-from rosimpact.impact.flow.reach import Reach
 from rosimpact.impact.model.flow.graph import Coverage, Endpoint, Graph, Node, Publish, Trigger
+from rosimpact.impact.model.flow.reach import Reach
 
 
 def graph(publishes=(), endpoints=()) -> Graph:

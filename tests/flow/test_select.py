@@ -2,7 +2,7 @@
 
 import pytest
 from robot import robot
-from rosimpact.impact.flow.select import NothingSelected, selected
+from rosimpact.impact.model.flow.select import NothingSelected, selected
 
 WHOLE = robot(log="""
     class Log : public rclcpp::Node {

@@ -2,8 +2,8 @@
 
 import pytest
 from rosimpact.impact.facts import flow_cpp
-from rosimpact.impact.flow.history import File, State
-from rosimpact.impact.flow.statements import Before, Digest, digest
+from rosimpact.impact.logic.history import File, State
+from rosimpact.impact.logic.statements import Before, Digest, digest
 
 TALKER = """
 #include "types.h"

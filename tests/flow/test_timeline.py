@@ -2,10 +2,10 @@
 
 import pytest
 from msgspec import structs
-from rosimpact.impact.flow.history import Commit
-from rosimpact.impact.flow.logic import Coverage, Logic
-from rosimpact.impact.flow.logic_changes import Change, Reached
-from rosimpact.impact.flow.timeline import render
+from rosimpact.impact.logic.changes import Change, Reached
+from rosimpact.impact.logic.history import Commit
+from rosimpact.impact.logic.repository import Coverage, Logic
+from rosimpact.impact.report.timeline import render
 
 FIRST = Commit("a" * 40, "", "2020-01-01T00:00:00Z", "Wait for a scan")
 LAST = Commit("b" * 40, "a" * 40, "2024-05-29T00:00:00Z", "Drop the timer")

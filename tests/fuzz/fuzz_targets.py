@@ -29,18 +29,24 @@ from rosimpact.corpus.report import CorpusError, read_labels, read_reports
 from rosimpact.corpus.sources import markup, ros_answers, stack_exchange
 from rosimpact.edges import console
 from rosimpact.edges.documents import DocumentError, load_json, load_toml, load_yaml
-from rosimpact.impact import base, config, findings, memo, tree
+from rosimpact.impact import config, tree
+from rosimpact.impact.analysis import findings
+from rosimpact.impact.analysis import result_cache as memo
+from rosimpact.impact.analysis import revision_compare as base
+from rosimpact.impact.conditions import Environment, holds
 from rosimpact.impact.facts import allow, elf, flow_launch, kinds, store
 from rosimpact.impact.facts.cmake import extract as extract_cmake
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.model import discovery, launch, launch_text
-from rosimpact.impact.model.build import extras_of, interpret
+from rosimpact.impact.model import discovery
 from rosimpact.impact.model.cmake import regex
+from rosimpact.impact.model.cmake.interpret import extras_of, interpret
 from rosimpact.impact.model.cmake.interpreter import MAX_STEPS
-from rosimpact.impact.model.conditions import Environment, holds
-from rosimpact.impact.report import github, markdown
-from rosimpact.impact.targets import capture, resolve, unpacked_deb, version
-from rosimpact.impact.targets.distro import TargetError
+from rosimpact.impact.model.launch import follow as launch
+from rosimpact.impact.model.launch import text as launch_text
+from rosimpact.impact.report import github, markdown_text
+from rosimpact.impact.targets import capture, resolve, version
+from rosimpact.impact.targets.distro.distro import TargetError
+from rosimpact.impact.targets.machine import unpacked_deb
 from rosimpact.impact.tree import Entry, ignore, working
 
 for _module, _, _ in kinds.EXTRACTORS.values():
@@ -469,12 +475,12 @@ def _markdown() -> Any:
 def marked(data: bytes) -> None:
     """A text of a workspace in a table and a paragraph of Markdown."""
     text = data.decode("utf-8", "replace")
-    for shown in (markdown.escaped(text), markdown.code(text)):
+    for shown in (markdown_text.escaped(text), markdown_text.code(text)):
         require("\n" not in shown and not _CONTROL.search(shown), "Markdown of two lines")
         for token in _markdown().parse(f"x {shown} y"):
             for child in token.children or ():
                 require(child.type in ("text", "code_inline"), f"Markdown makes {child.type} of a text")
-        table = _markdown().parse(f"| a | b |\n|---|---|\n| {markdown.cell(shown)} | end |\n")
+        table = _markdown().parse(f"| a | b |\n|---|---|\n| {markdown_text.cell(shown)} | end |\n")
         cells = [token.content for token in table if token.type == "inline"]
         require(len(cells) == 4 and cells[3] == "end", "a text breaks a table")
 

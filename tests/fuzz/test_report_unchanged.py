@@ -19,10 +19,11 @@ from fuzz_targets import SEEDS
 from fuzz_words import WORDS
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.report import Report
+from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.report import github, html, markdown, sarif, text
 from rosimpact.impact.report import json as as_json
-from rosimpact.impact.report.report import Report
 
 EXAMPLES = os.environ.get("ROSIMPACT_FUZZ_EXAMPLES", "")
 SECONDS = 20

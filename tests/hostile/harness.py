@@ -24,9 +24,9 @@ from . import outputs
 
 # What the installed command does; older versions began elsewhere.
 ENTRY = """try:
-    from rosimpact.edges.start import main
+    from rosimpact.impact.cli.start import main
 except ImportError:
-    from rosimpact.impact.cli import main
+    from rosimpact.impact.cli.app import main
 import sys
 sys.argv[0] = "rosimpact"
 sys.exit(main())

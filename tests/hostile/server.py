@@ -159,9 +159,9 @@ def main():
 
 if __name__ == "__main__" and main():
     try:
-        from rosimpact.edges.start import main as run
+        from rosimpact.impact.cli.start import main as run
     except ImportError:  # older versions
-        from rosimpact.impact.cli import main as run
+        from rosimpact.impact.cli.app import main as run
 
     sys.stdin = os.fdopen(0, closefd=False)
     sys.exit(run())

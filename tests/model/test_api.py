@@ -1,15 +1,14 @@
 """Which uses of other packages' changing C++ names are found in a source file, as tables."""
 
 import pytest
+from rosimpact.databuild.surface_changes import Lines
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.api_cpp import ApiUses, parameter_type, shown_as
 from rosimpact.impact.model.expressions_cpp import regions
-from rosimpact.impact.targets.build_surface_changes import Lines
-from rosimpact.impact.targets.surface import State, Surface
-from rosimpact.impact.targets.surface_build import BuildSurface, Header
-from rosimpact.impact.targets.surface_changes import unpack
-from rosimpact.impact.targets.surface_python import PythonSurface
+from rosimpact.impact.targets.surface.changes import unpack
+from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
 
 # `went` and `Old` are in the first version alone; `f` takes one argument, then two; `tick` is virtual and changes.
 ARM = (

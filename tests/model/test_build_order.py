@@ -1,7 +1,7 @@
 """The build order of small workspaces: manifests in, names out."""
 
 import pytest
-from rosimpact.impact.check import Options, open_workspace
+from rosimpact.impact.analysis.session import Options, open_workspace
 from rosimpact.impact.model.build_order import build_order
 
 MANIFEST = """<package format="3"><name>{}</name><version>1.0.0</version><description>d</description>

@@ -4,8 +4,8 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rosimpact.impact.conditions import Environment, all_hold, holds
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.model.conditions import Environment, all_hold, holds
 
 VERSIONS = {
     "rclcpp": "16.0.11",

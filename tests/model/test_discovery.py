@@ -3,8 +3,8 @@
 import os
 
 import pytest
+from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.gather import gather
 from rosimpact.impact.model.discovery import discover
 from rosimpact.impact.tree import WorkingTree
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.impact.facts.flow_launch import extract, parameters
-from rosimpact.impact.model.launch import Setting, SettingFile, Text, file_values, follow
-from rosimpact.impact.model.launch_text import CannotTell, evaluate, ros1_value
+from rosimpact.impact.model.launch.follow import Setting, SettingFile, Text, file_values, follow
+from rosimpact.impact.model.launch.text import CannotTell, evaluate, ros1_value
 
 
 class Files:

@@ -15,8 +15,8 @@ from xml.etree import ElementTree
 
 import pytest
 from rosimpact.impact.facts.flow_launch import extract, parameters
-from rosimpact.impact.model.launch import Started, follow
-from rosimpact.impact.model.names_ros import joined, ros1_remapped, ros2_remapped, ros2_rule
+from rosimpact.impact.model.flow.names import joined, ros1_remapped, ros2_remapped, ros2_rule
+from rosimpact.impact.model.launch.follow import Started, follow
 
 MIRROR = os.environ.get("ROSIMPACT_MIRROR", "")
 ROWS = [json.loads(line) for line in (Path(__file__).parent / "data/launch_names_read.jsonl").read_text().splitlines()]

@@ -1,10 +1,11 @@
 """Macros that CMake defines: what an #if on them asks, in a package's own CMake and sources."""
 
 import pytest
+from rosimpact.impact.conditions import Environment, all_hold
 from rosimpact.impact.facts.cmake import extract
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.model.build import Defined, interpret
-from rosimpact.impact.model.conditions import Environment, all_hold
+from rosimpact.impact.model.cmake.build import Defined
+from rosimpact.impact.model.cmake.interpret import interpret
 from rosimpact.impact.model.macros import Macros
 
 

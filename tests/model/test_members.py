@@ -5,8 +5,8 @@ import pytest
 import zstandard
 from rosimpact.impact.model.members import Scope, interface_named, interfaces_imported, interfaces_included
 from rosimpact.impact.model.members_cpp import CppUses
-from rosimpact.impact.model.members_python import PythonUses
-from rosimpact.impact.targets.fields import Fields
+from rosimpact.impact.model.python.members import PythonUses
+from rosimpact.impact.targets.surface.fields import Fields
 
 # Two states: of each pair, the first member is in the old one alone, the second in the new one.
 TEXT = """1.0.0 2.0.0

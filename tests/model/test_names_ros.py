@@ -1,7 +1,7 @@
 """Names of topics and nodes, by the rules of both generations of ROS."""
 
 import pytest
-from rosimpact.impact.model.names_ros import (
+from rosimpact.impact.model.flow.names import (
     NameRefused,
     Rule,
     canonical,

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from rosimpact.impact.model.patterns import PatternError, matches
+from rosimpact.edges.patterns import PatternError, matches
 
 PATTERNS = [
     "a", "a+b?", "(a|b)*c", ".*_msgs$", r"\w+_\d{2,3}", "[^a-c]x", r"\bfoo\b", "^a|b$", "(?:ab){2}", "a*?b", r"\D\S",

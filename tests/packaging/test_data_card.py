@@ -10,7 +10,7 @@ import yaml
 import zstandard
 from rosimpact.impact.targets.changes import all_rows, transitive_includes
 from rosimpact.impact.targets.snapshot import DATA
-from rosimpact.impact.targets.surface_store import shipped
+from rosimpact.impact.targets.surface.store import shipped
 
 CARD = (Path(__file__).parents[2] / "DATA.md").read_text(encoding="utf-8")
 SNAPSHOT = json.loads((DATA / "snapshot.json").read_text())

@@ -6,7 +6,7 @@ import sys
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
-from rosimpact.corpus import __version__
+from rosimpact.edges.version import __version__
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -14,7 +14,7 @@ else:
     import tomli as tomllib
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("impact", "corpus", "classifier", "edges")
+ROOMS = ("impact", "corpus", "classifier", "databuild", "edges")
 # Never imported by name: the kernel that notebooks run in.
 UNNAMED = {"ipykernel"}
 

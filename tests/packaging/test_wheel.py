@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("impact", "corpus", "classifier", "edges")
+ROOMS = ("impact", "corpus", "classifier", "databuild", "edges")
 LIMIT = 20_000_000  # bytes
 
 
@@ -138,7 +138,7 @@ def test_the_licence_is_stated_and_shipped(wheel):
         "CONTRIBUTING.md",
         "setup.py",
         ".ci/run",
-        "impact/cli.py",
+        "impact/cli/app.py",
         "examples/ros2_ws/rosimpact.toml",
         "tests/packaging/test_wheel.py",
     ],

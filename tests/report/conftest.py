@@ -1,9 +1,9 @@
 """Reports to render: a small team's workspace, one without findings, one full of hostile text."""
 
 import pytest
-from rosimpact.impact.findings import merge
-from rosimpact.impact.model.build import At
-from rosimpact.impact.report.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
+from rosimpact.impact.analysis.findings import merge
+from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
+from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.rule import Edit, Hit, Rule
 
 FILES = {

@@ -3,9 +3,9 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rosimpact.impact.analysis.report import cells
 from rosimpact.impact.report.columns import UNBROKEN, Piece, laid_out, shortened
-from rosimpact.impact.report.report import cells
-from rosimpact.impact.report.text import PLAIN
+from rosimpact.impact.report.style import PLAIN
 
 
 def lines(pieces, width, indent=2, hang=4):

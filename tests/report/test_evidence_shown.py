@@ -3,9 +3,10 @@
 import json
 
 import pytest
-from rosimpact.impact.findings import baseline
+from rosimpact.impact.analysis.findings import baseline
 from rosimpact.impact.report import evidence, github, html, markdown, sarif, text
 from rosimpact.impact.report import json as json_report
+from rosimpact.impact.report.style import PLAIN
 from rosimpact.impact.rules.rule import Finding
 from rosimpact.impact.targets.evidence import Evidence, OnTarget
 
@@ -111,7 +112,7 @@ def test_text_and_annotations_have_it_between_the_code_and_the_help(told):
 def test_a_long_declaration_fits_the_width(team):
     told = resting_on(team, PAIR._replace(old=("void f(" + "int, " * 99,)))
     line = next(line for line in text.render(told).splitlines() if line.startswith("  was: "))
-    assert (len(line), line[-3:]) == (text.PLAIN.width, "...")
+    assert (len(line), line[-3:]) == (PLAIN.width, "...")
 
 
 def test_the_page_has_it_with_its_source_and_the_comment_is_as_short_as_before(told, team):

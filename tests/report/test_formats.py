@@ -10,9 +10,9 @@ import jsonschema
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rosimpact.impact.analysis.report import Coverage, Report, ReportedTarget
 from rosimpact.impact.report import github, html, markdown, sarif, text
 from rosimpact.impact.report import json as findings_json
-from rosimpact.impact.report.report import Coverage, Report, ReportedTarget
 from rosimpact.impact.rules.rule import Finding
 
 ROOT = Path(__file__).parents[2]

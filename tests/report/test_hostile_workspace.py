@@ -7,7 +7,7 @@ import re
 import sys
 
 import pytest
-from rosimpact.impact import cli
+from rosimpact.impact.cli import app as cli
 
 NAMES = ("::add-mask::x", "##[group]y", "\x1b[2Jz", "a\n::stop-commands::t", "\u202eb`c`d@team", "caf\udce9")
 FORMATS = ("text", "json", "sarif", "github", "markdown", "html")

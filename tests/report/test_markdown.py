@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt
-from rosimpact.impact.flow.impact import Effect, Impact
-from rosimpact.impact.flow.impact_report import markdown as impact_markdown
+from rosimpact.impact.analysis.downstream import Effect, Impact
+from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget
 from rosimpact.impact.model.flow.graph import Coverage as FlowCoverage
 from rosimpact.impact.report import github, markdown
-from rosimpact.impact.report.markdown import cell, code, escaped
-from rosimpact.impact.report.report import Coverage, Report, ReportedPackage, ReportedTarget
+from rosimpact.impact.report.impact import markdown as impact_markdown
+from rosimpact.impact.report.markdown_text import cell, code, escaped
 from rosimpact.impact.rules.rule import Finding
 
 COVERAGE = FlowCoverage(0, 0, 0, 0)

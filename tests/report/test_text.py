@@ -5,8 +5,9 @@ import subprocess
 import sys
 
 import pytest
+from rosimpact.impact.analysis.report import Coverage, ReportedTarget, cells, pointed
 from rosimpact.impact.report import text
-from rosimpact.impact.report.report import Coverage, ReportedTarget, cells, pointed
+from rosimpact.impact.report.style import PLAIN, style_for
 from rosimpact.impact.rules.rule import Finding
 
 TEAM = """\
@@ -51,7 +52,7 @@ def test_team(team):
 
 
 def test_ascii_where_the_stream_is_ascii(team):
-    style = text.style_for(io.TextIOWrapper(io.BytesIO(), encoding="ascii"))
+    style = style_for(io.TextIOWrapper(io.BytesIO(), encoding="ascii"))
     assert text.render(team, style).isascii()
 
 
@@ -63,7 +64,7 @@ def test_quiet(quiet):
 
 
 def last(report, **style):
-    return text.render(report, text.PLAIN._replace(**style)).splitlines()[-1]
+    return text.render(report, PLAIN._replace(**style)).splitlines()[-1]
 
 
 def test_the_last_line_tells_what_is_not_shown(team):
@@ -88,7 +89,7 @@ def test_summary(quiet, changes, start):
 
 
 def test_notes_are_shown_when_asked_for(team):
-    lines = text.render(team, text.PLAIN._replace(severities=("error", "warning", "note")))
+    lines = text.render(team, PLAIN._replace(severities=("error", "warning", "note")))
     assert "note[unused-dependency] all targets: `tf2` is declared and not used" in lines
     assert lines.splitlines()[-1].startswith("2 errors, 1 warning, 1 note · ")
 
@@ -153,7 +154,7 @@ def test_pointed(line, column, subject, expected):
 def test_the_caret_stands_under_the_subject_whatever_is_before_it(quiet, line, column):
     finding = Finding("r", "error", "ui", "a.cpp", 1, column, "x", ("jazzy",), "m")
     report = quiet._replace(findings=(finding,), excerpt=lambda path, number: [line])
-    rows = text.render(report, text.PLAIN._replace(width=80)).splitlines()
+    rows = text.render(report, PLAIN._replace(width=80)).splitlines()
     caret = next(index for index, row in enumerate(rows) if set(row.strip()) == set("| ^"))
     shown, under = rows[caret - 1], rows[caret]
     offset = under.index("^")
@@ -185,7 +186,7 @@ def test_colour_only_for_a_terminal(team, monkeypatch, stream, environment, colo
     monkeypatch.setenv("TERM", "xterm")
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    assert ("\x1b[" in text.render(team, text.style_for(stream))) is coloured
+    assert ("\x1b[" in text.render(team, style_for(stream))) is coloured
 
 
 def test_the_text_report_loads_nothing_heavy():

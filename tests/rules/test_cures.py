@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import rule_cases
-from rosimpact.impact.cli import app
+from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
 
 # Cases whose cure is known on every target that they ask for: it undoes the change that they make, to the byte.

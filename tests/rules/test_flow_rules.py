@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from rosimpact.impact.base import compare
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check, compare
+from rosimpact.impact.analysis.session import Options
 
 OPTIONS = Options(targets=("jazzy",), preview=True, jobs=1, select=("graph", "qos"))
 MANIFEST = """<?xml version="1.0"?>

@@ -3,9 +3,10 @@
 import random
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.model.flow import edges
-from rosimpact.impact.model.flow.slips import NearNames, is_in_namespace, is_slip
+from rosimpact.impact.model.flow.misspelling import NearNames, is_in_namespace, is_slip
 
 NAMES = ["/scan", "/scans", "/sacn", "/front/scan", "/odom", "/Odom", "/odom_", "scan", "/cmd_vel", "/cmdvel", "/arm_l"]
 

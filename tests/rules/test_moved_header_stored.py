@@ -1,7 +1,8 @@
 """moved-header of headers that no reviewed table names: the stored surfaces know that they warn."""
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 
 MANIFEST = """<package format="3">
   <name>winch</name><version>1.0.0</version><description>d</description>

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 
 MANIFEST = (
     '<package format="3"><name>{name}</name><version>1.0.0</version><description>d</description>'

@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import pytest
 import rule_cases
-from rosimpact.impact.check import Options, check
-from rosimpact.impact.cli import app
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
+from rosimpact.impact.cli.app import app
 from rosimpact.impact.rules.rule import all_rules
 from rule_cases import Case
 from typer.testing import CliRunner

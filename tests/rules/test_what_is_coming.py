@@ -2,7 +2,8 @@
 
 import pytest
 import rule_cases
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 
 FILES = rule_cases.read_changed_files("api/changed_signature")
 

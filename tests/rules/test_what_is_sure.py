@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 
 MANIFEST = (
     '<package format="2"><name>sled</name><version>1.0.0</version><description>sled</description>'

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import pytest
 import rule_cases
-from rosimpact.impact.check import Options
+from rosimpact.impact.analysis.session import Options
 
 Files = dict[str, str]
 Said = Callable[[Files, str, str], list[tuple[str, str]]]

@@ -9,7 +9,8 @@ from contextlib import closing
 
 import dask
 import distributed
-from rosimpact.impact.targets import build_surfaces, cluster
+from rosimpact.databuild import cluster
+from rosimpact.databuild import surfaces as build_surfaces
 
 QUIET = {"host": "127.0.0.1", "dashboard_address": ":0"}
 

@@ -6,11 +6,11 @@ import lzma
 import tarfile
 
 import pytest
-from rosimpact.impact.targets.build import debian
+from rosimpact.databuild import debian
 from rosimpact.impact.targets.changes import all_rows, changes_in_force
-from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.evidence import evidence_of, holds_on
-from rosimpact.impact.targets.providers import default_providers
+from rosimpact.impact.targets.providers.providers import default_providers
 from rosimpact.impact.targets.snapshot import DATA
 from rosimpact.impact.targets.target import Change
 from rosimpact.impact.targets.uses import all_uses

@@ -4,12 +4,12 @@ import pickle
 import subprocess
 
 import pytest
-from rosimpact.impact.targets import build_surfaces
-from rosimpact.impact.targets.build_surfaces import Job, all_distros, build, plan, run
-from rosimpact.impact.targets.clones import Clones
-from rosimpact.impact.targets.distro import DistroTarget, TargetError
-from rosimpact.impact.targets.surface_changes import unpack
-from rosimpact.impact.targets.surface_store import History, Surfaces
+from rosimpact.databuild import surfaces as build_surfaces
+from rosimpact.databuild.surfaces import Job, all_distros, build, plan, run
+from rosimpact.impact.model.surface.clones import Clones
+from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
+from rosimpact.impact.targets.surface.changes import unpack
+from rosimpact.impact.targets.surface.store import History, Surfaces
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
 <maintainer email="a@b.c">m</maintainer><license>l</license><buildtool_depend>ament_cmake</buildtool_depend>

@@ -19,7 +19,7 @@ from rosimpact.impact.targets.capture import (
     read,
     to_json,
 )
-from rosimpact.impact.targets.distro import DistroTarget, TargetError
+from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
 
 DPKG = """ii \tros-humble-rclcpp\t16.0.8-1jammy.20240304.103405
 ii \tros-humble-cv-bridge\t3.2.1-1jammy.20240304

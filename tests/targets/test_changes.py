@@ -11,7 +11,7 @@ from rosimpact.impact.targets.changes import (
     excuses,
     transitive_includes,
 )
-from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.snapshot import DATA
 from rosimpact.impact.targets.version import parts
 

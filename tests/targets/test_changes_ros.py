@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rosimpact.impact.targets import changes
 from rosimpact.impact.targets.changes import DISTROS
-from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.distro.distro import DistroTarget
 
 DATA = Path(changes.__file__).parent / "data"
 FILES = ("changes_ros.json", "changes_ros_tags.json")

@@ -8,12 +8,12 @@ from collections import Counter
 import cluster_process
 import distributed
 import pytest
-from rosimpact.impact.targets import cluster
-from rosimpact.impact.targets.build_surfaces import build, plan
-from rosimpact.impact.targets.clones import Clones
-from rosimpact.impact.targets.cluster import ClusterError, done_by
-from rosimpact.impact.targets.distro import DistroTarget
-from rosimpact.impact.targets.surface_store import Surfaces
+from rosimpact.databuild import cluster
+from rosimpact.databuild.cluster import ClusterError, done_by
+from rosimpact.databuild.surfaces import build, plan
+from rosimpact.impact.model.surface.clones import Clones
+from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.surface.store import Surfaces
 from test_build_surfaces import release
 
 PACKAGES = {
@@ -32,7 +32,7 @@ EVERYTHING = ("humble",), tuple(PACKAGES)
 # Children of a process that has imported all they need: a tenth of the time that starting them anew takes.
 PROCESSES = multiprocessing.get_context("forkserver")
 PROCESSES.set_forkserver_preload(
-    ["distributed", "rosimpact.impact.targets.cluster", "rosimpact.impact.targets.surface"]
+    ["distributed", "rosimpact.databuild.cluster", "rosimpact.impact.model.surface.package"]
 )
 
 

@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.targets.build import keys, manifests, releases
-from rosimpact.impact.targets.build.git import BuildError
-from rosimpact.impact.targets.build_data import build, status, update
-from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.databuild import keys, manifests, releases
+from rosimpact.databuild.git import BuildError
+from rosimpact.databuild.snapshot import build, status, update
+from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.snapshot import Snapshot
-from rosimpact.impact.targets.surface_store import shipped
+from rosimpact.impact.targets.surface.store import shipped
 
 INDEX = """\
 %YAML 1.1

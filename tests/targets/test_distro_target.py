@@ -3,7 +3,7 @@
 import pickle
 
 import pytest
-from rosimpact.impact.targets.distro import DistroTarget, TargetError, known_distros
+from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError, known_distros
 
 
 def target(text, **more):
@@ -238,7 +238,7 @@ def test_manifest_conditions(condition, expected):
 @pytest.mark.parametrize("value", ["", "a", "b", "c-d", "z"])
 def test_single_comparisons_agree_with_catkin_pkg(text, compare, value):
     from catkin_pkg.condition import evaluate_condition
-    from rosimpact.impact.targets.distro import condition_holds
+    from rosimpact.impact.targets.distro.distro import condition_holds
 
     condition = f"$V {compare} {text}"
     assert condition_holds(condition, {"V": value}) == evaluate_condition(condition, {"V": value})

@@ -2,8 +2,8 @@
 
 import pygit2
 import pytest
-from rosimpact.impact.targets.build_fields import read_repository, table
-from rosimpact.impact.targets.fields import History, before, default_fields, there
+from rosimpact.databuild.fields import read_repository, table
+from rosimpact.impact.targets.surface.fields import History, before, default_fields, there
 
 MANIFEST = """<package format="3"><name>arm_msgs</name><version>{}</version>
 <buildtool_depend>{}</buildtool_depend></package>"""

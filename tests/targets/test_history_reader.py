@@ -2,7 +2,7 @@
 
 import pygit2
 import pytest
-from rosimpact.impact.targets.build_history import Reader
+from rosimpact.databuild.history import Reader
 
 FILES = {
     "core/package.xml": "<package><name>demo_core</name></package>",

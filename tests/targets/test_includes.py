@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import pytest
+from rosimpact.databuild.includes import Header as Read
+from rosimpact.databuild.includes import beside, defined, direct, included, onto, table_of
+from rosimpact.databuild.surfaces import Packing
 from rosimpact.impact.facts.surface_cpp import extract as header
-from rosimpact.impact.targets.build.includes import Header as Read
-from rosimpact.impact.targets.build.includes import beside, defined, direct, included, onto, table_of
-from rosimpact.impact.targets.build_surfaces import Packing
-from rosimpact.impact.targets.includes import Includes, Machine, Table, default, machine_of, offered
-from rosimpact.impact.targets.surface import State, Surface
-from rosimpact.impact.targets.surface_build import BuildSurface
-from rosimpact.impact.targets.surface_includes import compiled
-from rosimpact.impact.targets.surface_python import PythonSurface
-from rosimpact.impact.targets.surface_store import Surfaces, write
+from rosimpact.impact.targets.providers.includes import Includes, Machine, Table, default, machine_of, offered
+from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.targets.surface.includes import compiled
+from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 
 
 @pytest.mark.parametrize(

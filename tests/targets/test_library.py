@@ -1,9 +1,14 @@
 """Which Boost headers need a compiled library, and which components a platform's version lacks."""
 
 import pytest
-from rosimpact.impact.targets.distro import DistroTarget
-from rosimpact.impact.targets.library import compiled_component, gone_component, not_answering, versioned_folder
-from rosimpact.impact.targets.providers import default_providers
+from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.providers.library import (
+    compiled_component,
+    gone_component,
+    not_answering,
+    versioned_folder,
+)
+from rosimpact.impact.targets.providers.providers import default_providers
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Types of C++ that are made from interfaces, and the headers that define them."""
 
 import pytest
-from rosimpact.impact.targets.message_headers import type_in
+from rosimpact.impact.targets.providers.message_headers import type_in
 
 
 @pytest.mark.parametrize(

@@ -3,15 +3,22 @@
 from types import SimpleNamespace
 
 import pytest
+from rosimpact.databuild.surfaces import Packing
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.facts.surface_python import extract as module
-from rosimpact.impact.targets.build_surfaces import Packing
-from rosimpact.impact.targets.offers import Offers
-from rosimpact.impact.targets.offers_cpp import judged
-from rosimpact.impact.targets.surface import State, Surface
-from rosimpact.impact.targets.surface_build import BuildSurface, Header, LaunchFile, Program
-from rosimpact.impact.targets.surface_python import Module, PythonSurface
-from rosimpact.impact.targets.surface_store import Surfaces, write
+from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.targets.surface.offers import Offers
+from rosimpact.impact.targets.surface.offers_cpp import judged
+from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.surface import (
+    BuildSurface,
+    Header,
+    LaunchFile,
+    Module,
+    Program,
+    PythonSurface,
+    Surface,
+)
 
 
 def surface(package, version, code="", python="", programs=(), path="", launches=()):

@@ -3,15 +3,14 @@
 from types import SimpleNamespace
 
 import pytest
+from rosimpact.databuild.surfaces import Packing
 from rosimpact.impact.facts.python_objects import Given, PythonUse
 from rosimpact.impact.facts.surface_python import extract
-from rosimpact.impact.targets.build_surfaces import Packing
-from rosimpact.impact.targets.offers import Offers
-from rosimpact.impact.targets.offers_python import PythonOffers, read_parameters, refused, unlike
-from rosimpact.impact.targets.surface import State, Surface
-from rosimpact.impact.targets.surface_build import BuildSurface
-from rosimpact.impact.targets.surface_python import Module, PythonSurface
-from rosimpact.impact.targets.surface_store import Surfaces, write
+from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.targets.surface.offers import Offers
+from rosimpact.impact.targets.surface.offers_python import PythonOffers, read_parameters, refused, unlike
+from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.surface import BuildSurface, Module, PythonSurface, Surface
 
 
 @pytest.fixture

@@ -5,11 +5,11 @@ import sqlite3
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.targets.build_history import plain_url, tag_of
-from rosimpact.impact.targets.build_providers import cmake_names, include_paths, module_names
-from rosimpact.impact.targets.providers import SCHEMA, Providers, add_facts, default_providers
+from rosimpact.databuild.providers import cmake_names, include_paths, module_names
+from rosimpact.impact.model.surface.releases import plain_url, tag_of
+from rosimpact.impact.targets.providers.providers import SCHEMA, Providers, add_facts, default_providers
+from rosimpact.impact.targets.providers.stdlib import ever_stdlib, stdlib
 from rosimpact.impact.targets.snapshot import SnapshotError
-from rosimpact.impact.targets.stdlib import ever_stdlib, stdlib
 
 
 @pytest.fixture(scope="module")

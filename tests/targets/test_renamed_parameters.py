@@ -3,7 +3,7 @@
 import pytest
 from rosimpact.impact.facts.parameters import last_part
 from rosimpact.impact.targets.parameters import all_renamed, renamed_parameters
-from rosimpact.impact.targets.surface_store import shipped
+from rosimpact.impact.targets.surface.store import shipped
 from rosimpact.impact.targets.version import at_least
 
 ROWS = [

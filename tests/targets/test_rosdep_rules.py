@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.targets.rosdep import resolve_rule, split_platform
+from rosimpact.impact.targets.distro.rosdep import resolve_rule, split_platform
 
 PIP = {"pip": {"packages": ["transforms3d"]}}
 

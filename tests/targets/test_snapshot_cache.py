@@ -12,7 +12,7 @@ import yaml
 from rosimpact.impact.cache import cache_folder
 from rosimpact.impact.targets import snapshot as snapshots
 from rosimpact.impact.targets import unpacked
-from rosimpact.impact.targets.distro import DistroTarget
+from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.snapshot import DATA, Snapshot, SnapshotError
 
 
@@ -168,7 +168,10 @@ def test_broken_shipped_data_is_named(tmp_path, name):
 
 
 def test_two_runs_at_once_both_answer(tmp_path):
-    code = "from rosimpact.impact.targets.distro import DistroTarget; print(DistroTarget('jazzy').version('rclcpp'))"
+    code = (
+        "from rosimpact.impact.targets.distro.distro import DistroTarget;"
+        "print(DistroTarget('jazzy').version('rclcpp'))"
+    )
     environment = {**os.environ, "ROSIMPACT_CACHE": str(tmp_path)}
     runs = [
         subprocess.Popen([sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, text=True)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from rosimpact.databuild.sonames import Suite, libraries_of, symbols_of, table_of
 from rosimpact.impact.facts.elf import Asked, Elf
-from rosimpact.impact.targets.build_sonames import Suite, libraries_of, symbols_of, table_of
-from rosimpact.impact.targets.distro import DistroTarget
-from rosimpact.impact.targets.loader import Loader
-from rosimpact.impact.targets.shelf import DescribedShelf, MachineShelf
-from rosimpact.impact.targets.sonames import default_sonames, numbers_of
+from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.machine.loader import Loader
+from rosimpact.impact.targets.machine.shared_libraries import DescribedShelf, MachineShelf
+from rosimpact.impact.targets.machine.sonames import default_sonames, numbers_of
 
 SONAMES = default_sonames()
 ASKER = Elf(machine="EM_X86_64", bits=64)

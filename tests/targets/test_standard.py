@@ -1,8 +1,16 @@
 """Which standard header brings which name along, by version of GCC."""
 
 import pytest
-from rosimpact.impact.targets.build import std_names
-from rosimpact.impact.targets.standard import DEFINED_IN, bit_of, brought_by, named_by, names, offering, reaches
+from rosimpact.databuild import std_names
+from rosimpact.impact.targets.providers.standard import (
+    DEFINED_IN,
+    bit_of,
+    brought_by,
+    named_by,
+    names,
+    offering,
+    reaches,
+)
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,14 @@
 """Which version in a file of surfaces stands for what is asked for, when there are no clones."""
 
 import pytest
+from rosimpact.databuild.surfaces import Packing
 from rosimpact.impact.facts.surface_cpp import extract as header
-from rosimpact.impact.targets.build_surfaces import Packing
-from rosimpact.impact.targets.clones import VersionError
-from rosimpact.impact.targets.distro import DistroTarget
-from rosimpact.impact.targets.stored_versions import StoredVersions
-from rosimpact.impact.targets.surface import State, Surface, compare
-from rosimpact.impact.targets.surface_build import BuildSurface
-from rosimpact.impact.targets.surface_python import PythonSurface
-from rosimpact.impact.targets.surface_store import Surfaces, write
+from rosimpact.impact.model.surface.clones import VersionError
+from rosimpact.impact.model.surface.stored_versions import StoredVersions
+from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.surface.compare import State, compare
+from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 
 HUMBLE, JAZZY = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
 EARLY = DistroTarget("humble", "2024-03-01").version("rclcpp")

@@ -4,12 +4,13 @@ import subprocess
 import textwrap
 
 import pytest
+from rosimpact.impact.facts.extract import kinds
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.gather import kinds
-from rosimpact.impact.targets.clones import Clone, Clones, VersionError
-from rosimpact.impact.targets.distro import DistroTarget
-from rosimpact.impact.targets.surface import State, compare, compare_states, surfaces_of
-from rosimpact.impact.targets.surface_changes import PARAMETER
+from rosimpact.impact.model.surface.clones import Clone, Clones, VersionError
+from rosimpact.impact.model.surface.package import surfaces_of
+from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.surface.changes import PARAMETER
+from rosimpact.impact.targets.surface.compare import State, compare, compare_states
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.impact.facts.surface_cpp import extract
-from rosimpact.impact.targets.surface_diff import compare
+from rosimpact.impact.targets.surface.diff import compare
 
 
 def told(old: str, new: str) -> list[tuple]:

@@ -1,17 +1,16 @@
 """What headers of stored versions include, and what they bring along on a target across packages."""
 
 import pytest
+from rosimpact.databuild.surfaces import Packing
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.surface_cpp import extract as header
-from rosimpact.impact.targets.build_surfaces import Packing
-from rosimpact.impact.targets.includes import Includes, Machine, Table
-from rosimpact.impact.targets.surface import State, Surface
-from rosimpact.impact.targets.surface_build import BuildSurface
-from rosimpact.impact.targets.surface_includes import Including, compiled, unpack
-from rosimpact.impact.targets.surface_python import PythonSurface
-from rosimpact.impact.targets.surface_store import Surfaces, write
+from rosimpact.impact.targets.providers.includes import Includes, Machine, Table
+from rosimpact.impact.targets.surface.compare import State
+from rosimpact.impact.targets.surface.includes import Including, compiled, unpack
+from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,10 @@ import tarfile
 
 import pytest
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.targets.clones import VersionError
-from rosimpact.impact.targets.surface import State, compare, surfaces_of
-from rosimpact.impact.targets.surface_installed import is_installed, surface_at
+from rosimpact.impact.model.surface.clones import VersionError
+from rosimpact.impact.model.surface.installed import is_installed, surface_at
+from rosimpact.impact.model.surface.package import surfaces_of
+from rosimpact.impact.targets.surface.compare import State, compare
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.2.0</version><description>d</description>

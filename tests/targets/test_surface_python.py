@@ -4,20 +4,12 @@ import textwrap
 
 import pytest
 from rosimpact.impact.facts import kinds
+from rosimpact.impact.facts.extract import gather
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.gather import gather
 from rosimpact.impact.model.package import Watched
+from rosimpact.impact.model.surface.python import installed, kind_of, surface_of
 from rosimpact.impact.model.workspace import link
-from rosimpact.impact.targets.surface_python import (
-    UNKNOWN,
-    Names,
-    broken_by,
-    compare,
-    installed,
-    kind_of,
-    signature,
-    surface_of,
-)
+from rosimpact.impact.targets.surface.python import UNKNOWN, Names, broken_by, compare, signature
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.0.0</version><description>d</description>

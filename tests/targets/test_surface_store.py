@@ -3,16 +3,24 @@
 import msgspec
 import pytest
 import zstandard
+from rosimpact.databuild.surfaces import Packing
 from rosimpact.impact.facts.cpp import Include
 from rosimpact.impact.facts.interface import extract as interface
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.facts.surface_python import extract as module
-from rosimpact.impact.targets.build_surfaces import Packing
-from rosimpact.impact.targets.surface import State, Surface, compare
-from rosimpact.impact.targets.surface_build import BuildSurface, ExportedTarget, Header, LaunchFile, Program
-from rosimpact.impact.targets.surface_includes import compiled
-from rosimpact.impact.targets.surface_python import Module, PythonSurface
-from rosimpact.impact.targets.surface_store import History, StoredSurfacesError, Surfaces, write
+from rosimpact.impact.targets.surface.compare import State, compare
+from rosimpact.impact.targets.surface.includes import compiled
+from rosimpact.impact.targets.surface.store import History, StoredSurfacesError, Surfaces, write
+from rosimpact.impact.targets.surface.surface import (
+    BuildSurface,
+    ExportedTarget,
+    Header,
+    LaunchFile,
+    Module,
+    Program,
+    PythonSurface,
+    Surface,
+)
 
 CODE = """#pragma once
 #include <vector>

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.check import Options, check
+from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.config import ConfigError
 
 MANIFEST = """<package format="3"><name>{name}</name><version>{version}</version><description>d</description>
@@ -70,7 +71,7 @@ def test_an_edited_rosdep_file_is_read_again(tmp_path):
     root = workspace(tmp_path, 'rosdep_sources = ["rosdep.yaml"]\n')
     (root / "rosdep.yaml").write_text("tf_old:\n  ubuntu: [libtf]\n")
     assert "tf_old" not in unknown(root, tmp_path / "cache")
-    from rosimpact.impact.targets import surroundings
+    from rosimpact.impact.targets.distro import surroundings
 
     surroundings._rosdep.cache_clear()  # another run
     (root / "rosdep.yaml").write_text("other:\n  ubuntu: [libtf]\n")

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 import zstandard
 from rosimpact.edges.limits import Limits
-from rosimpact.impact.targets import unpacked_deb
-from rosimpact.impact.targets.unpacked_deb import DebError, Member, members
+from rosimpact.impact.targets.machine import unpacked_deb
+from rosimpact.impact.targets.machine.unpacked_deb import DebError, Member, members
 
 PACKERS = {
     ".xz": lzma.compress,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...facts.cmake import Argument, CMakeFile, Command
-from ..build import At
+from .build import At
 from .values import Template
 
 # Deeper than any real file; what lies deeper is read as if its outermost surplus block were not there.

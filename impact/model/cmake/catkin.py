@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import posixpath
 
-from ..build import At, GeneratedInterfaces, Install
 from .blocks import Call
+from .build import At, GeneratedInterfaces, Install
 from .interpreter import Interpreter, handles
 from .names import name_set
 from .targets import add_links, add_sources

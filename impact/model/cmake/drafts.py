@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...facts.condition import Condition
-from ..build import At, BuildTarget, Link
+from .build import At, BuildTarget, Link
 
 
 class TargetDraft:

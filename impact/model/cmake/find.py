@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from ..build import At, Found
 from .blocks import Call
+from .build import At, Found
 from .interpreter import Interpreter, handles
 from .language import add_module
 from .names import name_set, names

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ...facts.condition import Condition
-from ..build import Install
 from .blocks import Call
+from .build import Install
 from .interpreter import Interpreter, handles
 from .names import name_set
 from .values import Word, following, merge, split_words

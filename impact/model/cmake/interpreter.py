@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterable
 
 from msgspec import structs
 
+from ...conditions.cmake import asks_only_for_packages, packages_asked
 from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
-from ..build import At, Build, Declared, Defined, Exported, Found, GeneratedInterfaces, Install, Use
-from ..conditions.cmake import asks_only_for_packages, packages_asked
 from . import conditions as tests
 from .blocks import Block, Call, blocks
+from .build import At, Build, Declared, Defined, Exported, Found, GeneratedInterfaces, Install, Use
 from .drafts import TargetDraft, Targets
 from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES
 from .values import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from ..build import Defined
+from .build import Defined
 from .values import Word
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from ..build import GeneratedInterfaces, Link
 from .blocks import Call
+from .build import GeneratedInterfaces, Link
 from .drafts import TargetDraft
 from .genex import reduced, rejoin
 from .interpreter import Interpreter, handles

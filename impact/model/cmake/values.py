@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from ...facts.cmake import Argument
 from ...facts.condition import Condition
-from ..build import At
+from .build import At
 
 MAX_WORDS = 20_000
 MAX_TEXT = 200_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from functools import cache
 
-from ...targets.fields import default_fields
+from ...targets.surface.fields import default_fields
 
 # Messages that ROS 1 makes of an action.
 _OF_ACTIONS = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback")

@@ -9,12 +9,12 @@ from typing import NamedTuple
 from msgspec import structs
 
 from ...facts.flow import FlowFile, Guard
-from ..launch import Launched, Started
-from ..names_ros import NameRefused, canonical, ros1_name, ros2_name
+from ..launch.follow import Launched, Started
 from . import nodes as programs_of
 from .calls import Calls, Use
 from .code import Code, Fn, Source, made_in, tail
 from .defined import Defined
+from .endpoints import Site, Sites, Statement, shown
 from .frameworks import Frameworks, frameworks
 from .graph import (
     Callback,
@@ -33,9 +33,9 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, loads
+from .names import NameRefused, canonical, ros1_name, ros2_name
 from .nodes import Built, Program, Reach
 from .qos import qos_of
-from .sites import Site, Sites, Statement, shown
 from .started import Instance, instances
 from .types import Type, parsed
 from .values import Value, Values
@@ -575,7 +575,7 @@ def _callback(found: tuple[Fn, ...]) -> Callback | None:
 
 
 def _snake(name: str) -> str:
-    from ...targets.fields import snake
+    from ...targets.surface.fields import snake
 
     return snake(name)
 

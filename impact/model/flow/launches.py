@@ -8,15 +8,15 @@ from collections.abc import Iterator
 import msgspec
 
 from ...facts.store import encodable
-from ..launch import MOST_ACTIONS, Launched, SettingFile, Started, file_values, follow
-from ..names_ros import NameRefused, canonical, ros1_name, ros2_name, ros2_rule
+from ..launch.follow import MOST_ACTIONS, Launched, SettingFile, Started, file_values, follow
 from ..package import role_of_folder
 from ..workspace import Workspace
+from .escape_analysis import Seeing, Sight
+from .file_selection import stamp
 from .graph import Graph
 from .join import Join, Running
-from .sight import Seeing, Sight
+from .names import NameRefused, canonical, ros1_name, ros2_name, ros2_rule
 from .started import Instance, InWorkspace, launch_kind
-from .wanted import stamp
 
 _MOST = 300
 _MOST_ACTIONS = 5 * MOST_ACTIONS  # of all launch files together

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ...facts.flow import Call
-from ..names_ros import ros1_remapped
 from .calls import Calls, Use
 from .code import Fn
+from .names import ros1_remapped
 from .values import NODE, Values
 
 _DEEPEST = 4

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ...facts.flow import Expr
 from .calls import Use
 from .code import Cls, Code, Fn, Source, made_in, tail
-from .sites import Sites
+from .endpoints import Sites
 from .types import parsed
 
 

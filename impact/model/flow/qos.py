@@ -58,7 +58,7 @@ def qos_of(calls: Calls, values: Values, use: Use) -> Qos | None:
 
     A queue of ROS 1 is its depth. What is not told is empty, so that nothing is judged by it.
     """
-    from .sites import shown
+    from .endpoints import shown
 
     if use.row.framework in ("roscpp", "rospy", "image_transport") and use.row.queue and not use.row.qos:
         value = calls.argument(use, use.row.queue)

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from ...facts import flow_launch
 from ...facts.flow_launch import LaunchFile, ParameterFile
-from ..launch import Launched, Remap, Started, follow
-from ..names_ros import NameRefused, Rule, ros1_remapped, ros2_remapped
+from ..launch.follow import Launched, Remap, Started, follow
 from ..workspace import Workspace
+from .names import NameRefused, Rule, ros1_remapped, ros2_remapped
 
 
 class InWorkspace:

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from ...cache import code_stamp
+from ...facts.extract import Gathered, gather
 from ...facts.flow import FlowFile
 from ...facts.kinds import kind_of
 from ...facts.store import encodable
-from ...gather import Gathered, gather
 from ..package import Watched, role_of_folder
 from ..workspace import Package, Workspace, link
 from .callers import Callers, callers
 from .defined import Defined
+from .file_selection import code_kinds
 from .graph import Graph
-from .wanted import code_kinds
 
 if TYPE_CHECKING:
     # What is remembered is read without them.

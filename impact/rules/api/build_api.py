@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from ...model.view import View
 from ...targets.changes import DISTROS
-from ...targets.offers import Offer, Offered
-from ...targets.surface_build import BuildSurface
+from ...targets.surface.offers import Offer, Offered
+from ...targets.surface.surface import BuildSurface
 
 _THERE: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {
     "target": ("targets", lambda build: (target.name for target in build.targets)),

@@ -24,10 +24,10 @@ Not reported
 from functools import cache
 
 from ...model.view import View
-from ...targets.distro import DistroTarget, known_distros
+from ...targets.distro.distro import DistroTarget, known_distros
 from ...targets.evidence import of_offered
-from ...targets.offers import Offered
-from ...targets.offers_cpp import defaults_changed
+from ...targets.surface.offers import Offered
+from ...targets.surface.offers_cpp import defaults_changed
 from ...targets.target import Target
 from ...targets.version import at_least
 from ..rule import Hit, rule

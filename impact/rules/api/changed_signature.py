@@ -31,13 +31,13 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.package import CppApiUse, NameUse
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.evidence import evidence_of, of_offered
-from ...targets.library import default_standard, standard_year
-from ...targets.offers_cpp import Judged
+from ...targets.providers.library import default_standard, standard_year
+from ...targets.surface.offers_cpp import Judged
 from ...targets.target import Change
 from ...targets.uses import function_of, standards_of
 from ...targets.version import at_least

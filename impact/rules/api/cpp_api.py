@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ...model.package import CppApiUse
 from ...model.view import View
 from ...model.workspace import Package
-from ...targets.offers_cpp import Judged, judged
+from ...targets.surface.offers_cpp import Judged, judged
 from ...targets.uses import function_of
 from ..rule import Hit
 

@@ -24,9 +24,9 @@ from ...model.package import IncludeUse
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.evidence import evidence_of, of_offered
-from ...targets.offers import Offered
+from ...targets.surface.offers import Offered
 from ...targets.target import Change
-from ..cure import Replace
+from ..fix_actions import Replace
 from ..rule import Hit, rule
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...model.api_python import packages_of
 from ...model.package import PythonApiUse
+from ...model.python.api import packages_of
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.evidence import Evidence
-from ...targets.offers_python import Lost
+from ...targets.surface.offers_python import Lost
 
 
 def uses_lost(view: View, package: Package) -> list[tuple[PythonApiUse, Lost]]:

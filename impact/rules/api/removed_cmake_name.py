@@ -24,7 +24,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.evidence import evidence_of, of_offered

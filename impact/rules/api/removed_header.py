@@ -38,7 +38,7 @@ from ...model.package import IncludeUse, is_header
 from ...model.view import Misnamed, View
 from ...model.workspace import Package
 from ...targets.evidence import evidence_of
-from ...targets.library import Folder, versioned_folder
+from ...targets.providers.library import Folder, versioned_folder
 from ...targets.target import Change
 from ...targets.version import at_least
 from ..rule import Hit, rule

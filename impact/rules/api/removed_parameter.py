@@ -31,9 +31,9 @@ from ...model.package import SettingUse
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.evidence import of_offered
-from ...targets.offers import Offer, Offered
 from ...targets.parameters import renamed_parameters
-from ...targets.surface_changes import PARAMETER
+from ...targets.surface.changes import PARAMETER
+from ...targets.surface.offers import Offer, Offered
 from ..rule import Hit, rule
 from .build_api import guessed, of_another_distro
 

@@ -28,7 +28,7 @@ Not reported
 
 from ...model.package import PythonApiUse
 from ...model.view import View
-from ...targets.offers_python import Lost
+from ...targets.surface.offers_python import Lost
 from ..rule import SEVERITIES, Hit, rule
 from .python_api import evidence_of, severity_of, uses_lost
 

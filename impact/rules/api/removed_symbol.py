@@ -35,8 +35,8 @@ from ...model.view import View
 from ...model.workspace import Package
 from ...targets.changes import excuses, removed_in
 from ...targets.evidence import evidence_of, of_offered
-from ...targets.library import include_roots
-from ...targets.stdlib import stood_in_for
+from ...targets.providers.library import include_roots
+from ...targets.providers.stdlib import stood_in_for
 from ...targets.target import Change
 from ...targets.version import parts
 from ..rule import Hit, rule

@@ -28,7 +28,7 @@ Not reported
 
 from collections.abc import Iterable, Iterator
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...targets.evidence import Evidence
 from ..rule import Finding, Hit, rule
 

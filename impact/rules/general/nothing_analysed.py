@@ -10,7 +10,7 @@ Severity
     error, and the exit status is 2 whatever --fail-on says.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 

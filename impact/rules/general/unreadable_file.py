@@ -12,7 +12,7 @@ Severity
     for, since build tools refuse such a workspace.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 

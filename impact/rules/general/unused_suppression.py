@@ -18,7 +18,7 @@ Use instead
 
 from collections.abc import Iterable, Iterator
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 

@@ -25,7 +25,7 @@ Not reported
     that nearly every node has.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.launches import Renamed, Start
 from ...model.workspace import Workspace
 from ..rule import Hit, rule

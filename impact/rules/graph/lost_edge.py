@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import Flow
 from ...model.flow.graph import Endpoint
 from ...model.workspace import Workspace

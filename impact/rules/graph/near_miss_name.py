@@ -23,9 +23,9 @@ Not reported
     Names that differ in digits or sides (`camera1`, `left`); topics that something of an unknown name may feed.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import Flow, Sure, flows, said, unstarted
-from ...model.flow.slips import NearNames
+from ...model.flow.misspelling import NearNames
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 

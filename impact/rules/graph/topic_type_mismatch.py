@@ -23,7 +23,7 @@ Not reported
     adapters).
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import met, said, uncompared
 from ...model.workspace import Workspace
 from ..rule import Hit, rule

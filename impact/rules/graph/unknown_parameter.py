@@ -23,9 +23,9 @@ Not reported
     outside of the workspace; values in a file's `/**`, which is for every node.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.launches import Start
-from ...model.flow.slips import is_slip
+from ...model.flow.misspelling import is_slip
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 from .given import given

@@ -22,9 +22,9 @@ Not reported
     name is not known, is that of a node which a launch file may rename, or may get the client's namespace when started.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import Flow, Sure, begins, flows, said, unstarted
-from ...model.flow.slips import NearNames, is_in_namespace, is_slip
+from ...model.flow.misspelling import NearNames, is_in_namespace, is_slip
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 

@@ -21,7 +21,7 @@ Not reported
     those for debugging; types that something in the workspace reads under another name.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import said
 from ...model.workspace import Workspace
 from ..rule import Hit, rule

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from ...facts.interface import Field, Section
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.package import InterfaceFile
 from ...model.workspace import Package, Workspace, is_interface_header
 

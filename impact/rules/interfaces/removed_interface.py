@@ -16,7 +16,7 @@ Use instead
     Keep the definition for one release, and publish both.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 from .comparison import _users

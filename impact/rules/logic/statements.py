@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from ...flow.logic_changes import Change
-from ...flow.reach import EVERYWHERE
-from ...flow.two_states import publishing
-from ...model.build import At
+from ...logic.changes import Change
+from ...logic.two_states import publishing
+from ...model.cmake.build import At
 from ...model.flow.edges import said
 from ...model.flow.graph import Endpoint, Graph
+from ...model.flow.reach import EVERYWHERE
 from ...model.workspace import Workspace
 from ..rule import Hit
 

@@ -25,7 +25,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...flow.logic_changes import Change
+from ...logic.changes import Change
 from ...model.workspace import Workspace
 from ..rule import Hit, rule
 from .statements import conditions, hits

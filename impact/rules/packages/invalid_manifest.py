@@ -19,9 +19,9 @@ Use instead
 
 import re
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..cure import Replace
+from ..fix_actions import Replace
 from ..rule import Hit, rule
 
 _TAGS = {

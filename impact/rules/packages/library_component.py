@@ -28,7 +28,13 @@ from typing import NamedTuple
 
 from ...model.package import IncludeUse
 from ...model.view import View
-from ...targets.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP, compiled_component, gone_component
+from ...targets.providers.library import (
+    BOOST_BROUGHT,
+    BOOST_COMPILED,
+    BOOST_OF_ROSCPP,
+    compiled_component,
+    gone_component,
+)
 from ...targets.version import at_least
 from ..rule import Hit, rule
 from .unlinked import lacks_boost, unlinked_opencv

@@ -29,7 +29,7 @@ import posixpath
 import re
 
 from ...model.view import View
-from ...targets.library import variables
+from ...targets.providers.library import variables
 from ..rule import Hit, rule
 from .missing_find_package import found_names
 from .undeclared_package import LOUD, WITH_CLIENT, WITH_TESTS

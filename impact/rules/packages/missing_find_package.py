@@ -31,7 +31,7 @@ Not reported
 import re
 from functools import lru_cache
 
-from ...model.build import for_tests
+from ...model.cmake.build import for_tests
 from ...model.view import View, interface_of
 from ...targets.version import at_least
 from ..rule import Hit, rule

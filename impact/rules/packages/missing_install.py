@@ -30,7 +30,7 @@ Not reported
 import posixpath
 import re
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.view import View
 from ..rule import Hit, rule
 

@@ -27,7 +27,7 @@ import re
 
 from ...facts.interface import PRIMITIVES
 from ...model.view import View
-from ..cure import Declare, Insert
+from ..fix_actions import Declare, Insert
 from ..rule import Hit, rule
 
 _ROS1_PRIMITIVE = PRIMITIVES | {"time", "duration", "float", "double", "Header"}
@@ -103,7 +103,7 @@ def _field_packages(view: View, package):
 
 
 def _at(interface, field):
-    from ...model.build import At
+    from ...model.cmake.build import At
 
     return At(interface.path, field.line, field.column)
 

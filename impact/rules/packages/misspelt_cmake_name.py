@@ -24,10 +24,10 @@ Not reported
     Names that anybody is known to provide, that some distro has released, or that no declared name resembles.
 """
 
-from ...model.spelling import Names
+from ...model.misspelling import Names
 from ...model.view import View
-from ...targets.library import not_answering, variables
-from ..cure import Replace
+from ...targets.providers.library import not_answering, variables
+from ..fix_actions import Replace
 from ..rule import Hit, rule
 
 _SUFFIXES = (

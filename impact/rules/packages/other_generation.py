@@ -18,7 +18,7 @@ Use instead
     <buildtool_depend condition="$ROS_VERSION == 1">catkin</buildtool_depend>
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.package import build_type_of
 from ...model.view import View
 from ..rule import Hit, rule

@@ -36,11 +36,11 @@ Not reported
 import posixpath
 import re
 
-from ...model.build import At
-from ...model.spelling import folded, one_edit
+from ...model.cmake.build import At
+from ...model.misspelling import folded, one_edit
 from ...model.view import Need, View, weight
-from ..cure import Declare
 from ..evidence import circular, name_to_declare, present
+from ..fix_actions import Declare
 from ..rule import Hit, rule
 
 # Tools that people start on their own desk.

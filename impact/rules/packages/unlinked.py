@@ -7,10 +7,10 @@ by the build of those in the workspace, and by the stored surfaces of those that
 import re
 from collections.abc import Iterable, Iterator
 
-from ...model.build import BuildTarget, for_tests
+from ...model.cmake.build import BuildTarget, for_tests
 from ...model.package import IncludeUse
 from ...model.view import View
-from ...targets.library import OPENCV_FUNCTIONS
+from ...targets.providers.library import OPENCV_FUNCTIONS
 from ..rule import Hit
 
 

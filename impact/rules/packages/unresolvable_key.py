@@ -26,9 +26,9 @@ import re
 from bisect import bisect_left
 from functools import lru_cache
 
-from ...model.spelling import nearest, one_edit
+from ...model.misspelling import nearest, one_edit
 from ...model.view import View
-from ..cure import Remove, Replace
+from ..fix_actions import Remove, Replace
 from ..rule import Hit, rule
 
 

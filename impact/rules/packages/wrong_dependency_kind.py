@@ -29,8 +29,8 @@ Not reported
 import re
 
 from ...model.view import View
-from ..cure import Declare, Remove
 from ..evidence import circular
+from ..fix_actions import Declare, Remove
 from ..rule import Hit, rule
 
 _FOR_BUILD = frozenset({"build", "buildtool", "build_export", "buildtool_export"})

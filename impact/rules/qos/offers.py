@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.flow.edges import Pair, met, said
 from ...model.flow.graph import Qos
 from ...model.workspace import Workspace

@@ -34,13 +34,13 @@ Not reported
 import re
 from typing import NamedTuple
 
-from ...model.build import for_tests
+from ...model.cmake.build import for_tests
 from ...model.package import NeededHeader
 from ...model.view import View
-from ...targets.includes import Machine, announced, offered
-from ...targets.message_headers import package_of, type_in
-from ...targets.standard import bit_of, named_by, offering, oldest
-from ..cure import Insert
+from ...targets.providers.includes import Machine, announced, offered
+from ...targets.providers.message_headers import package_of, type_in
+from ...targets.providers.standard import bit_of, named_by, offering, oldest
+from ..fix_actions import Insert
 from ..rule import Hit, rule
 
 # Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache

@@ -10,7 +10,7 @@ Severity
     note.
 """
 
-from ...model.build import At
+from ...model.cmake.build import At
 from ...model.view import View
 from ..rule import Hit, rule
 

@@ -25,8 +25,8 @@ Not reported
 """
 
 from ...model.view import View
-from ...targets.library import NeededStandard, default_standard, needed_standard, standard_year
-from ...targets.standard import HEADER_SINCE
+from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
+from ...targets.providers.standard import HEADER_SINCE
 from ...targets.version import at_least
 from ..rule import Hit, rule
 

@@ -22,7 +22,7 @@ Not reported
 """
 
 from ...model.view import View
-from ...targets.library import satisfies
+from ...targets.providers.library import satisfies
 from ..rule import Hit, rule
 
 

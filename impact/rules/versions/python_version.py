@@ -22,7 +22,7 @@ Not reported
 """
 
 from ...model.view import View
-from ...targets.stdlib import stood_in_for
+from ...targets.providers.stdlib import stood_in_for
 from ..rule import Hit, rule
 
 _SEVERITY = {"run": "error", "build": "error", "test": "warning", "aside": "note"}

@@ -36,14 +36,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from ....edges.console import counted
-from ...model.build import At
 from ...model.build_order import build_order
+from ...model.cmake.build import At
 from ...model.view import View
 from ..rule import Hit, rule
 
 if TYPE_CHECKING:
-    from ...installed import Binary, Installed
-    from ...targets.shelf import Shelf
+    from ...model.install_space import Binary, Installed
+    from ...targets.machine.shared_libraries import Shelf
 
 
 class _Missing(NamedTuple):

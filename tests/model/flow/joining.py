@@ -3,7 +3,7 @@
 from pathlib import Path
 from textwrap import dedent
 
-from rosimpact.impact.check import open_tree
+from rosimpact.impact.analysis.session import open_tree
 from rosimpact.impact.facts import flow_cpp, flow_python
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.defined import Defined

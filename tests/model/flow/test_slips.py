@@ -1,7 +1,7 @@
 """Names that differ by a slip, and names that are told apart on purpose."""
 
 import pytest
-from rosimpact.impact.model.flow.slips import is_in_namespace, is_slip
+from rosimpact.impact.model.flow.misspelling import is_in_namespace, is_slip
 
 SLIPS = (
     ("/cmd_vel", "/cmdvel"), ("/wheel_odom", "/wheels_odom"), ("/base/scan_front", "/base/scan_frnot"),

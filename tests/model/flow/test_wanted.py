@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.model.flow.wanted import code_kinds
+from rosimpact.impact.model.flow.file_selection import code_kinds
 from rosimpact.impact.model.flow.workspace import code_of, linked
 from rosimpact.impact.tree import WorkingTree
 

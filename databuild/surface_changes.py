@@ -1,0 +1,138 @@
+"""Finds what changed of packages from version to version, for the file of surfaces (see surface_changes.py)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import msgspec
+
+from ..impact.facts.surface import CLASSES, FUNCTIONS, Entity
+from ..impact.targets.surface.changes import Event, Form, Line, Overload, Told, brief, pack
+from ..impact.targets.surface.compare import Change, State, compare
+from ..impact.targets.surface.python import UNKNOWN
+
+# What other tables tell (messages), and what a package has for itself.
+_UNTOLD = frozenset(("dependency", "system dependency", "package", "standard"))
+_CALLED = FUNCTIONS | {"macro"}
+
+
+class Lines:
+    """Compares the versions of the packages of one repository as they come, oldest first."""
+
+    def __init__(self) -> None:
+        self._before: dict[tuple[str, int], State] = {}
+        self._versions: dict[tuple[str, int], list[str]] = {}
+        self._approximate: dict[tuple[str, int], list[str]] = {}
+        self._events: dict[tuple[str, int], dict[tuple[str, str], list[Event]]] = {}
+
+    def add(
+        self, package: str, version: str, generations: Sequence[int], state: State, approximate: bool = False
+    ) -> None:
+        """The next version of a package, and the state that it belongs to. generations: 1, 2 or both. approximate: a
+        branch stands for it."""
+        compared: dict[int, tuple[tuple[tuple[str, str], Event], ...]] = {}
+        for generation in generations:
+            key = package, generation
+            versions = self._versions.setdefault(key, [])
+            if version in versions:
+                continue
+            before = self._before.get(key)
+            if before is not None:
+                if id(before) not in compared:
+                    compared[id(before)] = tuple(_events(package, before, state))
+                for thing, event in compared[id(before)]:
+                    if thing not in self._events.get(key, {}) and _may_have_been(thing, event):
+                        continue
+                    placed = msgspec.structs.replace(event, place=len(versions))
+                    self._events.setdefault(key, {}).setdefault(thing, []).append(placed)
+            versions.append(version)
+            if approximate:
+                self._approximate.setdefault(key, []).append(version)
+            self._before[key] = state
+
+    def packed(self) -> dict[str, bytes]:
+        """Package to its lines as they are stored."""
+        found: dict[str, dict[int, Line]] = {}
+        for (package, generation), versions in self._versions.items():
+            events: dict[str, dict[str, tuple[Event, ...]]] = {}
+            for (side, name), told in sorted(self._events.get((package, generation), {}).items()):
+                events.setdefault(side, {})[name] = tuple(told)
+            bases = _bases(package, self._before[package, generation])
+            approximate = tuple(self._approximate.get((package, generation), ()))
+            found.setdefault(package, {})[generation] = Line(tuple(versions), events, bases, approximate)
+        return {package: pack(lines) for package, lines in found.items()}
+
+
+def _may_have_been(thing: tuple[str, str], event: Event) -> bool:
+    """Whether a name of C++ seems new because the header that has it was generated before, or is not known well."""
+    return thing[0] == "c++" and all(told.kind == "added" and told.sure < 1 for told in event.told)
+
+
+def _side(change: Change) -> str:
+    if change.what == "header":
+        return "header"
+    return change.side if change.side in ("c++", "python") else change.what
+
+
+def _events(package: str, before: State, after: State) -> Iterator[tuple[tuple[str, str], Event]]:
+    """What changed of a package, by side and name. The places are filled in later."""
+    found: dict[tuple[str, str], list[Told]] = {}
+    for change in compare(before.surfaces[package], after.surfaces[package], before, after):
+        if change.side == "message" or change.what in _UNTOLD:
+            continue
+        name = change.name.partition("(")[0] if change.what == "parameter" else change.name
+        kept = change.kind in ("deprecated", "value") or (change.kind == "default" and change.side != "c++")
+        told = Told(change.kind, change.what, change.aspects, brief(change.now) if kept else "", change.instead,
+                    change.moved_to, change.breaks, change.sure)  # fmt: skip
+        each = found.setdefault((_side(change), name), [])
+        if told not in each:
+            each.append(told)
+    for (side, name), each in found.items():
+        had, has = _form(package, side, name, before), _form(package, side, name, after)
+        if side == "c++" and had is not None and had == has and all(told.kind == "added" for told in each):
+            continue  # another header declares it too
+        yield (side, name), Event(0, tuple(each), had, has)
+
+
+def _form(package: str, side: str, name: str, state: State) -> Form | None:
+    if side == "c++":
+        entities = [place.entity for place in state.cpp.get(name, ()) if place.entity.access != "private"]
+        if not entities:
+            owner, _, last = name.rpartition("::")
+            entities = state.inherited(owner, last)[0] if owner else []
+        if not entities:
+            return None
+        called = [one for one in entities if one.kind in _CALLED and one.parameters is not None]
+        overloads = dict.fromkeys(map(_overload, called))
+        messages = [one.deprecated for one in entities]
+        return Form(tuple(overloads), None if None in messages else brief(messages[0] or ""))
+    if side == "python":
+        entry = state.python(package).find(name)
+        if entry is None or entry is UNKNOWN:
+            return None
+        deprecated = entry.bound.deprecated if entry.bound is not None else ""
+        return Form((), brief(deprecated) if deprecated else None)
+    return None
+
+
+def _overload(one: Entity) -> Overload:
+    parameters = one.parameters or ()
+    required = sum(p.default is None and not p.pack for p in parameters)
+    most = -1 if "variadic" in one.traits or any(p.pack for p in parameters) else len(parameters)
+    kept = tuple(t for t in one.traits if t in ("const", "virtual", "pure", "override", "final", "static", "deleted"))
+    return Overload(required, most, tuple(p.type for p in parameters), kept)
+
+
+def _bases(package: str, state: State) -> dict[str, tuple[str, ...]]:
+    found = {}
+    for name, places in state.cpp.items():
+        for place in places:
+            one = place.entity
+            if place.package == package and one.kind in CLASSES and one.bases and not one.arguments:
+                scope = name.rpartition("::")[0]
+                found[name] = tuple(
+                    state.resolve(base.type, scope) or base.type.partition("<")[0].removeprefix("::")
+                    for base in one.bases
+                    if base.access != "private"
+                )
+    return found

@@ -1,0 +1,314 @@
+"""Builds a file of surfaces: what released versions of packages offer, read from clones at their tags.
+
+One job for the clones that have versions of the same packages, in processes of joblib or on a Dask cluster
+(cluster.py). What a job gives is kept in a file beside the output, so that a run that was stopped goes on from there; a
+job is done anew when its tags, the packages asked for or the code have changed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sqlite3
+from collections import Counter
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from ..edges.files import check_writable_path
+from ..impact.facts.store import Store
+from ..impact.model.surface.clones import Clone, Clones, Release, Version
+from ..impact.model.surface.package import surfaces_of
+from ..impact.targets.distro.distro import DistroTarget, TargetError, known_distros
+from ..impact.targets.snapshot import Snapshot, default
+from ..impact.targets.surface.compare import State
+from ..impact.targets.surface.includes import Including
+from ..impact.targets.surface.store import History, Packed, Packer, Stored, write
+from ..impact.targets.version import parts
+from ..impact.tree import TreeError
+from .surface_changes import Lines
+
+Versions = Literal["newest", "all"]
+"""Which versions are read: those that distros have, or all that they ever had."""
+
+
+class Wanted(NamedTuple):
+    """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it there."""
+
+    version: str
+    place: str
+    clone: str
+    revision: str
+    approximate: bool
+    packages: tuple[str, ...]
+    generations: tuple[int, ...]
+
+
+class Job(NamedTuple):
+    """What one worker does: all states of some packages, oldest version first, and no other job's packages. Everything
+    in it can be sent to another machine that sees the same clones. name: of the clone that most of them are in."""
+
+    name: str
+    states: tuple[Wanted, ...]
+    trees: tuple[str, ...]
+
+    def key(self) -> str:
+        """Changes with all that the result depends on."""
+        from ..impact.cache import code_stamp
+
+        return hashlib.sha1(repr((self.name, self.states, self.trees, code_stamp())).encode()).hexdigest()
+
+
+class Result(NamedTuple):
+    """packages: packed versions by package. failed: what could not be read, a line each."""
+
+    packages: dict[str, Packed]
+    failed: tuple[str, ...]
+
+
+class Built(NamedTuple):
+    """What was written. missing: packages asked for by a distro that no clone has, with the distro. approximate:
+    packages with versions that a branch stands for."""
+
+    packages: int
+    versions: int
+    missing: tuple[str, ...]
+    approximate: int
+    failed: tuple[str, ...]
+
+
+def plan(
+    clones: Clones,
+    distros: Sequence[str],
+    packages: Iterable[str] = (),
+    versions: Versions = "newest",
+    data: Snapshot | None = None,
+) -> tuple[list[Job], tuple[str, ...]]:
+    """The jobs that read what distros have (`newest`) or ever had (`all`) of packages, and what no clone has (`package
+    version distro`). Without packages all that the distros released. Raises TargetError for an unknown distro."""
+    data = data or default()
+    asked = frozenset(packages)
+    found: dict[tuple[str, str], Version] = {}
+    generations: dict[tuple[str, str], set[int]] = {}
+    missing: list[str] = []
+    for distro in distros:
+        target = DistroTarget(distro, data=data)
+        tagged: set[str] = set()
+        for package, release in (_released if versions == "all" else _newest)(target, data):
+            if asked and package not in asked:
+                continue
+            key = package, release.version
+            state = found.get(key)
+            if state is None or state.approximate:
+                state = next(clones.standing_for(package, release), state)
+            if state is None or (state.approximate and package in tagged):
+                # The distro's version before it stands for it better than a branch does, which may be years older.
+                missing.append(f"{package} {release.version} {distro}")
+                continue
+            if not state.approximate:
+                tagged.add(package)
+            if key not in found or not state.approximate:
+                found[key] = state
+            generations.setdefault(key, set()).add(target.ros)
+    return _jobs(found, generations), tuple(missing)
+
+
+def _newest(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+    """What a distro has of each package."""
+    for package in sorted(target.released_names()):
+        home, version = target.repository(package), target.version(package)
+        if home is not None and version is not None:
+            _, url, branch = home
+            yield package, Release(target.distro, version, (url,) if url else (), branch)
+
+
+def _released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+    """What a distro ever had of each package."""
+    urls: dict[int, dict[str, None]] = {}
+    branches: dict[int, str] = {}
+    for repository, url, branch in data.rows(
+        "SELECT s.repository, u.text, s.branch FROM source s JOIN distro d ON d.id = s.distro"
+        " JOIN url u ON u.id = s.url WHERE d.name = ? ORDER BY s.ts DESC",
+        (target.distro,),
+    ):
+        urls.setdefault(repository, {})[url] = None
+        branches.setdefault(repository, branch or "")
+    told = set()
+    for repository, version, names in data.rows(
+        "SELECT r.repository, r.version, p.names FROM release r JOIN distro d ON d.id = r.distro"
+        " JOIN packages p ON p.id = r.packages WHERE d.name = ? AND r.version IS NOT NULL ORDER BY r.ts",
+        (target.distro,),
+    ):
+        plain = version.partition("-")[0]
+        for package in names.split(" "):
+            if (package, plain) not in told:
+                told.add((package, plain))
+                release = Release(target.distro, plain, tuple(urls.get(repository, ())), branches.get(repository, ""),
+                                  target.version(package) != plain)  # fmt: skip
+                yield package, release
+
+
+def _jobs(found: Mapping[tuple[str, str], Version], generations: Mapping[tuple[str, str], set[int]]) -> list[Job]:
+    """States of packages with their versions, each as often as it differs in who has it; one job has all states of a
+    package, and those of all that is in one of them."""
+    import networkx as nx
+
+    clones: dict[str, Clone] = {}
+    states: dict[Wanted, list[str]] = {}
+    together = nx.Graph()
+    for (package, version), (clone, revision, _, approximate) in found.items():
+        clones[clone.name] = clone
+        whose = tuple(sorted(generations[package, version]))
+        state = Wanted(version, os.path.abspath(clone.place), clone.name, revision, approximate, (), whose)
+        states.setdefault(state, []).append(package)
+        together.add_edge((clone.name, revision), package)
+    number_of = {
+        node: number
+        for number, nodes in enumerate(nx.connected_components(together))
+        for node in sorted(nodes, key=str)
+    }
+    grouped: dict[int, list[Wanted]] = {}
+    for state, packages in states.items():
+        grouped.setdefault(number_of[state.clone, state.revision], []).append(
+            state._replace(packages=tuple(sorted(packages)))
+        )
+    jobs = []
+    for group in grouped.values():
+        order = tuple(sorted(group, key=lambda state: (parts(state.version), state)))
+        name = Counter(state.clone for state in order).most_common(1)[0][0]
+        jobs.append(Job(name, order, tuple(clones[state.clone].folder_id(state.revision) for state in order)))
+    return sorted(jobs)
+
+
+class Packing:
+    """Packs the versions of packages as they come, oldest first."""
+
+    def __init__(self) -> None:
+        self._packers: dict[str, Packer] = {}
+        self._including: dict[str, Including] = {}
+        self._lines = Lines()
+
+    def add(
+        self, package: str, version: str, generations: Sequence[int], state: State, approximate: bool = False
+    ) -> None:
+        """The next version of a package, and the state that it belongs to. generations: of ROS that have it, 1, 2 or
+        both. approximate: a branch stands for it."""
+        surface = state.surfaces[package]
+        self._packers.setdefault(package, Packer()).add(Stored(version, approximate, surface))
+        self._including.setdefault(package, Including()).add(version, surface.headers, generations, approximate)
+        self._lines.add(package, version, generations, state, approximate)
+
+    def packed(self) -> dict[str, Packed]:
+        """The packages as they are stored."""
+        changes = self._lines.packed()
+        return {
+            package: Packed(packer.packed(), changes[package], self._including[package].packed())
+            for package, packer in self._packers.items()
+        }
+
+
+def run(job: Job) -> Result:
+    """Does a job, in whatever process: reads each state once and packs the versions of each package."""
+    clones = {state.clone: Clone(Path(state.place), state.clone) for state in job.states}
+    packing = Packing()
+    failed: list[str] = []
+    read: dict[str, State] = {}
+    with Store() as store:
+        for state, tree in zip(job.states, job.trees, strict=True):
+            if tree not in read:
+                read.clear()  # one state at a time is enough
+                try:
+                    read[tree] = State(surfaces_of(clones[state.clone].tree(state.revision), store, 1))
+                except (TreeError, OSError) as error:
+                    failed.append(f"{state.clone} {state.version}: {error}")
+                    continue
+            for package in state.packages:
+                if package in read[tree].surfaces:
+                    packing.add(package, state.version, state.generations, read[tree], state.approximate)
+                elif not state.approximate:
+                    failed.append(f"{package} {state.version}: not in {state.clone} at its tag")
+    return Result(packing.packed(), tuple(failed))
+
+
+def build(
+    clones: Clones,
+    distros: Sequence[str],
+    output: Path,
+    packages: Iterable[str] = (),
+    jobs: int | None = None,
+    progress: Callable[[str, int, int], None] | None = None,
+    *,
+    versions: Versions = "newest",
+    dask: str | None = None,
+) -> Built:
+    """Reads what is asked for, as plan() has it, and writes it. jobs: processes, all cores when None. progress: called
+    with (clone, done, total). dask: address of a scheduler whose workers do the jobs instead. What was done stays in
+    `OUTPUT.work` when an error or KeyboardInterrupt passes through; it is removed at the end. Raises TargetError,
+    OSError, and ClusterError."""
+    todo, missing = plan(clones, distros, packages, versions)
+    work = output.with_name(f"{output.name}.work")
+    for file in (output, work):
+        check_writable_path(file)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    failed: list[str] = []
+    with closing(sqlite3.connect(work)) as db:
+        db.execute("CREATE TABLE IF NOT EXISTS done(key TEXT PRIMARY KEY, failed TEXT)")
+        db.execute(
+            "CREATE TABLE IF NOT EXISTS part"
+            "(key TEXT, package TEXT, data BLOB, changes BLOB, includes BLOB, PRIMARY KEY(key, package))"
+        )
+        keys = {job.key(): job for job in todo}
+        done = {key for (key,) in db.execute("SELECT key FROM done") if key in keys}
+        left = [job for key, job in keys.items() if key not in done]
+        left.sort(key=lambda job: -len(job.states))
+        with closing(_results(left, jobs, dask)) as ended:
+            for number, (job, result) in enumerate(ended, len(done) + 1):
+                rows = ((job.key(), package, *packed) for package, packed in result.packages.items())
+                db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?, ?, ?)", rows)
+                db.execute("INSERT OR REPLACE INTO done VALUES(?, ?)", (job.key(), "\n".join(result.failed)))
+                db.commit()
+                if progress is not None:
+                    progress(job.name, number, len(todo))
+        written: dict[str, Packed] = {}
+        for key in keys:
+            for package, *packed in db.execute(
+                "SELECT package, data, changes, includes FROM part WHERE key = ?", (key,)
+            ):
+                written[package] = Packed(*packed)
+            (why,) = db.execute("SELECT failed FROM done WHERE key = ?", (key,)).fetchone()
+            failed += why.split("\n") if why else []
+    about = write(output, written, distros, default().date)
+    work.unlink()
+    histories = (History(package, packed.data, packed.includes) for package, packed in written.items())
+    approximate = sum(bool(history.approximate) for history in histories)
+    return Built(about.packages, about.versions, missing, approximate, tuple(failed))
+
+
+def _results(todo: list[Job], jobs: int | None, dask: str | None) -> Generator[tuple[Job, Result], None, None]:
+    """Jobs with their results as they end."""
+    if dask is not None and todo:
+        from .cluster import done_by
+
+        yield from done_by(dask, todo)
+        return
+    from joblib import Parallel, delayed
+
+    if jobs == 1 or len(todo) < 2:
+        yield from ((job, run(job)) for job in todo)
+        return
+    parallel: Any = Parallel(n_jobs=jobs or -1, return_as="generator_unordered", pre_dispatch="2*n_jobs")
+    yield from parallel(delayed(_with_job)(job) for job in todo)
+
+
+def _with_job(job: Job) -> tuple[Job, Result]:
+    return job, run(job)
+
+
+def all_distros(names: Sequence[str]) -> tuple[str, ...]:
+    """The distros asked for, each once. Raises TargetError for one that is not known."""
+    known = {distro.name for distro in known_distros()}
+    for name in names:
+        if name not in known:
+            raise TargetError(f"`{name}` is no distro; known are {', '.join(sorted(known))}")
+    return tuple(dict.fromkeys(names))

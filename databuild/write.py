@@ -1,0 +1,165 @@
+"""Writes the gathered facts as the compressed database that is shipped."""
+
+import hashlib
+import os
+import sqlite3
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from ..edges.files import write_file
+from ..impact.targets.snapshot import SCHEMA, SnapshotInfo
+from .keys import RuleEvent
+from .manifests import Declared
+from .releases import History
+
+FILES = ("distros.sqlite.zst", "snapshot.json")
+"""What a data folder gets."""
+
+
+class DistroRow(NamedTuple):
+    """A distro as the index lists it."""
+
+    name: str
+    ros: int
+    python: int
+    status: str
+
+
+class Sync(NamedTuple):
+    """A sync of a distro: on `day` apt got what rosdistro listed at `cut`."""
+
+    distro: str
+    day: str
+    cut: int
+
+
+class Gathered(NamedTuple):
+    """Everything that goes into the database. date: newest day of the data. sources: repository → commit."""
+
+    date: str
+    sources: dict[str, str]
+    distros: Sequence[DistroRow]
+    histories: Mapping[str, History]
+    syncs: Sequence[Sync]
+    rules: Sequence[RuleEvent]
+    manifests: Sequence[Declared]
+
+
+class _Ids:
+    """Small numbers for repeated texts, in order of first use."""
+
+    def __init__(self) -> None:
+        self.of: dict[str, int] = {}
+
+    def __getitem__(self, text: str) -> int:
+        return self.of.setdefault(text, len(self.of) + 1)
+
+    def rows(self) -> list[tuple[int, str]]:
+        return [(number, text) for text, number in self.of.items()]
+
+
+def database(gathered: Gathered) -> bytes:
+    """The SQLite database as bytes; the same facts give the same bytes with the same SQLite."""
+    handle, name = tempfile.mkstemp(suffix=".sqlite")
+    os.close(handle)
+    try:
+        connection = sqlite3.connect(name)
+        try:
+            connection.execute("PRAGMA journal_mode=OFF")
+            connection.executescript(SCHEMA)
+            _fill(connection, gathered)
+            connection.commit()
+            connection.execute("VACUUM")
+        finally:
+            connection.close()
+        return Path(name).read_bytes()
+    finally:
+        os.unlink(name)
+
+
+def _fill(connection: sqlite3.Connection, gathered: Gathered) -> None:
+    many = connection.executemany
+    many("INSERT INTO meta VALUES(?, ?)", [("date", gathered.date), *sorted(gathered.sources.items())])
+    distros = {row.name: number for number, row in enumerate(sorted(gathered.distros), 1)}
+    many("INSERT INTO distro VALUES(?, ?, ?, ?, ?)", [(distros[row.name], *row) for row in sorted(gathered.distros)])
+    many("INSERT OR REPLACE INTO sync VALUES(?, ?, ?)", [(distros[s.distro], s.day, s.cut) for s in gathered.syncs])
+    repositories, packages, urls, sets, dependencies = _Ids(), _Ids(), _Ids(), _Ids(), _Ids()
+    homes: set[tuple[int, int, int]] = set()
+    for name in sorted(gathered.histories):
+        _fill_history(connection, distros[name], gathered.histories[name], (repositories, packages, urls, sets), homes)
+    many("INSERT INTO home VALUES(?, ?, ?)", sorted(homes))
+    many(
+        "INSERT OR REPLACE INTO manifest VALUES(?, ?, ?, ?, ?)",
+        [
+            (distros[item.distro], packages[item.package], item.version, dependencies[item.entries], item.build_type)
+            for item in gathered.manifests
+            if item.distro in distros
+        ],
+    )
+    many("INSERT OR REPLACE INTO rule VALUES(?, ?, ?, ?)", [(r.key, r.os, r.ts, r.rule) for r in gathered.rules])
+    for table, ids in (
+        ("repository", repositories),
+        ("package", packages),
+        ("url", urls),
+        ("packages", sets),
+        ("dependencies", dependencies),
+    ):
+        many(f"INSERT INTO {table} VALUES(?, ?)", ids.rows())
+
+
+def _fill_history(
+    connection: sqlite3.Connection,
+    distro: int,
+    history: History,
+    ids: tuple[_Ids, _Ids, _Ids, _Ids],
+    homes: set[tuple[int, int, int]],
+) -> None:
+    repositories, packages, urls, sets = ids
+    connection.executemany(
+        "INSERT OR REPLACE INTO platforms VALUES(?, ?, ?)",
+        [(distro, event.ts, ",".join(event.names)) for event in history.platforms],
+    )
+    releases: dict[str, tuple[str | None, tuple[str, ...]]] = {}
+    sources: dict[str, tuple[str, str, str]] = {}
+    for event in history.events:
+        entry, repository = event.entry, repositories[event.repository]
+        release = (entry.version, entry.packages) if entry else (None, ())
+        if releases.get(event.repository, (None, ())) != release:
+            releases[event.repository] = release
+            names = sets[" ".join(release[1])] if release[0] is not None else None
+            connection.execute(
+                "INSERT OR REPLACE INTO release VALUES(?, ?, ?, ?, ?)",
+                (distro, repository, event.ts, release[0], names),
+            )
+            homes.update((packages[name], distro, repository) for name in release[1])
+        source = (entry.url, entry.branch, entry.status) if entry else ("", "", "")
+        if sources.get(event.repository, ("", "", "")) != source:
+            sources[event.repository] = source
+            connection.execute(
+                "INSERT OR REPLACE INTO source VALUES(?, ?, ?, ?, ?, ?)",
+                (
+                    distro,
+                    repository,
+                    event.ts,
+                    urls[source[0]] if source[0] else None,
+                    source[1] or None,
+                    source[2] or None,
+                ),
+            )
+
+
+def write_snapshot(raw: bytes, date: str, sources: dict[str, str], folder: Path) -> int:
+    """Writes FILES into a data folder; gives the compressed size in bytes."""
+    import zstandard
+
+    # A long window finds the repeats between far-apart tables; decompression then needs 64 MB at most.
+    parameters = zstandard.ZstdCompressionParameters.from_level(19, window_log=26, enable_ldm=True)
+    packed = zstandard.ZstdCompressor(compression_params=parameters).compress(raw)
+    info = SnapshotInfo(date, hashlib.sha256(raw).hexdigest(), dict(sorted(sources.items())))
+    for name, data in zip(FILES, (packed, msgspec.json.encode(info) + b"\n"), strict=True):
+        write_file(folder / name, data)
+    return len(packed)

@@ -1,0 +1,367 @@
+"""The main job on one page: tree → facts → model → rules → report."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from ...edges.console import unforeseen
+from ...edges.version import __version__
+from ..config import Config, PathSetting
+from ..facts.extract import Gathered
+from ..model.view import View
+from ..model.workspace import Workspace
+from ..rules.fix_actions import Declare, Insert, Replace
+from ..rules.rule import Cure, Finding, Hit, Rule, all_rules
+from ..targets.resolve import Chosen
+from ..targets.version import compare as compare_versions
+from ..tree import Tree, WorkingTree
+from . import findings as after
+from . import result_cache as memo
+from .cross_target_fix import Split, with_evidence
+from .report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
+from .run_rules import Crashes, hits_of
+from .session import (
+    DEFAULTS,
+    CheckError,
+    Opened,
+    Options,
+    Progress,
+    chosen_rules,
+    nothing_analysed,
+    open_workspace,
+    reader,
+)
+
+if TYPE_CHECKING:
+    from ..model.install_space import Installed
+    from ..targets.machine.shared_libraries import Shelf
+    from .downstream import Impact
+
+
+class Checked(NamedTuple):
+    """What a check gives: the report, and what it was made with. originals: what the files held that fixes change, when
+    the fixes were made."""
+
+    report: Report
+    config: Config
+    tree: Tree
+    originals: Mapping[str, bytes]
+
+
+def check(
+    path: str | os.PathLike[str],
+    options: Options = DEFAULTS,
+    progress: Progress | None = None,
+    *,
+    tree: Tree | None = None,
+    base_tree: Tree | None = None,
+) -> Report:
+    """Checks a workspace and says what breaks, and for whom.
+
+    path: a workspace, package, or git repository. progress: called with (done, total) bytes while files are parsed.
+    tree: what is read instead of what is at the path. base_tree: the tree to compare with, instead of the revision that
+    the options name.
+    Raises CheckError, TreeError, TargetError, SettingsError, SnapshotError or ConfigError with a text for the user.
+    """
+    return run(path, options, progress, tree=tree, base_tree=base_tree).report
+
+
+def run(
+    path: str | os.PathLike[str],
+    options: Options = DEFAULTS,
+    progress: Progress | None = None,
+    *,
+    tree: Tree | None = None,
+    base_tree: Tree | None = None,
+) -> Checked:
+    """check(), with the configuration and the tree that it was made with. Raises as check() does."""
+    started = time.perf_counter()
+    with open_workspace(path, options, progress, lambda config: chosen_rules(options, config), tree) as opened:
+        return judged(path, options, opened, base_tree=base_tree, started=started)
+
+
+def judged(
+    path: str | os.PathLike[str],
+    options: Options,
+    opened: Opened,
+    *,
+    base_tree: Tree | None = None,
+    started: float | None = None,
+) -> Checked:
+    """The check of a workspace that is read already. Raises as check() does.
+
+    base_tree: as for check(). started: when the work began, by time.perf_counter(); now when None.
+    """
+    started = time.perf_counter() if started is None else started
+    rules = all_rules()
+    tree, store, gathered, workspace, targets, views, config, installed, shelves = opened
+    chosen = chosen_rules(options, config)
+    settings = _settings(rules, config)
+    sources = Sources(reader(tree))
+    crashed: Crashes = {}
+    reached: Impact | None = None
+    notes: list[str] = []
+    if options.base or base_tree is not None:
+        from . import revision_compare as bases
+
+        if base_tree is None:
+            base_tree, notes = bases.base_tree(tree, options.base)
+        before = bases.at_base(base_tree, opened, jobs=options.jobs)
+        old = judge(before, chosen, settings, Sources(reader(base_tree)), crashed, jobs=options.jobs)
+        now = judge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
+        found: Sequence[Finding] = after.marked_new(now.kept, old.kept)
+        reached = _reached(workspace, before.workspace, crashed)
+    else:
+        now = judge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
+        found = now.kept
+    if any(finding.evidence for finding in found):
+        for view in views:
+            memo.prepare(store, view.target)
+        found, parted = with_evidence(found, views)
+        if parted and "unguarded-split" in chosen:
+            found = after.in_order([*found, *_splits(parted, opened, chosen, settings, sources)])
+    originals: dict[str, bytes] = {}
+    if any(finding.fix for finding in found):
+        from . import fix
+
+        found = fix.made(found, reader(tree), originals)
+    known: Sequence[Finding] = ()
+    if options.baseline:
+        found, known = after.without_known(found, after.known_from(options.baseline))
+    notes += store.notes
+    failures = [] if workspace.packages else [nothing_analysed(path, opened)]
+    failures += [f"the rule {rule} failed{on(crashed[rule, why])}: {why}" for rule, why in crashed]
+    report = Report(
+        version=__version__,
+        data=targets[0].target.data_date if targets else "",
+        targets=(
+            *(_reported(chosen_target, notes if i == 0 else ()) for i, chosen_target in enumerate(targets)),
+            *_alone({chosen_target.target.name for chosen_target in targets}, shelves),
+        ),
+        findings=tuple(found),
+        coverage=coverage(workspace, gathered, views, installed),
+        packages=tuple(ReportedPackage(package.name, package.path) for package in workspace),
+        suppressed=tuple(now.suppressed),
+        known=tuple(known),
+        rules=tuple(chosen.values()),
+        seconds=time.perf_counter() - started,
+        excerpt=sources.excerpt,
+        root=os.fspath(path),
+        base=" ".join(options.base) or (base_tree.label if base_tree is not None else ""),
+        failure="; ".join(failures),
+        impact=reached,
+    )
+    return Checked(report, config, tree, originals)
+
+
+def _splits(
+    parted: Sequence[tuple[Finding, Split]],
+    opened: Opened,
+    rules: Mapping[str, Rule],
+    settings: Sequence[PathSetting],
+    sources: Sources,
+) -> list[Finding]:
+    """Findings of unguarded-split, which rest on findings of other rules; new where all of those are."""
+    from ..rules.api.unguarded_split import split
+
+    hits = split((finding, one.evidence, one.old_only, one.new_only) for finding, one in parted)
+    found = after.merge(
+        (("unguarded-split", target, hit) for target, hit in hits),
+        targets=[view.target.name for view in opened.views],
+        rules=rules,
+        line_text=sources.line,
+    )
+    old = {finding.package for finding, _ in parted if not finding.new}
+    families = {name: rule.family for name, rule in rules.items()}
+    marked = [finding._replace(new=finding.package not in old) for finding in found]
+    allows = {path: comments for package in opened.workspace for path, comments in package.digest.allows}
+    told = after.with_settings(marked, settings, families)
+    return after.suppressed(told, allows, families=families, ran=()).kept
+
+
+def _reached(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
+    """What the changes since the base reach; None where that failed, which is noted as a rule's failure is."""
+    from .downstream import impact_of
+
+    try:
+        return impact_of(workspace, base)
+    except Exception as error:
+        crashed.setdefault(("impact", unforeseen(error)), [])
+        return None
+
+
+def check_workspace(
+    path: str | os.PathLike[str],
+    *,
+    targets: Sequence[str] = (),
+    rev: str = "",
+    base: Sequence[str] = (),
+    select: Sequence[str] = (),
+    ignore: Sequence[str] = (),
+    preview: bool = False,
+    jobs: int | None = None,
+    config: str | os.PathLike[str] | None = None,
+) -> list[Finding]:
+    """Findings of a workspace, for other tools. They come sorted by path and line.
+
+    path: the workspace. targets: as on the command line (`jazzy`, `humble@2024-03-01`, a captured file, a name of
+    rosimpact.toml); none means those the workspace itself tells. rev: a git revision instead of the files on disk.
+    base: what to compare with; findings that the base has too come with `new` False. select, ignore: rules or families.
+    preview: also run rules whose precision is not measured yet. jobs: processes to parse with. config: another
+    rosimpact.toml.
+    Raises as check() does, and CheckError when there is no package to analyse.
+    """
+    options = Options(
+        tuple(targets), rev, tuple(base), tuple(select), tuple(ignore), preview, jobs, Path(config) if config else None
+    )
+    report = check(path, options)
+    if not report.packages:
+        raise CheckError(report.failure)
+    return list(report.findings)
+
+
+def _reported(chosen: Chosen, notes: Iterable[str]) -> ReportedTarget:
+    target = chosen.target
+    return ReportedTarget(
+        target.name, target.distro, target.date, target.platform, chosen.reason, (*target.notes, *notes)
+    )
+
+
+def _alone(names: Container[str], shelves: Iterable[Shelf]) -> Iterator[ReportedTarget]:
+    """Machines that only built files are checked on: this one, where no target is it."""
+    for shelf in shelves:
+        if shelf.target not in names:
+            note = "only built files were checked on it"
+            yield ReportedTarget(shelf.target, "", "", shelf.platform, "where --install lies", (note,))
+
+
+def _settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, ...]:
+    """Settings by path, those for the whole workspace first, so that the others go over them."""
+    everywhere = (PathSetting("**", severity=config.severity),) if config.severity else ()
+    try:
+        after.checked(everywhere, rules)
+    except after.SettingsError as error:
+        text = str(error).removeprefix('[paths."**"]: ')
+        raise after.SettingsError(f"{config.path}: [check]: {text}") from None
+    try:
+        return (*everywhere, *after.checked(config.paths, rules))
+    except after.SettingsError as error:
+        raise after.SettingsError(f"{config.path}: {error}") from None
+
+
+class Judged(NamedTuple):
+    """Findings, and those that allow comments silence."""
+
+    kept: list[Finding]
+    suppressed: list[Finding]
+
+
+def judge(
+    opened: Opened,
+    rules: Mapping[str, Rule],
+    settings: Sequence[PathSetting],
+    sources: Sources,
+    crashed: Crashes,
+    before: Workspace | None = None,
+    jobs: int | None = None,
+) -> Judged:
+    """Runs the rules. before: the workspace at the base, for rules that compare. crashed: gets the rules that
+    failed; what the others found stands."""
+    workspace, views = opened.workspace, opened.views
+    names = [view.target.name for view in views]
+    families = {name: rule.family for name, rule in all_rules().items()}
+    by_name = {view.target.name: view for view in views}
+
+    def made(hits: Iterable[tuple[str, str, Hit]]) -> list[Finding]:
+        found = after.merge(
+            hits,
+            targets=names,
+            rules=rules,
+            line_text=sources.line,
+            holds=lambda fix, target: all(holds(cure, by_name[target]) for cure in fix),
+        )
+        return after.with_settings(found, settings, families)
+
+    allows = {path: comments for package in workspace for path, comments in package.digest.allows}
+    result = after.suppressed(
+        made(hits_of(opened, rules.values(), crashed, before, jobs)),
+        allows,
+        families=families,
+        ran=[name for name in rules if name != "unguarded-split"],  # it speaks last, see _splits()
+    )
+    kept = list(result.kept)
+    if "unused-suppression" in rules and result.unused:
+        from ..rules.general.unused_suppression import unused
+
+        kept = after.in_order(
+            [*kept, *made(("unused-suppression", "", hit) for hit in unused(workspace, result.unused))]
+        )
+    return Judged(kept, list(result.suppressed))
+
+
+def on(targets: Sequence[str]) -> str:
+    """` on jazzy, robot`, empty without targets."""
+    return f" on {', '.join(targets)}" if targets else ""
+
+
+def holds(cure: Cure, view: View) -> bool:
+    """Whether a cure is right on a target where the rule found nothing to cure.
+
+    A declaration is when the package is there, an include when its header surely is; anything else cannot be told.
+    """
+    if isinstance(cure, Declare):
+        return view.available(cure.name)
+    if isinstance(cure, Replace):
+        return _has_header(view, cure.new.strip('<>"'))
+    if isinstance(cure, Insert):
+        text = cure.text.strip()
+        return text.startswith("#include <") and "\n" not in text and view.is_standard(text[10:].rstrip("> "))
+    return False
+
+
+def _has_header(view: View, path: str) -> bool:
+    target = view.target
+    if view.is_standard(path) or view.workspace.provides_header(path):
+        return True
+    for provider in view.header(path):
+        version = target.version(provider.name) if provider.kind == "ros" else None
+        if not version:
+            continue
+        for span in view.providers.header_history(provider.name, path):
+            # A span without an end goes on in the distro's releases after the newest one whose files are known.
+            here = span.distro == target.distro and compare_versions(span.first, version) <= 0
+            if here and (span.last is None or compare_versions(version, span.last) <= 0):
+                return True
+    return target.platform in view.providers.header_platforms(path)
+
+
+def coverage(
+    workspace: Workspace, gathered: Gathered, views: Sequence[View], installed: Installed | None = None
+) -> Coverage:
+    """How much was read and resolved."""
+    broken = {path for package in workspace for path, _, _ in package.digest.problems}
+    unresolved: dict[str, set[str]] = {}
+    for view in views:
+        for kind, names in view.unresolved.items():
+            unresolved.setdefault(kind, set()).update(names)
+    counts = {kind: len(names) for kind, names in sorted(unresolved.items()) if names}
+    cmake = sum(len(package.build.unresolved) for package in workspace)
+    if cmake:
+        counts["cmake"] = counts.get("cmake", 0) + cmake
+    # A file can be read and still have something wrong with it, such as its name.
+    files = len(gathered.kinds.keys() | {problem.path for problem in gathered.problems})
+    parsed = len(gathered.kinds) - len(broken & gathered.kinds.keys())
+    if installed is not None:
+        sound = sum(not binary.elf.problem for binary in installed.binaries)
+        files, parsed = files + sound, parsed + sound
+    return Coverage(len(workspace.packages), files, parsed, counts)
+
+
+def compare(path: str | os.PathLike[str], base: str | os.PathLike[str], options: Options | None = None) -> Report:
+    """Checks the workspace at path against another folder as its base. For tools that keep both states as folders;
+    `check` with Options(base=...) reads them from git. Raises as check() does."""
+    return check(path, options or DEFAULTS, base_tree=WorkingTree(base))

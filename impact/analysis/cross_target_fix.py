@@ -1,0 +1,166 @@
+"""What a finding rests on, joined with all targets asked for: who has the change since when, and what to write where
+no one spelling is right on all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..rules.rule import Finding
+from ..targets.changes import version_of
+from ..targets.evidence import Evidence, OnTarget, holds_on, seen_on
+from ..targets.providers.version_macros import version_test
+from ..targets.version import at_least
+
+if TYPE_CHECKING:
+    from ..model.view import View
+
+
+_CMAKE = ("cmake", "command", "target", "variable")
+
+
+class Split(NamedTuple):
+    """Two spellings of one name, the older and the newer, with the targets that take only the one or the other.
+
+    first: the version of the package from which on the newer one is to be written; empty when not known. oldest: the
+    lowest version of it on a target asked for. ros: the generation of all targets, 0 where they differ.
+    """
+
+    evidence: Evidence
+    old: str
+    new: str
+    old_only: tuple[str, ...]
+    new_only: tuple[str, ...]
+    first: str
+    oldest: str
+    ros: int
+
+
+def with_evidence(
+    findings: Iterable[Finding], views: Sequence[View]
+) -> tuple[list[Finding], list[tuple[Finding, Split]]]:
+    """The findings with how every target stands to the change that each rests on, and with the guarded form as help
+    where the targets asked for need different spellings; and these alone."""
+    known: dict[tuple[Evidence, tuple[str, ...]], tuple[Evidence | None, Split | None]] = {}
+    result, parted = [], []
+    for finding in findings:
+        if finding.evidence is not None:
+            key = (finding.evidence, finding.targets)
+            if key not in known:
+                known[key] = _joined(*key, views)
+            evidence, split = known[key]
+            finding = finding._replace(evidence=evidence, help=_guarded(split) if split else finding.help)
+            if split is not None:
+                parted.append((finding, split))
+        result.append(finding)
+    return result, parted
+
+
+def _joined(
+    evidence: Evidence, spoken_of: tuple[str, ...], views: Sequence[View]
+) -> tuple[Evidence | None, Split | None]:
+    if not views:
+        return None, None
+    seen = seen_on(evidence, [view.target for view in views], spoken_of, views[0].providers)
+    return seen, split_of(seen, spoken_of, views) if seen is not None else None
+
+
+def split_of(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[View]) -> Split | None:
+    """How the targets differ, when on some only the one and on others only the other spelling is there; else None.
+
+    evidence: as seen_on() gives it. spoken_of: targets on which the name that is used is not there.
+    """
+    if evidence.change not in ("removed", "added") or not evidence.instead or evidence.ahead:
+        return None
+    spoken = frozenset(spoken_of)
+    if spoken.issuperset(view.target.name for view in views):
+        return None
+    used = {view.target.name: _used(evidence, view, spoken) for view in views}
+    other = {view.target.name: _other(evidence, view) for view in views}
+    only_used = tuple(name for name in used if used[name] is True and other[name] is False)
+    only_other = tuple(name for name in used if used[name] is False and other[name] is True)
+    if not only_used or not only_other or any(used[name] is False and other[name] is False for name in used):
+        return None
+    removed = evidence.change == "removed"
+    old, new = (evidence.name, evidence.instead) if removed else (evidence.instead, evidence.name)
+    old_only, new_only = (only_used, only_other) if removed else (only_other, only_used)
+    first, oldest = _boundary(evidence, views, old_only, new_only)
+    generations = {view.target.ros for view in views}
+    ros = generations.pop() if len(generations) == 1 else 0
+    return Split(evidence, old, new, old_only, new_only, first, oldest, ros)
+
+
+def _used(evidence: Evidence, view: View, spoken: frozenset[str]) -> bool | None:
+    """Whether the spelling that is used is there."""
+    if view.target.name in spoken:
+        return False
+    if evidence.side == "header":
+        return view.environment.headers(evidence.name)
+    on: Mapping[str, OnTarget] = {one.target: one for one in evidence.targets}
+    here = on.get(view.target.name)
+    return None if here is None else here.holds == (evidence.change == "added")
+
+
+def _other(evidence: Evidence, view: View) -> bool | None:
+    """Whether the other spelling is there."""
+    if evidence.side == "header":
+        return view.environment.headers(evidence.instead)
+    if evidence.other is None:
+        return None
+    holds = holds_on(evidence.other, view.target, view.providers)
+    return None if holds is None else holds == (evidence.other.change == "added")
+
+
+def _boundary(
+    evidence: Evidence, views: Sequence[View], old_only: Sequence[str], new_only: Sequence[str]
+) -> tuple[str, str]:
+    """The version that parts the targets, and the lowest one of them: a bound of the tables that does, else the lowest
+    version of those that need the newer spelling, where all others are below it."""
+    versions = {
+        view.target.name: version
+        for view in views
+        if (version := version_of(evidence.package, evidence.library, view.target))
+    }
+    if not versions:
+        return "", ""
+    oldest = _lowest(versions.values())
+    above, below = [versions[name] for name in new_only], [versions[name] for name in old_only]
+    pair = [evidence, evidence.other] if evidence.change == "added" else [evidence.other, evidence]
+    bounds = [one.first for one in pair if one is not None and one.first[:1].isdigit()]
+    for bound in (*bounds, _lowest(above)):
+        if all(at_least(version, bound) for version in above) and not any(at_least(one, bound) for one in below):
+            return bound, oldest
+    return "", oldest
+
+
+def _lowest(versions: Iterable[str]) -> str:
+    found = ""
+    for version in versions:
+        if not found or not at_least(version, found):
+            found = version
+    return found
+
+
+def _guarded(split: Split) -> str:
+    """What to write where neither spelling is right everywhere."""
+    evidence = split.evidence
+    where = f"{_listed(split.old_only)} {'has' if len(split.old_only) == 1 else 'have'} only `{split.old}`"
+    if evidence.side == "header":
+        return f"`#if __has_include(<{split.new}>)`, include it, `#else` include `{split.old}`: {where}"
+    if evidence.side == "python":
+        return f"take `{split.new}` where it is there (`try`, or `hasattr`), else `{split.old}`: {where}"
+    package = evidence.package
+    if evidence.side == "c++" and split.first:
+        test = version_test(package, evidence.library, split.first, ros=split.ros, oldest=split.oldest)
+        if test is not None:
+            return f"`#if {test.text}` use `{split.new}`, `#else` `{split.old}`, with `{test.header}` included: {where}"
+    if split.first:
+        cmake = f"`if({package}_VERSION VERSION_GREATER_EQUAL {split.first})`"
+        if evidence.side in _CMAKE:
+            return f"{cmake} use `{split.new}`, else `{split.old}`: {where}"
+        return f"use `{split.new}` or `{split.old}` by a definition that CMake sets {cmake}: {where}"
+    return f"use `{split.new}` or `{split.old}`, whichever is there: {where}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

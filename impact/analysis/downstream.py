@@ -1,0 +1,459 @@
+"""What a change reaches: changed messages, topics, publish conditions and callbacks, and what lies downstream."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
+from functools import cached_property, lru_cache
+from typing import Literal, NamedTuple
+
+import msgspec
+
+from ..facts.extract import Gathered
+from ..facts.flow import FlowFile
+from ..logic.code_changes import ChangedFunction, changed_functions
+from ..logic.history import File
+from ..logic.states import renamed_words
+from ..logic.two_states import Differing, differing, flow_facts, publishing
+from ..model.flow.callers import Led
+from ..model.flow.connections import Edge, edges
+from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
+from ..model.flow.reach import EVERYWHERE, Reach, Step
+from ..model.flow.select import kind_of
+from ..model.workspace import Workspace
+from .message_changes import holding, message_changes
+
+Kind = Literal["message", "topic", "condition", "trigger", "callback"]
+KINDS: tuple[Kind, ...] = ("message", "condition", "trigger", "topic", "callback")
+EVENTS = frozenset(("subscriber", "service", "action", "timer", "parameter"))
+RECEIVING = frozenset(("subscriber", "server", "action server"))
+ASKS = {"server": "client", "action server": "action client"}
+
+
+class Hop(msgspec.Struct, frozen=True):
+    """A node that is reached. came: the node before it on the shortest way, empty where it is reached at once. kind,
+    name: the topic, service or action between; path, line: of the subscriber or server."""
+
+    node: str
+    package: str
+    came: str
+    kind: str
+    name: str
+    path: str
+    line: int
+
+
+class Effect(msgspec.Struct, frozen=True):
+    """A change and what it reaches.
+
+    kind: what is changed; change: how (`added`, `removed`, `changed`, or as `rosimpact logic` has it). subject: the
+    message, topic or function. path, line: its place now, at the base where it is gone. nodes: that have it.
+    topics: that it goes out by, full names. why: what differs, in a clause. reaches: all nodes downstream, nearest
+    first.
+    """
+
+    kind: Kind
+    change: str
+    subject: str
+    package: str
+    path: str
+    line: int
+    nodes: tuple[str, ...]
+    topics: tuple[str, ...]
+    why: str
+    reaches: tuple[Hop, ...] = ()
+
+
+class Impact(msgspec.Struct, frozen=True):
+    """All of it. nodes: that are changed or reached; of: how many the workspace has. silent: changed functions of
+    which nothing is known to be published because of them. coverage: of the workspace's graph."""
+
+    effects: tuple[Effect, ...]
+    nodes: tuple[Node, ...]
+    of: int
+    silent: int
+    coverage: Coverage
+
+    @property
+    def reached(self) -> set[str]:
+        """Ids of all nodes that are changed or reached."""
+        found = {node for effect in self.effects for node in effect.nodes}
+        return found | {hop.node for effect in self.effects for hop in effect.reaches}
+
+
+NOTHING = Impact((), (), 0, 0, Coverage(0, 0, 0, 0))
+
+
+class _Out(NamedTuple):
+    """What goes out of a node because of a change: (name, role of who sends)."""
+
+    node: str
+    sent: tuple[tuple[str, str], ...]
+
+
+@lru_cache(maxsize=2)
+def impact_of(workspace: Workspace, base: Workspace) -> Impact:
+    """What the changes since the base reach, message by message, topic by topic, statement by statement."""
+    reading = _Reading(workspace, base)
+    return reading.impact() if reading.concerned() else NOTHING
+
+
+class _Reading:
+    def __init__(self, workspace: Workspace, base: Workspace):
+        self.workspace, self.base = workspace, base
+        self.differing: Differing = differing(workspace, base)
+        self.silent = 0
+        self._walked: dict[tuple, list[tuple[int, Hop]]] = {}
+
+    def concerned(self) -> bool:
+        """Whether anything differs that message flow can follow; asked before the graphs are made, which are dear."""
+        found = self.differing
+        if any(True for _ in message_changes(self.workspace, self.base)):
+            return True
+        names = {found.renamed.get(state.whole(file.path), state.whole(file.path)) for state in found.old
+                 for file in state.files}  # fmt: skip
+        if not found.old and not found.new:
+            return False
+        changed = list(found.changed())
+        kept = {state.whole(file.path) for state in found.new for file in state.files}
+        builds = any(file.kind not in ("cpp", "python") for _, _, file in changed)
+        return builds or bool(names ^ kept) or bool(self.functions) or any(map(self.redeclared, changed))
+
+    def redeclared(self, changed: tuple[str, File | None, File]) -> bool:
+        """Whether a file's members, constants or exported classes differ."""
+        path, before, _ = changed
+        new = _facts(self.facts[1], path)
+        old = _facts(self.facts[0], self.was[id(before)]) if before is not None else None
+        return _declared(old) != _declared(new)
+
+    @cached_property
+    def now(self) -> Graph:
+        return self.workspace.flow
+
+    @cached_property
+    def before(self) -> Graph:
+        return self.base.flow
+
+    @cached_property
+    def reach(self) -> Reach:
+        return Reach(self.now)
+
+    @cached_property
+    def reach_before(self) -> Reach:
+        return Reach(self.before)
+
+    @cached_property
+    def packages(self) -> dict[str, str]:
+        return {node.id: node.package for node in (*self.before.nodes, *self.now.nodes)}
+
+    @cached_property
+    def facts(self) -> tuple[Gathered, Gathered]:
+        """The flow facts of what differs, of the base and now."""
+        return flow_facts(self.base, self.differing.old), flow_facts(self.workspace, self.differing.new)
+
+    @cached_property
+    def was(self) -> dict[int, str]:
+        """Paths at the base of its files."""
+        return {id(file): state.whole(file.path) for state in self.differing.old for file in state.files}
+
+    def impact(self) -> Impact:
+        found = [*self.messages(), *self.logic()]
+        found += self.topics(found)
+        found += self.callbacks()
+        ordered = sorted(found, key=lambda one: (KINDS.index(one.kind), one.package, one.path, one.line, one.subject))
+        effects = tuple(dict.fromkeys(ordered))
+        used = {node for effect in effects for node in effect.nodes}
+        used |= {hop.node for effect in effects for hop in effect.reaches}
+        nodes = {node.id: node for node in (*self.before.nodes, *self.now.nodes)}
+        kept = tuple(node for id, node in sorted(nodes.items()) if id in used)
+        return Impact(effects, kept, len(self.now.nodes), self.silent, self.now.coverage)
+
+    # Downstream
+
+    def downstream(
+        self, nodes: Iterable[str], out: Iterable[_Out], reach: Reach, first: Iterable[Hop] = ()
+    ) -> tuple[Hop, ...]:
+        """All nodes that what goes out reaches, nearest first, each once. nodes: that are changed themselves; first:
+        nodes that are reached at once."""
+        own = set(nodes)
+        found: dict[str, tuple[int, Hop]] = {}
+        for hop in first:
+            if hop.node not in own:
+                found.setdefault(hop.node, (1, hop))
+        near = set(found)
+        for one in out:
+            for steps, hop in self.walked(one, reach):
+                known = found.get(hop.node)
+                steps += one.node in near
+                if hop.node not in own and (known is None or steps < known[0]):
+                    found[hop.node] = (steps, hop)
+        told = sorted(found.values(), key=lambda each: each[0])
+        return tuple(msgspec.structs.replace(hop, came="") if hop.came in own else hop for _, hop in told)
+
+    def walked(self, out: _Out, reach: Reach) -> list[tuple[int, Hop]]:
+        key = (id(reach), out)
+        known = self._walked.get(key)
+        if known is None:
+            known = self._walked[key] = [
+                (len(one.steps), self.hop(one.steps[-1], one.steps[-2].node if len(one.steps) > 1 else out.node))
+                for one in reach.from_sent(out.sent, out.node)
+            ]
+        return known
+
+    def hop(self, step: Step, came: str = "") -> Hop:
+        return Hop(step.node, self.packages.get(step.node, ""), came, step.kind, step.name, step.path, step.line)
+
+    # Messages
+
+    def messages(self) -> Iterator[Effect]:
+        for change in message_changes(self.workspace, self.base):
+            gone = change.change == "removed"
+            graph, reach = (self.before, self.reach_before) if gone else (self.now, self.reach)
+            types = holding(self.base if gone else self.workspace, change.name)
+            using = [one for one in graph.endpoints if one.type in types and one.topic and one.node]
+            first = [
+                self.hop(Step(kind_of(one), one.topic, one.node, one.path, one.line))
+                for one in sorted(using, key=lambda one: one.role in ("publisher", "client", "action client"))
+            ]
+            out = [
+                _Out(one.node, tuple(reach.sent_on(one.node, one.path, one.line, True)))
+                for one in using
+                if one.role in RECEIVING
+            ]
+            topics = tuple(sorted({one.topic for one in using}))
+            reached = self.downstream((), out, reach, first)
+            yield Effect(
+                "message", change.change, change.name, change.package, change.path, change.line, (), topics,
+                change.why, reached,
+            )  # fmt: skip
+
+    # Publish statements
+
+    def logic(self) -> Iterator[Effect]:
+        for change in publishing(self.workspace, self.base):
+            gone = change.kind == "gone"
+            graph, reach = (self.before, self.reach_before) if gone else (self.now, self.reach)
+            at = (change.path, change.line)
+            here = [
+                one
+                for one in (*graph.publishes, *(e for e in graph.endpoints if e.role == "publisher"))
+                if (one.path, one.line) == at
+            ]
+            nodes = tuple(sorted({one.node for one in here if one.node})) or tuple(
+                node for node in change.node.split(", ") if node
+            )
+            topics = tuple(sorted({one.topic for one in here if one.topic} | {*change.topics}))
+            sent = tuple((topic, "publisher") for topic in topics)
+            yield Effect(
+                "trigger" if change.kind == "trigger changed" else "condition", change.kind,
+                ", ".join(topics) or change.topic, change.package, change.path, change.line, nodes, topics, change.why,
+                self.downstream(nodes, [_Out(node, sent) for node in nodes or ("",)], reach),
+            )  # fmt: skip
+
+    # Topics
+
+    def topics(self, told: Sequence[Effect]) -> Iterator[Effect]:
+        """What is new, gone or of another type or quality at either end of a topic, save what was told already."""
+        places = {(effect.path, effect.line) for effect in told}
+        named = {
+            (node, topic)
+            for effect in told
+            if effect.kind != "message"
+            for node in effect.nodes
+            for topic in effect.topics
+        }
+        found = [edge for edge in edges(self.now, self.before) if edge.mark]
+        renamed = self.renamed(found)
+        for edge in found:
+            why = ", ".join(clause for clause in edge.why.split(", ") if clause in ("type", "QoS"))
+            endpoint = edge.endpoints[0]
+            if edge.name in EVERYWHERE or all(one.implied for one in edge.endpoints) or edge.node in renamed:
+                continue
+            if edge.mark == "changed" and (not why or (endpoint.path, endpoint.line) in places):
+                continue
+            if edge.mark != "changed" and (self.unsure(edge) or (edge.role == "publisher" and
+                                                                 (edge.node, edge.name) in named)):  # fmt: skip
+                continue
+            yield self.topic(edge, endpoint, why)
+
+    def topic(self, edge: Edge, endpoint: Endpoint, why: str) -> Effect:
+        gone = edge.mark == "removed"
+        graph, reach = (self.before, self.reach_before) if gone else (self.now, self.reach)
+        first: list[Hop] = []
+        if edge.role in RECEIVING:
+            sent = tuple(reach.sent_on(edge.node, endpoint.path, endpoint.line, True))
+            asking = ASKS.get(edge.role)
+            first = [
+                self.hop(Step(edge.kind, edge.name, one.node, one.path, one.line))
+                for one in graph.endpoints
+                if one.role == asking and one.topic == edge.name and one.node
+            ]
+        else:
+            sent = ((edge.name, edge.role),)
+        says = {"added": "a new {}", "removed": "no {} any more", "changed": f"the {{}} has another {why}"}[edge.mark]
+        return Effect(
+            "topic", edge.mark, edge.name, self.packages.get(edge.node, ""), endpoint.path, endpoint.line,
+            (edge.node,) if edge.node else (), (edge.name,), says.format(edge.role),
+            self.downstream((edge.node,), [_Out(edge.node, sent)], reach, first),
+        )  # fmt: skip
+
+    def renamed(self, found: Sequence[Edge]) -> set[str]:
+        """Nodes that are merely called otherwise: all that one of them had, another one has now."""
+        before, after = {node.id for node in self.before.nodes}, {node.id for node in self.now.nodes}
+        has: dict[str, set[tuple[str, str]]] = {}
+        for edge in found:
+            if edge.node in before ^ after:
+                has.setdefault(edge.node, set()).add((edge.name, edge.role))
+        result: set[str] = set()
+        for old in before - after:
+            for new in after - before:
+                if has.get(old) and has.get(old) == has.get(new):
+                    result |= {old, new}
+        return result
+
+    def unsure(self, edge: Edge) -> bool:
+        """Whether what is new or gone may be what the other side has under a name that is not known."""
+        other = self.now if edge.mark == "removed" else self.before
+        lines = {(one.function, one.variable) for one in edge.endpoints}
+        return any(
+            one.role == edge.role and not one.topic and one.node == edge.node and (one.function, one.variable) in lines
+            for one in other.endpoints
+        )
+
+    # Callbacks
+
+    def callbacks(self) -> Iterator[Effect]:
+        publishes: dict[tuple[str, str], list[Publish]] = {}
+        for publish in self.now.publishes:
+            publishes.setdefault((publish.path, publish.function), []).append(publish)
+        owners: dict[tuple[str, int], set[str]] = {}
+        running: dict[str, set[str]] = {}
+        for one in (*self.now.endpoints, *self.now.timers, *self.now.publishes):
+            if one.node:
+                owners.setdefault((one.path, one.line), set()).add(one.node)
+                running.setdefault(one.path, set()).add(one.node)
+        told: dict[tuple[str, str], set[str]] = {}
+        for change in publishing(self.workspace, self.base):
+            told.setdefault((change.path, change.function), set()).update((change.topic, *change.topics))
+        for function in self.functions:
+            place = (function.path, function.name, function.line)
+            led = [one for one in self.workspace.callers.leading_to(*place) if one.trigger.kind in EVENTS]
+            if not function.known and not (led and led[0].steps == 0):
+                continue  # who calls what is new is another function too
+            sent: dict[str, dict[tuple[str, str], None]] = {}
+            own = {node for one in led for node in owners.get((one.trigger.path, one.trigger.line), ())}
+            own |= running.get(function.path, set())
+            for called in self.workspace.callers.called_from(*place):
+                for publish in publishes.get((called.path, called.name), ()):
+                    if publish.topic and (publish.node in own or not own):
+                        sent.setdefault(publish.node, {})[publish.topic, "publisher"] = None
+            for one in led:
+                at = (one.trigger.path, one.trigger.line)
+                # What is stored is sent on later; that something far away in the calls is stored is not supposed.
+                near = one.trigger.kind == "subscriber" and one.steps <= 1
+                for node in sorted(owners.get(at, ())):
+                    found = self.reach.sent_on(node, *at, near)
+                    sent.setdefault(node, {}).update(dict.fromkeys(found))
+            topics = {topic for each in sent.values() for topic, _ in each} - EVERYWHERE
+            if not topics:
+                self.silent += 1
+                continue
+            if topics <= told.get((function.path, function.name), set()):
+                continue
+            nodes = tuple(sorted(node for node, each in sent.items() if each and node))
+            yield Effect(
+                "callback", "changed" if function.known else "added", function.name, self.package_of(function.path),
+                function.path, function.line, nodes, tuple(sorted(topics)), _leads(led),
+                self.downstream(nodes, [_Out(node, tuple(each)) for node, each in sent.items()], self.reach),
+            )  # fmt: skip
+
+    @cached_property
+    def functions(self) -> list[ChangedFunction]:
+        """Functions of the packages whose code is another."""
+        found, was = self.differing, self.was
+        old, new = self.facts
+        result: list[ChangedFunction] = []
+        read = _reader(self.base), _reader(self.workspace)
+        texts = {file.id: read[0](was[id(file)]) for _, file, _ in found.changed() if file is not None}
+        texts |= {file.id: read[1](path) for path, _, file in found.changed()}
+        words = renamed_words(found.old, found.new, found.renamed, lambda file: texts.get(file.id, b""))
+        for path, before, after in found.changed():
+            facts = _facts(new, path)
+            if facts is None:
+                continue
+            old_facts = _facts(old, was[id(before)]) if before is not None else None
+            old_text = _decoded(texts[before.id]) if before is not None else ""
+            result += changed_functions(path, old_facts, old_text, facts, _decoded(texts[after.id]), words)
+        return result
+
+    def package_of(self, path: str) -> str:
+        owner = [one for one in self.workspace if not one.path or path.startswith(f"{one.path}/")]
+        return max(owner, key=lambda one: len(one.path)).name if owner else ""
+
+
+def _leads(led: Sequence[Led]) -> str:
+    """What makes a function run, in a clause."""
+    if not led:
+        return "publishes, or what it calls does"
+    one = led[0]
+    detail = f" `{one.trigger.detail}`" if one.trigger.detail else ""
+    of = {"subscriber": "messages of", "timer": "timer"}.get(one.trigger.kind, one.trigger.kind)
+    more = f", and {len(led) - 1} more" if len(led) > 1 else ""
+    if one.steps == 0:
+        return f"the callback of {of}{detail}{more}"
+    return f"called from `{one.callback.name}`, the callback of {of}{detail}{more}"
+
+
+def _reader(workspace: Workspace) -> Callable[[str], bytes]:
+    def read(path: str) -> bytes:
+        try:
+            return workspace.read(path)
+        except OSError:
+            return b""
+
+    return read
+
+
+def _facts(gathered: Gathered, path: str) -> FlowFile | None:
+    facts = gathered.facts(path).facts if path in gathered.kinds else None
+    return facts if isinstance(facts, FlowFile) else None
+
+
+def _declared(facts: FlowFile | None) -> object:
+    """What a file declares, without places."""
+    if facts is None:
+        return None
+    members = [(cls.name, cls.bases, [(m.name, m.type, m.value) for m in cls.members]) for cls in facts.classes]
+    return members, [(one.name, one.type, one.value) for one in facts.constants], facts.exports, facts.aliases
+
+
+def _decoded(data: bytes) -> str:
+    return data.decode("utf-8", "replace")
+
+
+# Parts
+
+
+def chosen(
+    impact: Impact, packages: Sequence[str] = (), topics: Sequence[str] = (), nodes: Sequence[str] = ()
+) -> Impact:
+    """The changes of some packages, what goes through some topics, what some nodes have or are reached by; all when
+    none are given. `*` stands for any text, the leading slash may be left out."""
+
+    def fits(name: str, patterns: Sequence[str]) -> bool:
+        return any(fnmatchcase(name, prefix + pattern) for pattern in patterns for prefix in ("", "/"))
+
+    called = {node.id: (node.id, node.name, node.executable, node.plugin) for node in impact.nodes}
+
+    def names(effect: Effect) -> Iterator[str]:
+        for id in (*effect.nodes, *(hop.node for hop in effect.reaches)):
+            yield from called.get(id, (id,))
+
+    effects = tuple(
+        effect
+        for effect in impact.effects
+        if (not packages or fits(effect.package, packages))
+        and (not topics or any(fits(name, topics) for name in (*effect.topics, *(h.name for h in effect.reaches))))
+        and (not nodes or any(name and fits(name, nodes) for name in names(effect)))
+    )
+    return msgspec.structs.replace(impact, effects=effects)

@@ -1,0 +1,523 @@
+"""Hits of rules made into findings: merged over targets, fingerprinted, selected, suppressed, compared with a base."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from functools import lru_cache
+from hashlib import blake2b
+from typing import TYPE_CHECKING, NamedTuple
+
+from ...edges.console import UserError, json_text
+from ...edges.documents import load_json
+from ..facts.place import Allow
+from ..rules.rule import SEVERITIES, Cure, Finding, Hit, Rule
+
+if TYPE_CHECKING:
+    from ..config import PathSetting
+
+BASELINE_NAME = ".rosimpact-baseline.json"
+_MOST_OF_ONE = 1_000_000
+EVERYTHING = ("all", "*")
+
+_RANK = {name: rank for rank, name in enumerate(SEVERITIES)}
+_TOKEN = re.compile(r"`[^`]*`|[,;:](?=\s|$)|[^\s,;:`]+(?:[,;:]+[^\s,;:`]+)*|\S")
+_LONGEST_PART = 60
+
+
+def rank(severity: str) -> int:
+    """A severity as a number, the graver the greater; 0 for one that is not known."""
+    return _RANK.get(severity, 0)
+
+
+class Suppression(NamedTuple):
+    """What allow comments did: findings left, findings silenced, and (path, line, rule) of comments without effect."""
+
+    kept: list[Finding]
+    suppressed: list[Finding]
+    unused: list[tuple[str, int, str]]
+
+
+class SettingsError(UserError, ValueError):
+    """A setting that cannot be obeyed; the text names it and what to write instead."""
+
+
+def _never(fix: tuple[Cure, ...], target: str) -> bool:
+    return False
+
+
+def merge(
+    hits: Iterable[tuple[str, str, Hit]],
+    *,
+    targets: Sequence[str],
+    rules: Mapping[str, Rule],
+    line_text: Callable[[str, int], str],
+    holds: Callable[[tuple[Cure, ...], str], bool] = _never,
+) -> list[Finding]:
+    """One fact about several targets becomes one finding.
+
+    hits: (rule name, target name, hit); an empty target name stands for every target. targets: those asked for, in
+    order. rules: for the severity of hits that name none. line_text: the text of a line, empty when it cannot be read.
+
+    Hits of the same rule, path, line, subject and severity are one finding; what two hits say about one target with
+    different words stays apart, and so does what breaks on a target from what is still to come on another. The fix is
+    kept when every target asked for yields the same, or where a target yields no such hit, when `holds(fix, target)`
+    says that it is right there as well. Sorted by path, line, column, rule; fingerprinted.
+    """
+    order = {name: index for index, name in enumerate(targets)}
+    groups: dict[tuple, list[dict[str, Hit]]] = {}
+    for rule_name, target, hit in hits:
+        rule = rules.get(rule_name)
+        severity = hit.severity or (rule.severity if rule else "warning")
+        ahead = hit.evidence is not None and hit.evidence.ahead
+        key = (rule_name, severity, getattr(hit.at, "path", ""), getattr(hit.at, "line", 0), hit.subject, ahead)
+        names = (target,) if target else tuple(targets) or ("",)
+        _place(groups.setdefault(key, []), names, hit)
+    findings = [
+        _finding(rule, severity, path, line, subject, by_target, order, holds)
+        for (rule, severity, path, line, subject, _), facts in groups.items()
+        for by_target in facts
+    ]
+    return fingerprinted(in_order(findings), line_text)
+
+
+def in_order(findings: Iterable[Finding]) -> list[Finding]:
+    """Findings by path, line, column, rule and subject, the graver first: the order of every report."""
+    return sorted(findings, key=_sort_key)
+
+
+def _place(facts: list[dict[str, Hit]], names: tuple[str, ...], hit: Hit) -> None:
+    """Puts a hit into the first fact of its group that says nothing else about these targets."""
+    for by_target in facts:
+        if all(name not in by_target or by_target[name].message == hit.message for name in names):
+            for name in names:
+                by_target.setdefault(name, hit)
+            return
+    facts.append(dict.fromkeys(names, hit))
+
+
+def _finding(
+    rule: str,
+    severity: str,
+    path: str,
+    line: int,
+    subject: str,
+    by_target: dict[str, Hit],
+    order: dict[str, int],
+    holds: Callable[[tuple[Cure, ...], str], bool],
+) -> Finding:
+    names = sorted(by_target, key=lambda name: order.get(name, len(order)))
+    hits = [by_target[name] for name in names]
+    first = hits[0]
+    right = bool(first.fix) and all(
+        by_target[name].fix == first.fix if name in by_target else holds(first.fix, name) for name in order or by_target
+    )
+    return Finding(
+        rule=rule,
+        severity=severity,
+        package=first.package,
+        path=path,
+        line=line,
+        column=getattr(first.at, "column", 0),
+        subject=subject,
+        targets=tuple(name for name in names if name),
+        message=joined([(name, hit.message) for name, hit in zip(names, hits, strict=True)]),
+        help=joined([(name, hit.help) for name, hit in zip(names, hits, strict=True)]),
+        fix=first.fix if right else (),
+        evidence=next((hit.evidence for hit in hits if hit.evidence is not None), None),
+    )
+
+
+def _sort_key(finding: Finding) -> tuple:
+    return (finding.path, finding.line, finding.column, finding.rule, finding.subject, -rank(finding.severity),
+            finding.message)  # fmt: skip
+
+
+def joined(texts: Sequence[tuple[str, str]]) -> str:
+    """One text for what is said by target, naming the targets where the words differ.
+
+    >>> joined([("jazzy", "`x.h` is gone in tf2 0.36"), ("rolling", "`x.h` is gone in tf2 0.41")])
+    '`x.h` is gone in tf2 0.36 (jazzy), 0.41 (rolling)'
+
+    Where the common part is too small to read well, the whole texts stand side by side, parted by semicolons.
+    """
+    by_text: dict[str, list[str]] = {}
+    for target, text in texts:
+        if text:
+            by_text.setdefault(text, []).append(target)
+    if len(by_text) <= 1:
+        return next(iter(by_text), "")
+    whole = "; ".join(_attributed(text, names) for text, names in by_text.items())
+    spans = [[match.span() for match in _TOKEN.finditer(text)] for text in by_text]
+    words = [[text[start:end] for start, end in span] for text, span in zip(by_text, spans, strict=True)]
+    shortest = min(map(len, words))
+    head = 0
+    while head < shortest - 1 and len({row[head] for row in words}) == 1:
+        head += 1
+    tail = 0
+    while head + tail < shortest - 1 and len({row[-1 - tail] for row in words}) == 1:
+        tail += 1
+    if head + tail == 0:
+        return whole
+    first = next(iter(by_text))
+    parts: dict[str, list[str]] = {}
+    for (text, names), span in zip(by_text.items(), spans, strict=True):
+        part = text[span[head][0] : span[len(span) - 1 - tail][1]]
+        parts.setdefault(part, []).extend(names)
+    if max(map(len, parts)) > _LONGEST_PART or len(first) - len(next(iter(parts))) < len(first) // 4:
+        return whole
+    before = first[: spans[0][head][0]]
+    after = first[spans[0][len(spans[0]) - 1 - tail][1] :]
+    return before + ", ".join(_attributed(part, names) for part, names in parts.items()) + after
+
+
+def _attributed(text: str, names: Sequence[str]) -> str:
+    """The text with the targets it holds for behind it, unless it names them itself."""
+    words = set(re.split(r"[\s`,;:()]+", text))
+    named = [name for name in names if name and name not in words and not (" " in name and name in text)]
+    return f"{text} ({', '.join(named)})" if named else text
+
+
+_LONGEST_LINE = 10_000
+
+
+def fingerprinted(findings: Iterable[Finding], line_text: Callable[[str, int], str]) -> list[Finding]:
+    """Findings with a fingerprint that stays the same when lines above them come and go.
+
+    It is a hash of rule, path, package, subject, the line's text with white space levelled, and how many findings
+    alike stand before it. Findings are expected in file order.
+    """
+    seen: Counter[str] = Counter()
+    result = []
+    place, text = ("", 0), ""
+    for finding in findings:
+        if (finding.path, finding.line) != place:
+            place = finding.path, finding.line
+            text = " ".join(line_text(*place).split()) if finding.line else ""
+            if len(text) > _LONGEST_LINE:  # it may have as many findings
+                text = _digest(text)
+        content = "\0".join((finding.rule, finding.path, finding.package, finding.subject, text))
+        digest = _digest(f"{content}\0{seen[content]}")
+        seen[content] += 1
+        result.append(finding._replace(fingerprint=digest))
+    return result
+
+
+def _digest(text: str) -> str:
+    return blake2b(text.encode("utf-8", "surrogatepass"), digest_size=12).hexdigest()
+
+
+def marked_new(findings: Iterable[Finding], base: Iterable[Finding]) -> list[Finding]:
+    """Findings with `new` False where the base had the same fact, at least as severe and on the same targets.
+
+    Matched one to one in three passes: same fingerprint; same rule, path, package and subject (its line was edited);
+    same rule, package and subject (its file was moved).
+    """
+    result = [finding._replace(new=True) for finding in findings]
+    old = list(base)
+    free = set(range(len(old)))
+    keys: tuple[Callable[[Finding], object], ...] = (
+        lambda finding: finding.fingerprint,
+        lambda finding: (finding.rule, finding.path, finding.package, finding.subject),
+        lambda finding: (finding.rule, finding.package, finding.subject),
+    )
+    for key in keys:
+        pool: dict[object, list[int]] = defaultdict(list)
+        for index in sorted(free):
+            pool[key(old[index])].append(index)
+        for index, finding in enumerate(result):
+            candidates = pool.get(key(finding)) if finding.new else None
+            match = next((other for other in candidates or () if _covers(old[other], finding)), None)
+            if candidates and match is not None:
+                candidates.remove(match)
+                free.discard(match)
+                result[index] = finding._replace(new=False)
+    return result
+
+
+def _covers(old: Finding, finding: Finding) -> bool:
+    return rank(old.severity) >= rank(finding.severity) and set(finding.targets) <= set(old.targets)
+
+
+def chosen(
+    rules: Mapping[str, Rule], *, select: Sequence[str] = (), ignore: Sequence[str] = (), preview: bool = False
+) -> dict[str, Rule]:
+    """The rules to run. select and ignore hold names of rules or families, or `all`; the more specific wins.
+
+    Where both mean a rule as closely, it is ignored. A preview rule runs when previews are asked for or when it is
+    selected by its own name.
+    Raises SettingsError for a name that is neither a rule nor a family.
+    """
+    families = {rule.family for rule in rules.values()}
+    for name in (*select, *ignore):
+        if name not in rules and name not in families and name not in EVERYTHING:
+            raise SettingsError(_unknown_rule(name, [*rules, *sorted(families)]))
+    return {
+        name: rule
+        for name, rule in rules.items()
+        if _specific(select or EVERYTHING, name, rule.family) > _specific(ignore, name, rule.family)
+        and (preview or not rule.preview or name in select)
+    }
+
+
+def _specific(names: Collection[str], rule: str, family: str) -> int:
+    """How closely a list of names means a rule: 3 by name, 2 by family, 1 with everything, 0 not at all."""
+    return 3 if rule in names else 2 if family in names else 1 if any(name in names for name in EVERYTHING) else 0
+
+
+def _unknown_rule(name: str, known: Sequence[str]) -> str:
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, known, n=1)
+    hint = f"did you mean `{close[0]}`?" if close else f"families are {', '.join(known[-5:])}"
+    return f"no rule or family is called `{name}`; {hint}"
+
+
+def checked(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) -> Sequence[PathSetting]:
+    """The settings, when every name in them is a rule, a family or `all` and every severity is one.
+
+    Raises SettingsError otherwise.
+    """
+    known = [*rules, *sorted({rule.family for rule in rules.values()})]
+    for entry in settings:
+        where = f'[paths."{entry.pattern}"]'
+        for name in (*entry.select, *entry.ignore, *entry.severity):
+            if name not in known and name not in EVERYTHING:
+                raise SettingsError(f"{where}: {_unknown_rule(name, known)}")
+        for name, value in entry.severity.items():
+            if value not in (*SEVERITIES, "off"):
+                raise SettingsError(f"{where}: severity of `{name}` is `{value}`; write note, warning, error or off")
+    return settings
+
+
+def with_settings(
+    findings: Iterable[Finding], settings: Sequence[PathSetting], families: Mapping[str, str]
+) -> list[Finding]:
+    """Findings under the per-path settings that match them; of several that match, later ones go over earlier ones.
+
+    A severity of `off` silences. families: family by rule name.
+    """
+    if not settings:
+        return list(findings)
+    result = []
+    for finding in findings:
+        family = families.get(finding.rule, "")
+        severity: str | None = finding.severity
+        for entry in settings:
+            if glob_matches(entry.pattern, finding.path):
+                severity = _under(entry, finding.rule, family, severity)
+        if severity is not None:
+            result.append(finding._replace(severity=severity))
+    return result
+
+
+def _under(entry: PathSetting, rule: str, family: str, severity: str | None) -> str | None:
+    """The severity a setting gives, None when it silences."""
+    if _specific(entry.select or EVERYTHING, rule, family) <= _specific(entry.ignore, rule, family):
+        return None
+    for name in (rule, family, *EVERYTHING):
+        if name in entry.severity:
+            return None if entry.severity[name] == "off" else entry.severity[name]
+    return severity
+
+
+def glob_matches(glob: str, path: str) -> bool:
+    """Whether a path relative to the root is meant by a glob: `*` and `?` stay within a folder, `**` spans folders,
+    and a folder's name means everything below it.
+
+    All ways through the glob are followed at once, as bits of a number that say where in the path one can be, so that
+    no glob makes it slow.
+    """
+    at_sign, slashes = _signs(path)
+    everywhere = (2 << len(path)) - 1
+    inner = everywhere >> 1 & ~slashes
+    reached = 1
+    for piece in _pieces(glob):
+        if not reached:
+            return False
+        behind = -(reached & -reached) & everywhere  # the first place and all after it
+        if piece == "*":
+            # The sum carries each place to the end of its folder's name.
+            reached |= ((reached & inner) + inner) ^ inner
+        elif piece == "**":
+            reached = behind
+        elif piece == "/**":
+            reached = (reached & slashes) << 1
+            reached = -(reached & -reached) & everywhere
+        elif piece == "**/":
+            reached |= (behind & slashes) << 1
+        elif piece == "?":
+            reached = (reached & inner) << 1
+        elif len(piece) > 2:
+            of_class = _glob_class(piece[1:-1])
+            signs = of_class.sub("", path) if of_class is not None else path
+            others = sum(mask for sign, mask in at_sign.items() if sign in signs)
+            reached = (reached & (everywhere >> 1) & ~others) << 1
+        else:
+            reached = (reached & at_sign.get(piece, 0)) << 1
+    return bool(reached >> len(path) & 1 or reached & slashes)
+
+
+@lru_cache(maxsize=512)
+def _pieces(glob: str) -> tuple[str, ...]:
+    """A glob in pieces: `**/`, `/**`, `**`, `*`, `?`, classes such as `[ab]`, and single characters."""
+    found: list[str] = []
+    for piece in re.findall(
+        r"\*\*/|/?\*\*$|\*\*|\*|\?|\[!?[^\]/]+\]|.", glob.removeprefix("./").rstrip("/"), re.DOTALL
+    ):
+        is_class = len(piece) > 2 and piece[0] == "["
+        found += piece if is_class and _glob_class(piece[1:-1]) is None else [piece]
+    return tuple(found)
+
+
+@lru_cache(maxsize=64)
+def _signs(path: str) -> tuple[dict[str, int], int]:
+    """Where each character stands in a path, as bits, and where the slashes do."""
+    found: dict[str, int] = {}
+    for place, sign in enumerate(path):
+        found[sign] = found.get(sign, 0) | 1 << place
+    return found, found.get("/", 0)
+
+
+@lru_cache(maxsize=512)
+def _glob_class(content: str) -> re.Pattern[str] | None:
+    """`[ab]`, `[a-z]` or `[!a]` of a glob, for one character; None for what is no class (`[z-a]`)."""
+    negated = content.startswith("!")
+    signs = re.sub(r"[\\\[\]^&~|]", r"\\\g<0>", content[negated:])
+    signs = signs.replace("--", r"\--")
+    try:
+        return re.compile(f"[^/{signs}]" if negated else f"[{signs}]")
+    except re.error:
+        return None
+
+
+def suppressed(
+    findings: Iterable[Finding],
+    allows: Mapping[str, Sequence[Allow]],
+    *,
+    families: Mapping[str, str],
+    ran: Collection[str],
+) -> Suppression:
+    """Findings without those that an `allow` comment of their file silences.
+
+    allows: comments by path; an Allow at line 0 holds for the whole file. families: family by rule name, so that a
+    comment may name a family. ran: rules that ran, since a comment for another rule cannot be called unused.
+    """
+    kept: list[Finding] = []
+    silent: list[Finding] = []
+    used: set[tuple[str, int, str]] = set()
+    reach: dict[str, dict[int, dict[str, tuple[int, int]]]] = {}
+    for finding in findings:
+        comments = allows.get(finding.path, ())
+        hit = None
+        if comments:
+            lines = reach.get(finding.path)
+            if lines is None:
+                lines = reach[finding.path] = _reach(comments)
+            names = (finding.rule, families.get(finding.rule, ""), *EVERYTHING)
+            for line in (finding.line, 0):
+                there = lines.get(line)
+                found = [(*there[name], name) for name in names if name in there] if there else []
+                if found:
+                    _, at, name = min(found, key=lambda one: one[0])  # of one comment the first name counts
+                    hit = finding.path, at, name
+                    break
+        if hit is None:
+            kept.append(finding)
+        else:
+            used.add(hit)
+            silent.append(finding)
+    live = {*ran, *(families.get(rule, "") for rule in ran), *EVERYTHING}
+    unused = [
+        (path, allow.line, name)
+        for path, comments in allows.items()
+        for allow in comments
+        for name in allow.rules
+        if (path, allow.line, name) not in used and (name in live or name not in families)
+    ]
+    return Suppression(kept, silent, sorted(unused))
+
+
+def _reach(comments: Sequence[Allow]) -> dict[int, dict[str, tuple[int, int]]]:
+    """By the lines that comments hold for, the names that they allow: which comment is the first, and its line. A block
+    of comment lines reaches the line behind the block."""
+    after: dict[int, int] = {}
+    for line in sorted({allow.line for allow in comments if allow.own_line}, reverse=True):
+        after[line] = after.get(line + 1, line + 1)
+    lines: dict[int, dict[str, tuple[int, int]]] = defaultdict(dict)
+    for number, allow in enumerate(comments):
+        reached = [allow.line, after[allow.line]] if allow.own_line and allow.line else [allow.line]
+        for line in reached:
+            for name in allow.rules:
+                lines[line].setdefault(name, (number, allow.line))
+    return lines
+
+
+def baseline(findings: Iterable[Finding]) -> str:
+    """The text of a baseline file that knows these findings: by content, so that moved lines stay known.
+
+    Only `fingerprint` and `count` are read again; the rest is for the person who reviews the file.
+    """
+    counts: Counter[str] = Counter()
+    facts: dict[str, Finding] = {}
+    for finding in findings:
+        counts[finding.fingerprint] += 1
+        facts.setdefault(finding.fingerprint, finding)
+    entries = [
+        {
+            "rule": finding.rule,
+            "path": finding.path,
+            "subject": finding.subject,
+            "fingerprint": fingerprint,
+            "count": counts[fingerprint],
+        }
+        for fingerprint, finding in sorted(facts.items(), key=lambda item: (*_sort_key(item[1]), item[0]))
+    ]
+    return json_text({"schema": 1, "findings": entries}) + "\n"
+
+
+def known_from(text: str | bytes) -> Counter[str]:
+    """Fingerprints a baseline file knows, with their counts. Raises SettingsError when it is not a baseline file."""
+    try:
+        data = load_json(text)
+        if data["schema"] != 1:
+            raise SettingsError(f"the baseline has schema {data['schema']}; this version reads schema 1")
+        return Counter(
+            {
+                str(entry["fingerprint"]): max(0, min(int(entry.get("count", 1)), _MOST_OF_ONE))
+                for entry in data["findings"]
+            }
+        )
+    except SettingsError:
+        raise
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError) as error:
+        raise SettingsError(f"the baseline cannot be read ({error}); write it anew with --write-baseline") from None
+
+
+def without_known(findings: Iterable[Finding], known: Counter[str]) -> tuple[list[Finding], list[Finding]]:
+    """(findings a baseline does not know, findings it knows)."""
+    left = Counter(known)
+    fresh: list[Finding] = []
+    old: list[Finding] = []
+    for finding in findings:
+        if left[finding.fingerprint] > 0:
+            left[finding.fingerprint] -= 1
+            old.append(finding)
+        else:
+            fresh.append(finding)
+    return fresh, old
+
+
+def pruned(known: Counter[str], findings: Iterable[Finding]) -> tuple[str, int]:
+    """(the baseline's text without what is cured, how many entries went). Findings it does not know are not added."""
+    _, old = without_known(findings, known)
+    return baseline(old), sum(known.values()) - len(old)
+
+
+def fails(findings: Iterable[Finding], fail_on: str = "error") -> bool:
+    """Whether a new finding is at or above a severity; `never` never fails."""
+    if fail_on == "never":
+        return False
+    least = _RANK[fail_on]
+    return any(finding.new and rank(finding.severity) >= least for finding in findings)

@@ -1,0 +1,89 @@
+"""The message-flow graph of a workspace, and of its base: from a path to graphs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from ..facts.store import Store
+from ..model.flow.graph import Graph
+from ..model.flow.started import launched
+from ..model.flow.workspace import graph_of, linked
+from ..model.workspace import Workspace
+from ..tree import Tree, shown
+from .session import CheckError, open_tree
+
+
+class Graphs(NamedTuple):
+    """The graph asked for, that of the base when there is one, and what to know about both."""
+
+    now: Graph
+    before: Graph | None
+    notes: tuple[str, ...]
+
+
+def graphs(
+    path: Path, *, rev: str = "", base: Sequence[str] = (), launch: str = "",
+    arguments: Mapping[str, str] | None = None, jobs: int | None = None,
+    progress: Callable[[int, int], None] | None = None, cache: Path | None = None, follow_links: bool = False,
+) -> Graphs:  # fmt: skip
+    """The message-flow graph of the workspace at a path.
+
+    rev, base, jobs, cache, follow_links: as for check. launch: a launch file, as a path or relative to the workspace's
+    root: then only what it starts, under the names it gives; arguments: those of the launch file. Raises CheckError,
+    TreeError and BaseError with a text for the user.
+    """
+    tree = open_tree(path, rev, follow_links=follow_links)
+    with Store(cache) as store:
+        file = _launch_file(path, tree, launch) if launch else ""
+        workspace = _linked(path, tree, store, jobs, progress)
+        now = graph_of(workspace, store, os.fspath(path), rev, file, arguments)
+        strangers = _undeclared(workspace, file, arguments) if file and arguments else ()
+        if not base:
+            return Graphs(now, None, strangers)
+        from .revision_compare import base_tree
+
+        old_tree, notes = base_tree(tree, tuple(base))
+        had = not file or old_tree.exists(file)
+        old = linked(old_tree, store, jobs)
+        before = graph_of(old, store, os.fspath(path), " ".join(base), file if had else "", arguments)
+        return Graphs(now, before, (*strangers, *notes))
+
+
+def _linked(
+    path: Path, tree: Tree, store: Store, jobs: int | None, progress: Callable[[int, int], None] | None
+) -> Workspace:
+    workspace = linked(tree, store, jobs, progress)
+    if not workspace.packages:
+        raise CheckError(
+            f"{shown(os.fspath(path))}: no package was found (no package.xml outside of ignored folders); give the "
+            "folder of a workspace"
+        )
+    return workspace
+
+
+def _undeclared(workspace: Workspace, launch: str, arguments: Mapping[str, str]) -> tuple[str, ...]:
+    """A note for each argument that neither the launch file nor any that it includes declares."""
+    declared = sorted({argument.name for argument in launched(workspace, launch, arguments).arguments})
+    known = f"it declares {', '.join(f'`{name}`' for name in declared)}" if declared else "it declares none"
+    return tuple(
+        f"--set {name}: `{launch}` has no such argument; {known}" for name in arguments if name not in declared
+    )
+
+
+def _launch_file(path: Path, tree: Tree, launch: str) -> str:
+    """The launch file's path relative to the workspace's root; a bare name is looked for. Raises CheckError."""
+    for candidate in (launch, os.path.relpath(os.path.realpath(launch), os.path.realpath(path))):
+        inside = candidate.replace(os.sep, "/").removeprefix("./")
+        if not inside.startswith("..") and tree.exists(inside) and not tree.is_dir(inside):
+            return inside
+    found = [entry.path for entry in tree.entries() if entry.path == launch or entry.path.endswith(f"/{launch}")]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise CheckError(
+            f"--launch {launch}: there are {len(found)} of them ({', '.join(found[:3])}); give the whole path"
+        )
+    raise CheckError(f"--launch {launch}: no such file in the workspace; give its path")

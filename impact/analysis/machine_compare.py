@@ -1,0 +1,143 @@
+"""Two machines: what differs between them, and what of it matters to a workspace, the most harmful first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from ..config import load
+from ..model.build_order import build_order
+from ..model.view import View
+from ..model.workspace import Package
+from ..targets.capture import Difference, differences
+from ..targets.resolve import parse_target
+from .findings import rank
+from .report import Report, ReportedTarget
+from .session import Options
+from .target_compare import Item, compared, items, sides
+
+_MACHINE = ("distro", "date", "platform")
+
+
+class Use(NamedTuple):
+    """How a package of the workspace uses something. how: declared, built with, run with, or as in view.Need.
+    subjects: what of it, as written, each once and in the order of first use; empty where there is nothing to name."""
+
+    package: str
+    how: str
+    subjects: tuple[str, ...] = ()
+
+
+class Used(NamedTuple):
+    """A difference with who of the workspace uses what of it."""
+
+    difference: Difference
+    uses: tuple[Use, ...] = ()
+
+
+class Machines(NamedTuple):
+    """What differs. first, second: the targets.
+
+    machine: distro, date and platform. versions: of packages and libraries; beside a workspace those alone that it
+    uses. others: how many more there are. report: the workspace judged on both; None without one, as is all that
+    follows. harms: errors and warnings that hold on one of them alone, the gravest first; in each, the targets of the
+    findings name the machine. both: how many hold on both. known: name that the workspace goes by.
+    """
+
+    first: ReportedTarget
+    second: ReportedTarget
+    machine: tuple[Difference, ...]
+    versions: tuple[Used, ...]
+    others: int = 0
+    report: Report | None = None
+    harms: tuple[Item, ...] = ()
+    both: int = 0
+
+
+def machines(first: str, second: str, path: Path | None = None) -> Machines:
+    """What differs between two targets, in any form that `--target` takes. path: a workspace; with it, what matters to
+    that. Raises as check() does."""
+    if path is not None:
+        return _beside(path, first, second)
+    config = load(Path())
+    one, other = (parse_target(text, config) for text in (first, second))
+    found = differences(one, other)
+    return Machines(
+        ReportedTarget(one.name, one.distro, one.date, one.platform, "", one.notes),
+        ReportedTarget(other.name, other.distro, other.date, other.platform, "", other.notes),
+        tuple(d for d in found if d.kind in _MACHINE),
+        tuple(Used(d) for d in found if d.kind not in _MACHINE),
+    )
+
+
+def _beside(path: Path, first: str, second: str) -> Machines:
+    with sides(path, first, second, Options()) as (opened, one, other):
+        order = build_order(opened.views[0])
+        found = differences(opened.targets[0].target, opened.targets[1].target)
+        uses = _uses(opened.views)
+    versions = [
+        Used(each, uses[each.name])
+        for each in found
+        if each.kind not in _MACHINE and each.name in uses and each.name not in opened.workspace.packages
+    ]
+    now, then = ([f for f in side.report.findings if rank(f.severity) >= rank("warning")] for side in (one, other))
+    alone = compared(now, then)
+    report = one.report._replace(targets=(*one.report.targets, *other.report.targets))
+    harms = [*items(alone.new, order), *items(compared(then, now).new, order)]
+    machine = tuple(d for d in found if d.kind in _MACHINE)
+    return Machines(
+        one.report.targets[0],
+        other.report.targets[0],
+        machine,
+        tuple(sorted(versions, key=_harm)),
+        len(found) - len(machine) - len(versions),
+        report,
+        tuple(sorted(harms, key=lambda item: -rank(item.severity))),
+        len(alone.both),
+    )
+
+
+def _harm(used: Used) -> tuple:
+    """Sort key: what one machine lacks, then the greater jump, then what more packages use."""
+    one, other = used.difference.first, used.difference.second
+    numbers = [_significant(version) for version in (one, other)]
+    jump = next((place for place, (a, b) in enumerate(zip(*numbers, strict=False)) if a != b), len(numbers[0]))
+    return bool(one and other), jump, -len({use.package for use in used.uses}), used.difference.name
+
+
+def _significant(version: str) -> list[str]:
+    """Parts of a version without a leading zero, behind which the next part means what the first does elsewhere."""
+    parts = version.split(".")
+    return parts[1:] if parts[0] == "0" else parts
+
+
+def _uses(views: Iterable[View]) -> dict[str, tuple[Use, ...]]:
+    """Names of packages and libraries to who of the workspace uses them, and how, on any of the views."""
+    found: dict[str, dict[tuple[str, str], dict[str, None]]] = {}
+    for view in views:
+        for package in view:
+            for name, how, subject in _uses_of(view, package):
+                subjects = found.setdefault(name, {}).setdefault((package.name, how), {})
+                subjects.update({subject: None} if subject else {})
+    return {
+        name: tuple(Use(package, how, tuple(subjects)) for (package, how), subjects in by.items())
+        for name, by in found.items()
+    }
+
+
+def _uses_of(view: View, package: Package) -> Iterable[tuple[str, str, str]]:
+    """(name, how, what of it) of all that a package uses."""
+    for need in view.needs(package):
+        for provider in need.providers[:1]:
+            for name in (provider.name, *view.libraries_of(provider.name)):
+                yield name, need.how, need.subject
+    for declared in view.declared(package):
+        for name in (declared, *view.libraries_of(declared)):
+            yield name, "declared", ""
+    if package.build_type != "ament_python":
+        yield "cmake", "built with", ""
+        if package.digest.includes:
+            yield "gcc", "built with", ""
+    if package.digest.imports:
+        yield "python3", "run with", ""

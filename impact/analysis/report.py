@@ -1,0 +1,199 @@
+"""Report: everything a run has to say, ready for any reporter. Every reporter module has `render(report) -> str`."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+from ...edges.console import counted
+from ..rules.rule import Finding, Rule
+
+if TYPE_CHECKING:
+    from .downstream import Impact
+
+CONTEXT = 1
+_KEPT_FILES = 32
+
+
+class ReportedTarget(NamedTuple):
+    """A target as reported. reason: why it was chosen (`--target`, `rosimpact.toml`, `named by ci.yml`).
+    notes: what was adjusted, such as a date moved to the distro's first release."""
+
+    name: str
+    distro: str
+    date: str
+    platform: str
+    reason: str = ""
+    notes: tuple[str, ...] = ()
+
+
+class ReportedPackage(NamedTuple):
+    """A package of the workspace and its folder relative to the root."""
+
+    name: str
+    path: str
+
+
+class Coverage(NamedTuple):
+    """What was analysed: packages, files that concern us, files parsed without trouble, and what stayed open."""
+
+    packages: int = 0
+    files: int = 0
+    parsed: int = 0
+    unresolved: Mapping[str, int] = {}
+
+
+def _no_excerpt(path: str, line: int) -> list[str]:
+    return []
+
+
+class Report(NamedTuple):
+    """One run. Findings come sorted by path and line.
+
+    version: of the tool. data: ISO day of the shipped data. suppressed: silenced by allow comments. known: in the
+    baseline. rules: those that could speak, for help texts. excerpt(path, line): the lines `line - CONTEXT` (or 1)
+    to `line + CONTEXT`, empty when unreadable. root: what to call the workspace. base: the revision compared with,
+    empty without one. failure: why the run failed, empty when it did not. impact: what the changes since
+    the base reach in the message flow, None without a base. seconds: wall time.
+    """
+
+    version: str
+    data: str
+    targets: tuple[ReportedTarget, ...]
+    findings: tuple[Finding, ...]
+    coverage: Coverage
+    packages: tuple[ReportedPackage, ...] = ()
+    suppressed: tuple[Finding, ...] = ()
+    known: tuple[Finding, ...] = ()
+    rules: tuple[Rule, ...] = ()
+    seconds: float = 0.0
+    excerpt: Callable[[str, int], list[str]] = _no_excerpt
+    root: str = "."
+    base: str = ""
+    failure: str = ""
+    impact: Impact | None = None
+
+
+class Sources:
+    """Lines of source files for excerpts and fingerprints. Keeps the last few files it was asked for."""
+
+    def __init__(self, read: Callable[[str], bytes | None]):
+        """read: bytes of a path relative to the root, None when it cannot be read; an OSError counts as that."""
+        self._read = read
+        self._files: dict[str, list[str]] = {}
+
+    def lines(self, path: str) -> list[str]:
+        """Lines without their endings, empty when the file cannot be read. They end at LF or CRLF."""
+        lines = self._files.pop(path, None)
+        if lines is None:
+            try:
+                data = self._read(path) if path else None
+            except OSError:
+                data = None
+            lines = [] if data is None else _split(data)
+            while len(self._files) >= _KEPT_FILES:
+                del self._files[next(iter(self._files))]
+        self._files[path] = lines
+        return lines
+
+    def line(self, path: str, number: int) -> str:
+        """One line counted from 1, empty when there is none."""
+        lines = self.lines(path)
+        return lines[number - 1] if 0 < number <= len(lines) else ""
+
+    def excerpt(self, path: str, number: int) -> list[str]:
+        """The line and CONTEXT lines around it, empty when there is no such line."""
+        lines = self.lines(path)
+        return lines[max(0, number - 1 - CONTEXT) : number + CONTEXT] if 0 < number <= len(lines) else []
+
+
+def _split(data: bytes) -> list[str]:
+    text = data.removeprefix(b"\xef\xbb\xbf").decode("utf-8", "replace")
+    lines = [line.removesuffix("\r") for line in text.split("\n")]
+    if not lines[-1]:
+        lines.pop()
+    return lines
+
+
+class Shown(NamedTuple):
+    """A source line made fit for showing, with the caret under the finding. start: character offset, width: in
+    characters, 0 when no caret can be told."""
+
+    text: str
+    start: int
+    width: int
+
+
+def pointed(line: str, column: int, subject: str) -> Shown:
+    """Where in a source line the finding points: the subject at its column, else the word there.
+
+    column counts characters from 1; 0 means the whole line, then the subject is looked for.
+    """
+    start = column - 1
+    if column <= 0:
+        start = line.find(subject) if subject else -1
+        return Shown(line, max(start, 0), len(subject) if start >= 0 else 0)
+    if start >= len(line):
+        return Shown(line, 0, 0)
+    if subject:
+        near = line.find(subject, start, start + len(subject) + 2)
+        if near >= 0:
+            return Shown(line, near, len(subject))
+    word = re.compile(r"[\w./:+$-]+|.").match(line, start)
+    return Shown(line, start, len(word.group()) if word else 1)
+
+
+def focus(finding: Finding, lines: list[str]) -> tuple[int, Shown | None]:
+    """(number of the first excerpt line, the finding's own line and caret), None without an excerpt."""
+    first = max(1, finding.line - CONTEXT)
+    index = finding.line - first
+    return first, pointed(lines[index], finding.column, finding.subject) if 0 <= index < len(lines) else None
+
+
+def cells(text: str) -> int:
+    """Terminal columns a text takes: wide characters count twice, combining ones not at all."""
+    if text.isascii():
+        return len(text)
+    return sum(
+        0 if unicodedata.combining(char) else 2 if unicodedata.east_asian_width(char) in "WF" else 1 for char in text
+    )
+
+
+def fresh(report: Report) -> list[Finding]:
+    """What the run is about: all findings, or those new against the base."""
+    return [finding for finding in report.findings if finding.new]
+
+
+def count_by_severity(findings: Iterable[Finding]) -> dict[str, int]:
+    """How many errors, warnings and notes, in this order, zeros included."""
+    counts = {"error": 0, "warning": 0, "note": 0}
+    for finding in findings:
+        counts[finding.severity] = counts.get(finding.severity, 0) + 1
+    return counts
+
+
+def matrix(report: Report) -> dict[str, dict[str, dict[str, int]]]:
+    """package → target → severity → count, of what is new. Every package and target is there; findings that name no
+    package stand under the empty name, findings that name no target count for all."""
+    names = [target.name for target in report.targets]
+    table: dict[str, dict[str, dict[str, int]]] = {
+        package.name: {name: {} for name in names} for package in report.packages
+    }
+    for finding in fresh(report):
+        row = table.setdefault(finding.package, {name: {} for name in names})
+        for name in finding.targets or names:
+            cell = row.setdefault(name, {})
+            cell[finding.severity] = cell.get(finding.severity, 0) + 1
+    return table
+
+
+def coverage_text(coverage: Coverage) -> str:
+    """Coverage as one clause: packages, files parsed of files, what stayed unresolved."""
+    unresolved = [counted(number, kind) for kind, number in sorted(coverage.unresolved.items()) if number]
+    files = counted(coverage.files, "file")
+    read = f"all of {files} read" if coverage.parsed == coverage.files else f"{coverage.parsed:,} of {files} read"
+    return ", ".join([counted(coverage.packages, "package"), read]) + (
+        f", unresolved: {', '.join(unresolved)}" if unresolved else ""
+    )

@@ -1,0 +1,116 @@
+"""Comparison with a base revision: what is new because of the change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...edges import files
+from ...edges.documents import DocumentError, load_yaml
+from ...edges.limits import limits
+from ..facts.extract import gather
+from ..model.flow.file_selection import code_kinds
+from ..model.view import View
+from ..model.workspace import link
+from ..tree import GitTree, Tree, TreeError, at_merge_bases, inside, shown
+from . import result_cache as memo
+
+if TYPE_CHECKING:
+    from .session import Opened
+
+_PINNED = (".repos", ".rosinstall")
+
+
+class BaseError(TreeError):
+    """The base cannot be found; the text names what was asked for and what to write."""
+
+
+def base_tree(tree: Tree, base: Sequence[str]) -> tuple[Tree, list[str]]:
+    """The tree to compare with, every repository of the workspace at its merge base with the revision asked for; and
+    what to know about it.
+
+    base: `REV` for all repositories, `PATH=REV` for one, or the path of a pinned .repos (or .rosinstall) file.
+    Raises TreeError.
+    """
+    everywhere = ""
+    revisions: dict[str, str] = {}
+    pinned: dict[str, str] = {}
+    for item in base:
+        if item.endswith(_PINNED) and "=" not in item:
+            pinned.update(read_pinned(Path(item)))
+        elif "=" in item:
+            path, _, revision = item.partition("=")
+            if not revision:
+                raise BaseError(f"--base {item}: names no revision; write --base {path}=REV")
+            revisions[_repository(tree, path)] = revision
+        elif everywhere and item != everywhere:
+            raise BaseError(f"--base {item}: {everywhere} was given too; for single repositories write --base PATH=REV")
+        else:
+            everywhere = item
+    if pinned and not isinstance(tree, GitTree):
+        found = {folder: rev for folder in tree.repositories if (rev := _pin_of(folder, pinned))}
+        if not found:
+            names = ", ".join(list(pinned)[:5])
+            raise BaseError(f"--base: no repository of {tree.label} is one that the file pins ({names})")
+        revisions = {**found, **revisions}
+    joined = at_merge_bases(tree, revisions, everywhere)
+    left = [] if everywhere or isinstance(tree, GitTree) else [f for f in tree.repositories if f not in revisions]
+    notes = [
+        f"base: no revision was named for `{shown(folder or '.')}`, so nothing in it counts as new" for folder in left
+    ]
+    return joined, notes
+
+
+def _repository(tree: Tree, path: str) -> str:
+    """The folder of the repository that a person means by a path: as written, or by its last parts where clear."""
+    folder = inside(path.rstrip("/"))
+    known = tree.repositories
+    if folder is None or folder in known:
+        return folder if folder is not None else path
+    ending = [each for each in known if each.endswith("/" + folder)]
+    return ending[0] if len(ending) == 1 else folder
+
+
+def _pin_of(folder: str, pinned: dict[str, str]) -> str:
+    """The version that a .repos file pins for a folder; its paths are relative to wherever it was imported."""
+    matching = [name for name in pinned if folder == name or folder.endswith("/" + name)]
+    return pinned[max(matching, key=len)] if matching else ""
+
+
+def read_pinned(path: Path) -> dict[str, str]:
+    """Versions by path of a .repos file (vcstool) or a .rosinstall file (wstool); git repositories alone.
+
+    Raises BaseError when there is no such file, or it is none of these.
+    """
+    try:
+        data: Any = load_yaml(files.read_file(path, limits().settings))
+    except OSError as error:
+        raise BaseError(f"{path}: cannot be read ({error.strerror}); give a revision or a .repos file") from None
+    except DocumentError as error:
+        raise BaseError(f"{path}: is no YAML ({error}); `vcs export --exact` writes such a file") from None
+    found: dict[str, str] = {}
+    if isinstance(data, dict) and isinstance(data.get("repositories"), dict):
+        for name, entry in data["repositories"].items():
+            if isinstance(entry, dict) and entry.get("type", "git") == "git" and entry.get("version"):
+                found[str(name)] = str(entry["version"])
+    elif isinstance(data, list):
+        for item in data:
+            entry = item.get("git") if isinstance(item, dict) else None
+            if isinstance(entry, dict) and entry.get("local-name") and entry.get("version"):
+                found[str(entry["local-name"])] = str(entry["version"])
+    else:
+        raise BaseError(f"{path}: has no `repositories`; `vcs export --exact` writes such a file")
+    if not found:
+        raise BaseError(f"{path}: pins no version of a git repository; `vcs export --exact` writes such a file")
+    return {name.strip("/"): version for name, version in found.items()}
+
+
+def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
+    """The workspace as it was in another tree, seen by the same targets."""
+    second = code_kinds(tree) if opened.gathered.second is not None else None
+    gathered = gather(tree, opened.store, jobs=jobs, second=second)
+    workspace = link(tree, gathered, opened.store, opened.workspace.ros, memo.watched(opened.store), jobs)
+    views = [View(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
+    # What is installed is of no revision.
+    return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())

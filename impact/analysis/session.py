@@ -1,0 +1,231 @@
+"""A workspace opened: its tree, facts, model and targets, ready for the rules and for whatever else is asked of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from ...edges.console import UserError
+from ...edges.limits import limits
+from ..config import Config, ConfigError, load, parse
+from ..facts.extract import Gathered, gather
+from ..facts.store import Store
+from ..model.flow.file_selection import code_kinds
+from ..model.view import View
+from ..model.workspace import Workspace, link
+from ..rules.rule import Rule, all_rules
+from ..targets.providers.providers import default_providers
+from ..targets.resolve import Chosen, choose_targets
+from ..tree import LEAVES, GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
+from ..tree.ignore import Index, enclosing_repository
+from ..tree.paths import within
+from . import findings as after
+from . import result_cache as memo
+
+if TYPE_CHECKING:
+    from ..model.install_space import Installed
+    from ..targets.machine.shared_libraries import Shelf
+
+
+class CheckError(UserError):
+    """The check cannot be run; the text names what is wrong and what to do."""
+
+
+class Options(NamedTuple):
+    """How to check.
+
+    targets: as given on the command line. rev: a git revision instead of the files on disk. base: the revision to
+    compare with, PATH=REV pairs, or a pinned .repos file. select, ignore: rules or families, over those of the
+    configuration. config: another rosimpact.toml. baseline: text of a baseline file. cache: folder of the facts.
+    install: an install space whose built files are checked too. follow_links: also read what links lead to that leave
+    the workspace.
+    """
+
+    targets: tuple[str, ...] = ()
+    rev: str = ""
+    base: tuple[str, ...] = ()
+    select: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
+    preview: bool = False
+    jobs: int | None = None
+    config: Path | None = None
+    baseline: str = ""
+    cache: Path | None = None
+    install: Path | None = None
+    follow_links: bool = False
+
+
+DEFAULTS = Options()
+Progress = Callable[[int, int], None]
+
+
+class Opened(NamedTuple):
+    """A workspace ready to be asked: its files, facts, model, and how each target sees it; what is installed of it, and
+    what there is to run that with."""
+
+    tree: Tree
+    store: Store
+    gathered: Gathered
+    workspace: Workspace
+    targets: Sequence[Chosen]
+    views: Sequence[View]
+    config: Config
+    installed: Installed | None = None
+    shelves: Sequence[Shelf] = ()
+
+    def one_by_one(self) -> Iterator[Opened]:
+        """The same workspace on each of its targets alone."""
+        for chosen, view in zip(self.targets, self.views, strict=True):
+            yield self._replace(targets=[chosen], views=[view])
+
+
+@contextmanager
+def open_workspace(
+    path: str | os.PathLike[str],
+    options: Options = DEFAULTS,
+    progress: Progress | None = None,
+    chosen: Callable[[Config], Mapping[str, Rule]] | None = None,
+    tree: Tree | None = None,
+) -> Iterator[Opened]:
+    """Reads a workspace up to its views. The store is closed at the end. Raises as check() does.
+
+    chosen: gives the rules that will be asked, so that all facts they need are made in one pass. tree: what is read
+    instead of what is at the path.
+    """
+    root = Path(path)
+    if tree is None:
+        tree = open_tree(root, options.rev, follow_links=options.follow_links)
+    config = settings_of(root, tree, options.config, follow_links=options.follow_links)
+    asks_flow = chosen is not None and any(rule.flow for rule in chosen(config).values())
+    with Store(options.cache) as store:
+        second = code_kinds(tree) if asks_flow else None
+        gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second)
+        workspace = link(tree, gathered, store, None, memo.watched(store), options.jobs)
+        gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
+        targets = choose_targets(options.targets, config, workspace, tree)
+        asked = frozenset(chosen.target.distro for chosen in targets)
+        views = [View(workspace, chosen.target, default_providers(), config, asked) for chosen in targets]
+        installed, shelves = None, ()
+        if options.install is not None:
+            from ..model import install_space as built
+
+            installed = built.of_workspace(options.install, root, workspace, store, options.jobs)
+            shelves = built.shelves(installed, targets, config)
+            gathered.problems += [*installed.problems, *built.of_other_machines(installed, shelves)]
+        yield Opened(tree, store, gathered, workspace, targets, views, config, installed, shelves)
+
+
+def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
+    """Packages that another of the same name stands for; build tools refuse such a workspace."""
+    paths = {package.name: package.path for package in workspace}
+    for place in workspace.hidden:
+        other = shown(paths.get(place.name) or ".")
+        yield PathProblem(
+            place.manifest_path, f"not analysed, since another package named `{place.name}` is in {other}"
+        )
+
+
+def settings_of(root: Path, tree: Tree, file: Path | None, *, follow_links: bool = False) -> Config:
+    """The configuration: the file given, else rosimpact.toml on disk, else that of the tree. Raises ConfigError."""
+    config = load(root, file, follow_links=follow_links)
+    name = "rosimpact.toml"
+    if config.path is None and not isinstance(tree, WorkingTree) and tree.exists(name) and not tree.is_dir(name):
+        try:
+            data = tree.read(name, limits().settings)
+        except OSError as error:
+            raise ConfigError(f"{root / name}: cannot be read: {error.strerror}; correct the file") from None
+        return parse(data, root / name, trusted=follow_links)
+    return config
+
+
+def open_tree(root: Path, rev: str, *, follow_links: bool = False) -> Tree:
+    """The files on disk, or a revision of the repository when one is asked for or the path is a bare repository.
+
+    A folder below a repository's root stays the root of what is read. follow_links: whether links that leave it are
+    followed. Raises TreeError.
+    """
+    bare = (root / "objects").is_dir() and (root / "refs").is_dir() and (root / "HEAD").is_file()
+    if not follow_links and (link := _leaving_link(root)):
+        raise TreeError(
+            f"`{shown(link)}` is a link of the repository that leads out of it, and is not followed; give the folder "
+            "that it leads to, or --follow-links"
+        )
+    # A change can add all that makes a folder look like a bare repository, and show another workspace in it.
+    bare = bare and enclosing_repository(os.path.realpath(root)) is None
+    if not root.exists() or not (rev or bare):
+        return WorkingTree(root, follow_links=follow_links)
+    if not root.is_dir():
+        raise TreeError(f"`{shown(os.fspath(root))}` is a file, not a folder; give the folder of a git repository")
+    tree = GitTree(root, rev or "HEAD", follow_links=follow_links)
+    place = tree.repositories[""]
+    folder = os.path.relpath(os.path.realpath(root), os.path.realpath(place))
+    inside = folder != "." and not folder.startswith("..") and not bare and folder.split(os.sep)[0] != ".git"
+    if not inside:
+        return tree
+    return GitTree(root, rev or "HEAD", folder.replace(os.sep, "/"), follow_links=follow_links)
+
+
+def _leaving_link(root: Path) -> str:
+    """The first link on the way to a folder that a git repository tracks and that leads out of the repository; empty
+    without one. A change can put such a link where the workspace was."""
+    place = Path(os.path.abspath(root))
+    for path in (*reversed(place.parents), place):
+        if path.is_symlink():
+            parent = os.path.realpath(path.parent)
+            repository = enclosing_repository(parent)
+            if repository is not None and not within(os.path.realpath(path), repository):
+                index = Index.of(repository)
+                if index is None or index.tracks(os.path.relpath(os.path.join(parent, path.name), repository)):
+                    return os.fspath(path)
+    return ""
+
+
+def reader(tree: Tree) -> Callable[[str], bytes | None]:
+    """Bytes of a path, None when there are none to be had."""
+
+    def read(path: str) -> bytes | None:
+        try:
+            return tree.read(path)
+        except OSError:
+            return None
+
+    return read
+
+
+def nothing_analysed(path: str | os.PathLike[str], opened: Opened) -> str:
+    """Why there is no package, and what to do, for a workspace without any."""
+    where = shown(os.fspath(path))
+    ignored = [PathProblem(place.path or ".", place.ignored) for place in opened.workspace.discovered.ignored]
+    ignored += [skipped for skipped in opened.tree.skipped if "IGNORE" in skipped.message]
+    if ignored:
+        named = "; ".join(f"`{shown(each.path)}`: {each.message}" for each in ignored[:3])
+        more = f", and {len(ignored) - 3} more" if len(ignored) > 3 else ""
+        cure = "remove the markers or give another folder"
+        return f"{where}: no package is left to analyse, all are ignored ({named}{more}); {cure}"
+    linked = [problem for problem in opened.tree.problems if problem.message == LEAVES]
+    if linked:
+        named = ", ".join(f"`{shown(problem.path)}`" for problem in linked[:3])
+        more = f" and {len(linked) - 3} more" if len(linked) > 3 else ""
+        return f"{where}: no package was found; links lead out of it ({named}{more}), follow them with --follow-links"
+    unread = [problem for problem in opened.gathered.problems if problem.path.rpartition("/")[2].startswith("package")]
+    if unread:
+        named = "; ".join(f"`{shown(problem.path)}`: {problem.message}" for problem in unread[:3])
+        return f"{where}: no package could be read ({named}); make the files readable"
+    return f"{where}: no package was found (no package.xml outside of ignored folders); give the folder of a workspace"
+
+
+def chosen_rules(options: Options, config: Config) -> dict[str, Rule]:
+    """The rules to run. What is asked for on the command line goes over the configuration, list by list.
+
+    Raises SettingsError for a name that is neither a rule nor a family.
+    """
+    rules = all_rules()
+    select, ignore = options.select or config.select, options.ignore or config.ignore
+    try:
+        return after.chosen(rules, select=select, ignore=ignore, preview=options.preview)
+    except after.SettingsError as error:
+        option = "--select or --ignore" if options.select or options.ignore else f"{config.path}: [check]"
+        raise after.SettingsError(f"{option}: {error}") from None

@@ -1,0 +1,96 @@
+"""What holds on one target and not on another: one workspace, read once and judged on both."""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import NamedTuple
+
+from ..rules.rule import Finding
+from .check import Checked, judged
+from .findings import rank
+from .session import CheckError, Opened, Options, chosen_rules, open_workspace
+
+
+class Sides(NamedTuple):
+    """A workspace judged on two targets, each as a check of that target alone judges it."""
+
+    opened: Opened
+    first: Checked
+    second: Checked
+
+
+@contextmanager
+def sides(
+    path: str | os.PathLike[str],
+    first: str,
+    second: str,
+    options: Options,
+    progress: Callable[[int, int], None] | None = None,
+) -> Iterator[Sides]:
+    """A workspace on two targets, open as long as the context is. first, second: as after `--target`.
+
+    options: as for check(), without targets. Raises as check() does, and CheckError where both are the same target or
+    nothing could be analysed.
+    """
+    options = options._replace(targets=(first, second))
+    with open_workspace(path, options, progress, lambda config: chosen_rules(options, config)) as opened:
+        if len(opened.targets) < 2:
+            raise CheckError(f"{first} and {second} are the same target; give two")
+        one, other = (judged(path, options, alone) for alone in opened.one_by_one())
+        for checked in (one, other):
+            if checked.report.failure:
+                raise CheckError(checked.report.failure)
+        yield Sides(opened, one, other)
+
+
+class Compared(NamedTuple):
+    """Findings of one side. new: those that the other side lacks, or has with a lesser severity. both: the rest."""
+
+    new: list[Finding]
+    both: list[Finding]
+
+
+def compared(findings: Iterable[Finding], other: Iterable[Finding]) -> Compared:
+    """Findings of one side against those of the other, by rule, package, path, line and subject."""
+    there: dict[tuple, int] = {}
+    for finding in other:
+        there[_key(finding)] = max(there.get(_key(finding), 0), rank(finding.severity))
+    result = Compared([], [])
+    for finding in findings:
+        as_grave = there.get(_key(finding), -1) >= rank(finding.severity)
+        (result.both if as_grave else result.new).append(finding)
+    return result
+
+
+def _key(finding: Finding) -> tuple[str, str, str, int, str]:
+    return finding.rule, finding.package, finding.path, finding.line, finding.subject
+
+
+class Item(NamedTuple):
+    """One thing to do: findings of one cause, which is the same rule and subject in one package. The gravest come
+    first; there is at least one."""
+
+    package: str
+    rule: str
+    subject: str
+    severity: str
+    findings: tuple[Finding, ...]
+
+
+def items(findings: Iterable[Finding], order: Sequence[str]) -> list[Item]:
+    """Findings as things to do, package by package in an order; in a package the gravest first, then by place.
+
+    What belongs to no package comes first, and a package that the order does not name last.
+    """
+    causes: dict[tuple[str, str, str], list[Finding]] = defaultdict(list)
+    for finding in findings:
+        causes[finding.package, finding.rule, finding.subject].append(finding)
+    place = {"": -1} | {name: number for number, name in enumerate(order)}
+    made = []
+    for (package, rule, subject), group in causes.items():
+        group.sort(key=lambda finding: -rank(finding.severity))
+        made.append(Item(package, rule, subject, group[0].severity, tuple(group)))
+    return sorted(made, key=lambda item: (place.get(item.package, len(place)), item.package, -rank(item.severity)))

@@ -1,0 +1,210 @@
+"""`rosimpact why NAME`: who provides a name on a target, since when, who uses it, and whether that is safe."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from itertools import islice
+from pathlib import Path
+from typing import NamedTuple
+
+from ...edges.console import counted, visible
+from ..model.view import View
+from ..targets.distro.distro import DistroTarget
+from ..tree import JoinedTree
+from .session import Options, open_workspace
+
+# Files that make a folder a workspace or a package.
+_MARKS = ("package.xml", "rosimpact.toml", "colcon.meta")
+# How many levels of folders are looked through for a manifest (src/repository/package), and how many names.
+_LEVELS, _LOOKS_AT_MOST = 4, 5_000
+_PRODUCTS = frozenset(("build", "install", "devel", "log"))
+
+
+class Offer(NamedTuple):
+    """One way to get a name. kind: workspace, package, key. version and since may be empty where not known."""
+
+    kind: str
+    name: str
+    version: str
+    since: str
+    note: str
+
+
+class Answer(NamedTuple):
+    """What a name is on one target. as_what: header, CMake package, Python module, executable, package or key.
+    used: `path:line` of uses in the workspace. undeclared: packages that use it and do not declare it."""
+
+    target: str
+    as_what: str
+    offers: tuple[Offer, ...]
+    used: tuple[str, ...]
+    undeclared: tuple[str, ...]
+    changes: tuple[str, ...]
+
+
+def is_workspace(folder: Path) -> bool:
+    """Whether a folder that nobody named looks like a workspace or a package, told by a few folders of it alone.
+
+    The root of the file system and a home folder are none, whatever they hold, but for their own package.xml or
+    rosimpact.toml: all of it would be read.
+    """
+    if any((folder / name).is_file() for name in _MARKS):
+        return True
+    if os.path.realpath(folder) in ("/", os.path.realpath(os.path.expanduser("~"))):
+        return False
+    level = [str(folder)]
+    seen = 0
+    for _ in range(_LEVELS):
+        below: list[str] = []
+        for place in level:
+            with suppress(OSError), os.scandir(place) as scan:
+                for item in islice(scan, _LOOKS_AT_MOST):
+                    seen += 1
+                    if item.name == "package.xml":
+                        return True
+                    if item.name[0] != "." and item.name not in _PRODUCTS and item.is_dir(follow_symlinks=False):
+                        below.append(item.path)
+            if seen > _LOOKS_AT_MOST:
+                return False
+        level = below
+    return False
+
+
+def answers(
+    name: str, path: Path | None, targets: tuple[str, ...], *, follow_links: bool = False
+) -> list[Answer]:  # fmt: skip
+    """One answer a target and a meaning of the name. path: the workspace; None for answers without uses. Raises as
+    check() does."""
+    options = Options(targets=targets, follow_links=follow_links)
+    with open_workspace(path or Path(), options, tree=None if path is not None else JoinedTree({})) as opened:
+        return [answer for view in opened.views for answer in _answers(view, name)]
+
+
+def _answers(view: View, name: str) -> list[Answer]:
+    found = []
+    for what, providers in (
+        ("header", view.header(name)),
+        ("CMake package", view.cmake(name)),
+        ("Python module", view.module(name)),
+        ("executable", tuple(view.providers.executable(name))),
+    ):
+        offers = tuple(dict.fromkeys(_offer(view, p.name, p.package) for p in providers if p.name))
+        # What is not there is told only where nothing else is.
+        offers = tuple(offer for offer in offers if offer.kind != "absent") or offers[:1]
+        if not offers and any(not p.name for p in providers):
+            offers = (Offer("system", "", "", "", "comes with the compiler, CMake or Python"),)
+        if offers:
+            found.append((what, offers))
+    if view.available(name) or view.target.ever_released(name) or view.target.known_key(name):
+        kind = "package" if view.target.ever_released(name) or name in view.workspace.packages else "rosdep key"
+        found.insert(0, (kind, (_offer(view, name, ""),) if view.available(name) else ()))
+    used, undeclared = _uses(view, name)
+    changes = tuple(
+        f"{c.kind}: `{c.old}`"
+        + (f" → `{c.new}`" if c.new else "")
+        + f" ({c.state}{', since ' + c.since if c.since else ''})"
+        for c in view.target.changes()
+        if name in (c.old, c.new, c.package) or name == c.old.rsplit("::", 1)[-1]
+    )
+    lost = view.lost_header(name)
+    if lost is not None:
+        changes = (f"gone: {lost.message}" + (f"; {lost.help}" if lost.help else ""), *changes)
+    if not found:
+        found = [("name", ())]
+    return [Answer(view.target.name, what, offers, used, undeclared, changes[:8]) for what, offers in found]
+
+
+def _offer(view: View, name: str, package: str) -> Offer:
+    target = view.target
+    here = view.workspace.packages.get(name)
+    if here is not None:
+        return Offer("workspace", name, here.manifest.version, "", here.path)
+    version = target.version(name)
+    if version is not None:
+        return Offer("package", name, version, target.since(name) if isinstance(target, DistroTarget) else "", "")
+    resolution = target.resolve(name)
+    if resolution is not None:
+        libraries = [
+            f"{library} {target.library(library)}" for library in view.libraries_of(name) if target.library(library)
+        ]
+        return Offer(
+            "key",
+            name,
+            ", ".join(libraries),
+            "",
+            f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}",
+        )
+    last = target.last_distro(name)
+    return Offer(
+        "absent",
+        name,
+        "",
+        "",
+        f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there",
+    )
+
+
+def _uses(view: View, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    used, undeclared = [], []
+    for package in view:
+        closure = None
+        for need in view.needs(package):
+            if need.subject != name and all(p.name != name for p in need.providers):
+                continue
+            used.append(f"{need.at.path}:{need.at.line}")
+            closure = view.closure(package) if closure is None else closure
+            if not view.answered(need.providers, closure) and package.name not in undeclared:
+                undeclared.append(package.name)
+        for dependency in package.manifest.dependencies:
+            if dependency.name == name:
+                place = f"{package.digest.manifest_path}:{dependency.line}"
+                if place not in used:
+                    used.append(place)
+    return tuple(used), tuple(undeclared)
+
+
+def as_text(name: str, found: list[Answer], *, looked: bool = True) -> str:
+    """The answers for people. Meanings of a name that lead to the same offers are told together. looked: whether uses
+    were looked for."""
+    lines: list[str] = []
+    for target in dict.fromkeys(answer.target for answer in found):
+        here = [answer for answer in found if answer.target == target]
+        meanings: dict[tuple[Offer, ...], list[str]] = {}
+        for answer in here:
+            meanings.setdefault(answer.offers, []).append(answer.as_what)
+        for offers, whats in meanings.items():
+            lines.append(f"on {target}: `{name}` as {', '.join(whats)}")
+            lines += [_offer_line(offer) for offer in offers] or ["  nobody is known to provide it there"]
+        lines += [f"  {change}" for change in here[0].changes]
+    if not found:
+        return ""
+    if not looked:
+        lines.append(f"uses were not looked for, since this folder is no workspace: rosimpact why {visible(name)} PATH")
+        return "\n".join(lines)
+    used = found[0].used
+    lines.append(f"used at {counted(len(used), 'place')}" + (":" if used else ""))
+    lines += [f"  {place}" for place in used[:12]]
+    if len(used) > 12:
+        lines.append(f"  and {len(used) - 12} more")
+    undeclared = sorted({package for answer in found for package in answer.undeclared})
+    if undeclared:
+        lines.append("not safe: used and not declared in " + ", ".join(undeclared))
+    gone = sorted({a.target for a in found if any(_is_gone(change, name) for change in a.changes)})
+    if gone and used:
+        lines.append(f"not safe: `{name}` is gone on " + ", ".join(gone))
+    elif used and not undeclared:
+        lines.append("safe: every package that uses it declares it, or something that brings it")
+    return "\n".join(map(visible, lines))
+
+
+def _is_gone(change: str, name: str) -> bool:
+    """True for a change that takes the very name away from a target."""
+    return change.startswith("gone: ") or (f"`{name}`" in change.partition(" → ")[0] and "(removed" in change)
+
+
+def _offer_line(offer: Offer) -> str:
+    since = f"since {offer.since}" if offer.since else ""
+    return "  " + "  ".join(
+        part for part in (f"{offer.kind} {offer.name}".rstrip(), offer.version, since, offer.note) if part
+    )

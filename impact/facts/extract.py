@@ -1,0 +1,424 @@
+"""From a tree to the facts of its files: looked up by content, made in parallel where they are not known yet.
+
+What is made is stored chunk by chunk, so an interrupted run keeps all it has parsed. Facts are decoded when asked for.
+
+Workers are forked where that is safe (processes.py), loky elsewhere; a backend chosen through joblib
+(`parallel_config`) is given the chunks instead.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import closing
+from functools import cache
+from itertools import chain, islice
+from typing import Any
+
+import msgspec
+
+from ...edges import processes
+from ...edges.limits import size_text
+from ..tree import PathProblem, Tree
+from . import kinds
+from .place import Problem
+from .store import Store, fact_key, pack, unpack
+
+# Starting workers and importing the parsers in each costs about as much as parsing this many bytes here.
+ALONE_BYTES = 400_000
+_CHUNK_BYTES = 256_000
+_WAVE_PER_JOB = 8
+_LFS_POINTER = b"version https://git-lfs.github.com/spec/"
+
+# (path, content id, kinds, bytes) of a file to extract; (content id, kind, packed facts, failure) of facts extracted
+_Item = tuple[str, str, tuple[str, ...], bytes]
+_Result = tuple[str, str, bytes, str]
+# (bytes, path, kinds) of a file to read
+_Unread = tuple[int, str, tuple[str, ...]]
+
+
+class Gathered:
+    """The facts of a tree's files, decoded when asked for.
+
+    kinds: kind by path, of every file that was recognised and could be read. ids: content id by path, of the same
+    files. problems: what could not be read, the tree's own problems included. extracted: how many contents were parsed
+    in this run. second: the facts of the second look at files, None where none was asked for.
+    """
+
+    def __init__(self, tree: Tree, store: Store):
+        self.tree = tree
+        self.store = store
+        self.kinds: dict[str, str] = {}
+        self.ids: dict[str, str] = {}
+        self.problems: list[PathProblem] = []
+        self.extracted = 0
+        self.second: Gathered | None = None
+        self._packed: dict[tuple[str, str], bytes] = {}
+        self._decoded: dict[tuple[str, str], Any] = {}
+
+    def paths(self, *wanted: str) -> list[str]:
+        """Paths of these kinds, sorted; of every kind when none is given."""
+        return [path for path, kind in self.kinds.items() if not wanted or kind in wanted]
+
+    def facts(self, path: str) -> Any:
+        """The facts of a file. Raises KeyError when the path is not in `kinds`.
+
+        Files of equal content and kind share one object."""
+        key = (self.ids[path], self.kinds[path])
+        known = self._decoded.get(key)
+        if known is None:
+            if key not in self._packed:
+                self.preload((path,))
+            known = self._decoded[key] = self._decode(path, key)
+        return known
+
+    def preload(self, paths: Iterable[str]) -> None:
+        """Reads the stored facts of many files at once, which is faster than one by one. Paths without facts are left
+        out."""
+        wanted = {}
+        for path in paths:
+            kind = self.kinds.get(path)
+            if kind is not None:
+                key = (self.ids[path], kind)
+                if key not in self._decoded and key not in self._packed:
+                    wanted[_key(*key)] = key
+        for row, data in self.store.get(wanted):
+            self._packed[wanted[row]] = data
+
+    def forget(self, paths: Iterable[str]) -> None:
+        """Lets go of decoded facts; they are read again when asked for."""
+        for path in paths:
+            key = (self.ids.get(path, ""), self.kinds.get(path, ""))
+            self._decoded.pop(key, None)
+            self._packed.pop(key, None)
+
+    def _decode(self, path: str, key: tuple[str, str]) -> Any:
+        packed = self._packed.pop(key, None)
+        if packed is not None:
+            try:
+                return kinds.decode(key[1], unpack(packed))
+            except (ValueError, msgspec.MsgspecError):
+                pass
+        # The store lost it, or holds something else under its name: the file is still there.
+        data, content = self.tree.read_with_id(path, _largest(key[1]))
+        ((_, ((_, kind, made, failure),)),) = _extracted(iter([[(path, content, (key[1],), data)]]), 1)
+        if failure:
+            return kinds.FileFacts(kind, kinds.empty(kind, Problem(1, failure)))
+        self.store.put([(_key(content, kind), made)])
+        return kinds.decode(kind, unpack(made))
+
+
+def gather(
+    tree: Tree,
+    store: Store,
+    *,
+    jobs: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    kind_of: Callable[[str], str | None] = kinds.kind_of,
+    second: Callable[[str], str | None] | None = None,
+) -> Gathered:
+    """Finds or makes the facts of every file whose kind is known.
+
+    kind_of: the kind of facts wanted of a path, None for none; by its name when left out. second: the kind wanted of it
+    by the second look; a worker makes both facts of a file in one visit.
+    jobs: processes to use, all available cores when None. progress: called with (done, total) bytes of the files whose
+    facts are not known from an earlier run. KeyboardInterrupt passes through; what was parsed before it stays stored.
+    """
+    gathered = Gathered(tree, store)
+    beside = gathered.second = Gathered(tree, store) if second is not None else None
+    key = tree.memory_key()
+    entries = tree.entries()
+    if key is not None:
+        memory = store.memo("stat", key)
+        if memory is not None:
+            tree.recall(memory)
+    gathered.problems.extend(tree.problems)
+
+    unread: list[_Unread] = []
+    known: dict[bytes, tuple[int, str, str]] = {}
+    known_id = tree.known_id
+    for entry in entries:
+        path, size = entry.path, entry.size
+        kind = kind_of(path)
+        other = second(path) if second is not None else None
+        if kind is None and other is None:
+            continue
+        largest = max(_largest(each) for each in (kind, other) if each is not None)
+        if size > largest:
+            message = f"larger than {size_text(largest)} ({size_text(size)}), taken for generated and not read"
+            gathered.problems.append(PathProblem(path, message))
+            continue
+        content = known_id(path)
+        if content is None:
+            unread.append((size, path, tuple(each for each in (kind, other) if each is not None)))
+        for look, each in ((gathered, kind), (beside, other)):
+            if look is not None and each is not None:
+                look.kinds[path] = each
+                if content is not None:
+                    look.ids[path] = content
+                    known.setdefault(_key(content, each), (size, path, each))
+    present = store.find(known)
+    lacking: dict[str, tuple[int, list[str]]] = {}
+    for row, (size, path, kind) in known.items():
+        if row not in present:
+            lacking.setdefault(path, (size, []))[1].append(kind)
+    unread.extend((size, path, tuple(those)) for path, (size, those) in lacking.items())
+
+    if unread:
+        try:
+            _make(gathered, unread, jobs or processes.cores(), progress)
+        finally:
+            _remember(tree, store, key)
+            gathered.problems.sort()
+    else:
+        _remember(tree, store, key)
+    return gathered
+
+
+def _key(content: str, kind: str) -> bytes:
+    return fact_key(content, _version(kind))
+
+
+_largest = cache(kinds.largest)
+
+
+@cache
+def _version(kind: str) -> str:
+    return kinds.version_of(kind)
+
+
+def _remember(tree: Tree, store: Store, key: bytes | None) -> None:
+    memory = tree.memory() if key is not None else None
+    if key is not None and memory is not None:
+        store.remember("stat", [(key, memory)])
+
+
+def _make(
+    gathered: Gathered,
+    unread: list[_Unread],
+    jobs: int,
+    progress: Callable[[int, int], None] | None,
+) -> None:
+    """Reads the files, stores the facts of those whose content is not known, and notes what failed."""
+    # Large files first: the last chunks are then small, and no worker is left alone with a large one.
+    unread.sort(key=lambda file: (-file[0], file[1]))
+    total = sum(size for size, _, _ in unread)
+    done = 0
+    paths_of: dict[tuple[str, str], list[tuple[Gathered, str]]] = {}
+    for look in _looks(gathered):
+        for path, content in look.ids.items():
+            paths_of.setdefault((content, look.kinds[path]), []).append((look, path))
+
+    def advance(size: int) -> None:
+        nonlocal done
+        done += size
+        if progress is not None:
+            progress(min(done, total), total)
+
+    chunks = _chunks(gathered, unread, paths_of, advance)
+    with closing(_extracted(chunks, jobs)) as finished:  # an interrupt must reach the workers at once
+        for chunk, results in finished:
+            rows = []
+            for content, kind, packed, failure in results:
+                if failure:
+                    for look, path in paths_of[content, kind]:
+                        _drop(look, path, failure)
+                else:
+                    rows.append((_key(content, kind), packed))
+            gathered.store.put(rows)
+            gathered.extracted += len(rows)
+            advance(sum(len(item[3]) for item in chunk))
+
+
+def _looks(gathered: Gathered) -> list[Gathered]:
+    return [gathered] if gathered.second is None else [gathered, gathered.second]
+
+
+def _chunks(
+    gathered: Gathered,
+    unread: list[_Unread],
+    paths_of: dict[tuple[str, str], list[tuple[Gathered, str]]],
+    advance: Callable[[int], None],
+) -> Iterator[list[_Item]]:
+    """Reads files as they are needed and yields those whose content has no facts yet, about _CHUNK_BYTES at a time."""
+    looks = _looks(gathered)
+    seen: set[tuple[str, str]] = set()
+    chunk: list[_Item] = []
+    size = 0
+    for batch in _batches(unread):
+        rows: set[bytes] = set()
+        items: list[tuple[str, str, dict[str, bytes], bytes]] = []
+        for expected, path, those in batch:
+            try:
+                data, content = gathered.tree.read_with_id(path, max(map(_largest, those)))
+            except OSError as error:
+                reason = error.strerror or type(error).__name__
+                _unreadable(looks, path, f"cannot be read: {reason[:1].lower()}{reason[1:]}")
+                advance(expected)
+                continue
+            if data.startswith(_LFS_POINTER):
+                _unreadable(looks, path, "a Git LFS pointer, its content is not here (git lfs pull)")
+                advance(expected)
+                continue
+            for look in looks:
+                if path in look.kinds and look.ids.get(path) != content:
+                    look.ids[path] = content
+                    paths_of.setdefault((content, look.kinds[path]), []).append((look, path))
+            fresh = {kind: _key(content, kind) for kind in those if (content, kind) not in seen}
+            if not fresh:
+                advance(expected)
+                continue
+            seen.update((content, kind) for kind in fresh)
+            rows.update(fresh.values())
+            items.append((path, content, fresh, data))
+        present = gathered.store.find(rows)
+        for path, content, fresh, data in items:
+            lacking = tuple(kind for kind, row in fresh.items() if row not in present)
+            if not lacking:
+                advance(len(data))
+                continue
+            chunk.append((path, content, lacking, data))
+            size += len(data)
+            if size >= _CHUNK_BYTES:
+                yield chunk
+                chunk, size = [], 0
+    if chunk:
+        yield chunk
+
+
+def _batches(unread: list[_Unread]) -> Iterator[list[_Unread]]:
+    batch: list[_Unread] = []
+    size = 0
+    for file in unread:
+        batch.append(file)
+        size += file[0]
+        if size >= _CHUNK_BYTES:
+            yield batch
+            batch, size = [], 0
+    if batch:
+        yield batch
+
+
+def _unreadable(looks: list[Gathered], path: str, message: str) -> None:
+    """Leaves a path out of every look; the first names it."""
+    _drop(looks[0], path, message)
+    for look in looks[1:]:
+        look.kinds.pop(path, None)
+        look.ids.pop(path, None)
+
+
+def _drop(gathered: Gathered, path: str, message: str) -> None:
+    gathered.problems.append(PathProblem(path, message))
+    gathered.kinds.pop(path, None)
+    gathered.ids.pop(path, None)
+
+
+def _extract(chunk: list[_Item]) -> list[_Result]:
+    """What a worker does: bytes to packed facts, a file that its extractor fails on named and not fatal."""
+    results: list[_Result] = []
+    part = 0
+    for _, content, those, data in chunk:
+        for kind in those:
+            processes.begin_part(part, len(data))
+            part += 1
+            try:
+                results.append((content, kind, pack(kinds.encode(kinds.extract(kind, data))), ""))
+            except MemoryError:
+                raise
+            except Exception as error:
+                reason = f"the {kind} extractor failed: {type(error).__name__}: {error}"
+                results.append((content, kind, b"", reason[:300]))
+    return results
+
+
+def _extracted(chunks: Iterator[list[_Item]], jobs: int) -> Generator[tuple[list[_Item], list[_Result]], None, None]:
+    """Chunks with their results, from one process when there is little to do, else from several."""
+    first: list[list[_Item]] = []
+    size = 0
+    for chunk in chunks:
+        first.append(chunk)
+        size += sum(len(item[3]) for item in chunk)
+        if size > ALONE_BYTES and jobs > 1:
+            break
+    else:
+        jobs = 1
+    everything = chain(first, chunks)
+    if processes.may_fork() and not (jobs > 1 and _scheduler_chosen()):
+        yield from _in_workers(everything, jobs)
+    elif jobs > 1:
+        yield from _by_joblib(everything, jobs)
+    else:
+        for chunk in everything:
+            for item in chunk:
+                yield [item], _extract([item])
+
+
+def _scheduler_chosen() -> bool:
+    """True inside joblib.parallel_config(...): whoever calls us has decided where work runs."""
+    if "joblib" not in sys.modules:
+        return False
+    from joblib.parallel import get_active_backend
+
+    return type(get_active_backend()[0]).__name__ not in ("LokyBackend", "SequentialBackend")
+
+
+def _by_joblib(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_Item], list[_Result]]]:
+    """Chunks in whatever joblib runs. In waves: joblib would take from the iterator in a thread of its own, and reading
+    and storing belong to this one."""
+    from joblib import Parallel, delayed, effective_n_jobs
+
+    if _scheduler_chosen():
+        jobs = effective_n_jobs(-1)
+    with Parallel(n_jobs=jobs) as parallel:
+        while wave := list(islice(chunks, _WAVE_PER_JOB * jobs)):
+            results: Any = parallel(delayed(_extract)(chunk) for chunk in wave)
+            yield from zip(wave, results, strict=True)
+
+
+def _in_workers(chunks: Iterator[list[_Item]], jobs: int) -> Iterator[tuple[list[_Item], list[_Result]]]:
+    """Chunks in forked processes. A file that kills its process, or that takes too much time or memory, is found, named
+    and left out."""
+    waiting: deque[list[_Item]] = deque()
+    alone: deque[list[_Item]] = deque()
+    with processes.Workers(_extract, jobs) as workers:
+        while True:
+            while workers.free:
+                chunk = waiting.popleft() if waiting else next(chunks, None)
+                if chunk is None:
+                    break
+                workers.give(chunk)
+            while workers.free and alone and not waiting:
+                workers.give(alone.popleft(), fresh=True)
+            if not workers.busy:
+                return
+            for chunk, results in workers.finished():
+                if not isinstance(results, processes.Died):
+                    yield chunk, results
+                    continue
+                parts = [(item, kind) for item in chunk for kind in item[2]]
+                first = results.fresh and results.part == 0
+                if not 0 <= results.part < len(parts) or not (results.timed or first):
+                    suspects = parts if results.part < 0 else parts[results.part : results.part + 1]
+                    if len(parts) == 1 and results.fresh:
+                        yield chunk, [_failure(*parts[0], results.why)]
+                        continue
+                    alone.extend([(*item[:2], (kind,), item[3])] for item, kind in suspects)
+                else:
+                    suspects = parts[results.part : results.part + 1]
+                    item, kind = suspects[0]
+                    yield [(*item[:2], (kind,), b"")], [_failure(item, kind, results.why)]
+                rest = _without(chunk, suspects)
+                if rest:
+                    waiting.append(rest)
+
+
+def _failure(item: _Item, kind: str, why: str) -> _Result:
+    return item[1], kind, b"", f"the {kind} extractor {why} on this file"
+
+
+def _without(chunk: list[_Item], parts: list[tuple[_Item, str]]) -> list[_Item]:
+    """A chunk without some kinds of facts of its files."""
+    done = {(item[1], kind) for item, kind in parts}
+    rest = ((*item[:2], tuple(kind for kind in item[2] if (item[1], kind) not in done), item[3]) for item in chunk)
+    return [item for item in rest if item[2]]

@@ -1,0 +1,1 @@
+"""Conditions of publishing compared between revisions."""

@@ -1,0 +1,442 @@
+"""What happened to publishing between a commit and its parent: statement by statement, publisher by publisher."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Literal, NamedTuple
+
+import msgspec
+
+from ..model.flow.code import tail
+from ..model.flow.graph import GuardAt
+from . import guards
+from .guards import Ways
+from .history import State
+from .match import SAME, At, Names, OutletAt, asked, matched, matched_outlets
+from .statements import Digest, Gate, Outlet, Path, Said, Start
+
+Kind = Literal["tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed"]
+KINDS: tuple[Kind, ...] = ("tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed")
+_MOST_WAYS = 16
+"""As many ways as the join follows; where there are so many, some may be missing."""
+_UNSAID = frozenset(("unknown", "start"))
+_UNLED = frozenset(("unknown", "thread"))
+"""What leads to the statement is not known."""
+_LONGEST = 4000
+_ABOUT = re.compile(r"(?<![\w.])[A-Za-z_][\w:]*(?:\s*\()?|[<>=!]=?|&&|\|\|")
+_DENIED = re.compile(r"(?:!\s*|not )([\w.:]+(?:->[\w.]+)*(?:\([\w.,: ]*\))?)")
+
+
+class Reached(msgspec.Struct, frozen=True):
+    """A subscriber that a change reaches."""
+
+    package: str
+    node: str
+    topic: str
+    callback: str
+    path: str
+    line: int
+
+
+class Change(msgspec.Struct, frozen=True):
+    """A change of the logic of publishing.
+
+    path, line: of the publish statement (or the publisher, where its queue or topic changed) in the commit; in its
+    parent where it is gone. node: that runs it, several joined by `, `. topic: as the node's code knows it, the
+    publisher's name where that is not known. topics: its full names, before and after. old, new: what it was and is
+    published under, None where there is no statement; empty for no condition. why: what differs, in one clause.
+    reaches: subscribers at the commit. unreachable: nothing leads to the statement any more, and something did.
+    """
+
+    kind: Kind
+    package: str
+    path: str
+    line: int
+    function: str
+    node: str
+    topic: str
+    topics: tuple[str, ...]
+    type: str
+    old: str | None
+    new: str | None
+    why: str
+    reaches: tuple[Reached, ...] = ()
+    unreachable: bool = False
+
+
+class Side(NamedTuple):
+    """The packages of a revision that differ from the other one's, with their digests."""
+
+    packages: Sequence[tuple[State, Digest]]
+
+    def statements(self) -> list[At]:
+        """All publish statements."""
+        return [At(s.name, d, said, s.whole(said.path)) for s, d in self.packages for said in d.statements]
+
+    def outlets(self) -> list[OutletAt]:
+        """All publishers."""
+        found: list[OutletAt] = []
+        for state, one in self.packages:
+            contents = {file.path: file.id for file in state.files}
+            for outlet in one.outlets:
+                found.append(OutletAt(state.name, outlet, state.whole(outlet.path), contents.get(outlet.path, "")))
+        return found
+
+
+def settled(old: Side, new: Side) -> bool:
+    """Whether the statements and publishers of both sides are the same, word by word."""
+    return _stamps(old) == _stamps(new)
+
+
+def _stamps(side: Side) -> tuple[list[str], list[str]]:
+    statements, outlets = [], []
+    for at in side.statements():
+        said = at.said
+        ways = sorted(repr((way.start, [(g.kind, g.text, g.meaning) for g in way.gates])) for way in said.ways)
+        topics, kinds = sorted(at.topics), said.type
+        statements.append(repr((at.path, said.function, said.variable, topics, said.expression, kinds, ways)))
+    for at in side.outlets():
+        one = at.outlet
+        outlets.append(repr((at.path, one.function, one.variable, one.topic, one.type, one.offers)))
+    return sorted(statements), sorted(outlets)
+
+
+def changes(old: Side, new: Side, names: Names = SAME) -> Iterator[Change]:
+    """All changes, rewordings included. names: what is called otherwise."""
+    before, after = old.statements(), new.statements()
+    pairs, gone, come = matched(before, after, names)
+    outlets = matched_outlets(old.outlets(), new.outlets(), names)
+    successors = {id(one.outlet): other.outlet for one, other in outlets}
+    for one, other in pairs:
+        yield from _compared(one, other, names, successors)
+    gone = [at for at in gone if not _unclear(at, names, new)]
+    come = [at for at in come if not _unclear(at, SAME, old, names)]
+    for at in gone:
+        yield _change("gone", at, at.outlets, _shown(at.said.ways, at.said), None, _when("was published", at.said))
+    for at in come:
+        yield _change("new", at, at.outlets, None, _shown(at.said.ways, at.said), _when("is published", at.said))
+    published = {id(outlet): at for at in after for outlet in at.outlets}
+    for one, other in outlets:
+        at = published.get(id(other.outlet))
+        if at is not None:
+            yield from _outlet_changes(one, other, at)
+
+
+def _unclear(at: At, names: Names, other: Side, backwards: Names = SAME) -> bool:
+    """Whether the other side has the call where the statement stood, and only does not tell that it publishes."""
+    variable = tail(names.text(at.said.variable))
+    return any(
+        variable == tail(backwards.text(callee.rpartition(".")[0]))
+        and (backwards.path(state.whole(path)) == names.path(at.path) or function == at.said.function)
+        for state, one in other.packages
+        for path, function, callee in one.unclear
+    )
+
+
+def _change(kind: Kind, at: At, outlets: Iterable[Outlet], old: str | None, new: str | None, why: str) -> Change:
+    said = at.said
+    topics = tuple(dict.fromkeys(topic for outlet in outlets for topic in outlet.full))
+    near = ", ".join(sorted(at.topics)) or said.variable
+    return Change(
+        kind,
+        at.package,
+        at.path,
+        said.line,
+        said.function,
+        ", ".join(said.nodes),
+        near,
+        topics,
+        said.type,
+        old,
+        new,
+        why,
+    )
+
+
+# A statement
+
+
+def _compared(one: At, other: At, names: Names, successors: Mapping[int, Outlet]) -> Iterator[Change]:
+    outlets = [*other.outlets, *one.outlets]
+    heirs = {id(successors[id(outlet)]) for outlet in one.outlets if id(outlet) in successors}
+    moved = one.topics and other.topics and not one.topics & other.topics
+    if moved and not heirs & {id(outlet) for outlet in other.outlets}:
+        was, is_now = ", ".join(sorted(one.topics)), ", ".join(sorted(other.topics))
+        yield _change("changed", other, outlets, was, is_now, f"published on `{is_now}`, was `{was}`")
+    first, second = one.said, other.said
+    old_shown, new_shown = _shown(first.ways, first), _shown(second.ways, second)
+    if asked(first, names) != asked(second):
+        why = _never(second)
+        if why and not _never(first):
+            found = _change("tightened", other, outlets, old_shown, new_shown, why)
+            yield msgspec.structs.replace(found, unreachable=True)
+            return
+    if _cut_off(first) or _cut_off(second):
+        kind, why = _verdict(_own(first), _own(second), names, second.language)
+        if kind != "equivalent":
+            yield _change(kind, other, outlets, old_shown, new_shown, why)
+        return
+    kinds: list[guards.Kind] = []
+    whys: list[str] = []
+    starts: list[str] = []
+    for was, is_now in _starts_of(first, second, names):
+        old_ways = [way for way in first.ways if way.start in was]
+        new_ways = [way for way in second.ways if way.start in is_now]
+        if not old_ways or not new_ways:
+            if _said_of(old_ways or new_ways):
+                starts.append(_only(old_ways, new_ways))
+            else:
+                kinds.append("widened" if new_ways else "tightened")
+                whys.append(f"{'also' if new_ways else 'no longer'} from {_unnamed(new_ways or old_ways)}")
+            continue
+        kind, why = _verdict(old_ways, new_ways, names, second.language)
+        difference = _start_differs(old_ways[0].start, new_ways[0].start, names)
+        if difference:
+            starts.append(difference)
+        kinds.append(kind)
+        if why:
+            whys.append(why)
+    kind = _together(kinds)
+    why = "; ".join(dict.fromkeys(whys))
+    if starts:
+        clauses = [*dict.fromkeys(starts), *([why] if why else [])]
+        yield _change("trigger changed", other, outlets, old_shown, new_shown, "; ".join(clauses))
+    elif kind != "equivalent":
+        yield _change(kind, other, outlets, old_shown, new_shown, why)
+    elif asked(first, names) != asked(second):
+        yield _change("equivalent", other, outlets, old_shown, new_shown, "says the same in other words")
+
+
+def _never(said: Said) -> str:
+    """Why a statement never runs, as far as that is sure; empty where it may."""
+    speech: guards.Language = "python" if said.language == "python" else "cpp"
+    whys: list[str] = []
+    for way in said.ways:
+        why = next((f"never runs, it stands {gate.text}" for gate in way.gates if gate.kind == "never"), "")
+        if not why:
+            sides = [[gate] for gate in way.gates if gate.kind in ("if", "unless")]
+            functions = dict.fromkeys(gate.of for gate in way.gates)
+            sides += [[gate for gate in way.gates if gate.fixed and gate.of == of] for of in functions]
+            at_once = next((side for side in sides if side and _contradicts(side, speech)), None)
+            if at_once is None:
+                return ""
+            for gate in list(at_once):
+                fewer = [one for one in at_once if one is not gate]
+                at_once = fewer if fewer and _contradicts(fewer, speech) else at_once
+            texts = " and ".join(dict.fromkeys(f"`{_condition(gate, speech == 'python')}`" for gate in at_once))
+            why = f"never runs, {texts} cannot hold"
+        whys.append(why)
+    return "" if _cut_off(said) else "; ".join(dict.fromkeys(whys))
+
+
+def _contradicts(gates: Sequence[Gate], speech: guards.Language) -> bool:
+    return guards.impossible(_guards([Path(Start("unknown"), tuple(gates))])[0], speech)
+
+
+def _cut_off(said: Said) -> bool:
+    return len(said.ways) >= _MOST_WAYS
+
+
+def _own(said: Said) -> list[Path]:
+    """The one way through a statement's own function."""
+    gates = tuple(gate for gate in said.ways[0].gates if gate.of == said.function)
+    return [Path(Start("unknown"), gates)]
+
+
+def _together(kinds: Iterable[guards.Kind]) -> guards.Kind:
+    found = set(kinds) - {"equivalent"}
+    if not found:
+        return "equivalent"
+    return found.pop() if len(found) == 1 else "changed"
+
+
+def _verdict(old: Sequence[Path], new: Sequence[Path], names: Names, language: str) -> tuple[guards.Kind, str]:
+    """What happened to the guards of some ways, and the clause that says it. Names for conditions are put back into the
+    conditions first; where that is more than can be compared, what is written decides."""
+    speech: guards.Language = "python" if language == "python" else "cpp"
+    meant_old, meant_new = _guards(old, meant=True), _guards(new, meant=True)
+    written_old, written_new = _guards(old), _guards(new)
+    reading = guards.Reading(names.words, speech)
+    kind = guards.compare_ways(meant_old, meant_new, reading)
+    told = (meant_old, meant_new)
+    if (meant_old, meant_new) != (written_old, written_new) and kind != "equivalent":
+        written = guards.compare_ways(written_old, written_new, reading)
+        if written == "equivalent" and kind == "changed" and _about(meant_old, names) == _about(meant_new, SAME):
+            return "equivalent", ""  # what is asked is called otherwise, of the same things
+        if written != "equivalent":
+            told = (written_old, written_new)
+            kind = written if kind == "changed" else kind
+    return kind, guards.explain_ways(*told, reading) if kind != "equivalent" else ""
+
+
+def _guards(ways: Iterable[Path], meant: bool = False) -> Ways:
+    return tuple(
+        tuple(GuardAt(gate.kind, (meant and gate.meaning) or gate.text, "", 0, gate.of) for gate in way.gates)
+        for way in ways
+    )
+
+
+def _about(ways: Ways, names: Names) -> set[tuple[str, ...]]:
+    """What the conditions of some ways are about: variables and operators, without what is called of them."""
+    return {
+        tuple(
+            found
+            for guard in way
+            for found in _ABOUT.findall(names.text(guard.text.replace("->", ".")))
+            if not found.endswith("(")
+        )
+        for way in ways
+    }
+
+
+# What makes it run
+
+
+def _starts_of(first: Said, second: Said, names: Names) -> Iterator[tuple[frozenset[Start], frozenset[Start]]]:
+    """What makes a statement run, before and after, as far as one took the other's place; empty where nothing did."""
+    if all(way.start.kind in _UNLED for way in first.ways) != all(way.start.kind in _UNLED for way in second.ways):
+        # What leads to it is seen on one side alone: then it is not compared.
+        yield frozenset(way.start for way in first.ways), frozenset(way.start for way in second.ways)
+        return
+    old = _grouped(first, names)
+    new = _grouped(second, SAME)
+    for key in [key for key in old if key in new]:
+        yield frozenset(old.pop(key)), frozenset(new.pop(key))
+    for same in (True, False):
+        for key in list(old):
+            fitting = [other for other in new if other[0] == key[0] or not same]
+            alone = same or (len(old) == len(new) == 1)
+            if fitting and alone and len([one for one in old if one[0] == key[0] or not same]) == len(fitting):
+                other = fitting[0]
+                yield frozenset(old.pop(key)), frozenset(new.pop(other))
+    for starts in old.values():
+        yield frozenset(starts), frozenset()
+    for starts in new.values():
+        yield frozenset(), frozenset(starts)
+
+
+def _grouped(said: Said, names: Names) -> dict[tuple[str, str], set[Start]]:
+    found: dict[tuple[str, str], set[Start]] = {}
+    for way in said.ways:
+        kind = "unknown" if way.start.kind in _UNSAID else way.start.kind
+        found.setdefault((kind, _plain(names.text(way.start.detail))), set()).add(way.start)
+    return found
+
+
+def _plain(detail: str) -> str:
+    """A period or name without what spelling alone decides."""
+    text = "".join(detail.split()).replace("this->", "").replace("this.", "")
+    return text.strip("/") if "/" in text else text
+
+
+def _said_of(ways: Sequence[Path]) -> bool:
+    return ways[0].start.kind not in _UNSAID
+
+
+def _only(old: Sequence[Path], new: Sequence[Path]) -> str:
+    return f"also on {_named(new[0].start)}" if new else f"no longer on {_named(old[0].start)}"
+
+
+def _unnamed(ways: Sequence[Path]) -> str:
+    of = next((gate.of for way in ways for gate in way.gates), "")
+    return f"`{of}`" if of else "another caller"
+
+
+def _start_differs(old: Start, new: Start, names: Names) -> str:
+    if old.kind == new.kind:
+        if old.kind in _UNSAID or _plain(names.text(old.detail)) == _plain(new.detail):
+            return ""
+        if not old.detail or not new.detail:
+            return f"{_named(new)}, was without pace" if new.detail else f"{new.kind} without pace, was `{old.detail}`"
+        return f"{_named(new)}, was `{old.detail}`"
+    if _UNLED & {old.kind, new.kind}:
+        return ""
+    return f"on {_named(new)}, was on {_named(old)}"
+
+
+def _named(start: Start) -> str:
+    kind = {"start": "the start", "subscriber": "messages of", "thread": "loop"}.get(start.kind, start.kind)
+    return f"{kind} `{start.detail}`" if start.detail else kind
+
+
+# A publisher
+
+
+def _outlet_changes(one: OutletAt, other: OutletAt, at: At) -> Iterator[Change]:
+    old, new = one.outlet, other.outlet
+    both = [new, old]
+
+    def change(kind: Kind, was: str, is_now: str, why: str) -> Change:
+        found = _change(kind, at, both, was, is_now, why)
+        return msgspec.structs.replace(found, path=other.path, line=new.line, function=new.function)
+
+    # The namespace of a handle that was passed in is known by who passes it, and that may be any of several.
+    untouched = one.content == other.content and old.topic.rpartition("/")[2] == new.topic.rpartition("/")[2]
+    if old.topic and new.topic and old.topic.lstrip("/") != new.topic.lstrip("/") and not untouched:
+        yield change("changed", old.topic, new.topic, f"published on `{new.topic}`, was `{old.topic}`")
+    if old.type and new.type and old.type != new.type:
+        yield change("changed", old.type, new.type, f"type `{new.type}` was `{old.type}`")
+    before, after = dict(old.offers), dict(new.offers)
+    clauses: list[str] = []
+    for name in dict.fromkeys((*before, *after)):
+        # What the system chooses is not told either.
+        was, is_now = (
+            "" if setting == "system_default" else setting for setting in (before.get(name, ""), after.get(name, ""))
+        )
+        # A latch that is not set is no latch; any other setting that is not told is not known.
+        if was != is_now and ((was and is_now) or (name == "durability" and _of_ros1(old, new))):
+            label = "queue" if name == "depth" else name
+            clauses.append(f"{label} `{is_now or 'volatile'}` was `{was or 'volatile'}`")
+    if clauses:
+        yield change("trigger changed", _offer(old), _offer(new), "; ".join(clauses))
+
+
+def _of_ros1(*outlets: Outlet) -> bool:
+    return all("reliability" not in dict(outlet.offers) for outlet in outlets)
+
+
+def _offer(outlet: Outlet) -> str:
+    return ", ".join(f"{name} {setting}" for name, setting in outlet.offers) or outlet.written
+
+
+# For people
+
+
+def _when(verb: str, said: Said) -> str:
+    starts = sorted({_named(way.start) for way in said.ways if way.start.kind not in _UNSAID})
+    return f"{verb} on {', '.join(starts)}" if starts else verb
+
+
+def _shown(ways: Sequence[Path], said: Said) -> str:
+    """The condition that a statement runs under, as one expression; what starts it before that where it is known."""
+    python = said.language == "python"
+    by_start: dict[str, list[str]] = {}
+    for way in ways[:_MOST_WAYS]:
+        start = _named(way.start) if way.start.kind not in _UNSAID else ""
+        condition = (" and " if python else " && ").join(dict.fromkeys(_condition(gate, python) for gate in way.gates))
+        by_start.setdefault(start, []).append(condition)
+    told: list[str] = []
+    for start, conditions in by_start.items():
+        alternatives = list(dict.fromkeys(conditions))
+        text = "" if "" in alternatives else f" {'or' if python else '||'} ".join(alternatives)
+        told.append(f"{start}: {text}" if start and text else start or text)
+    text = "; ".join(one for one in dict.fromkeys(told) if one)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+
+
+def _condition(gate: Gate, python: bool) -> str:
+    text = gate.text
+    if gate.kind == "unless":
+        denied = _DENIED.fullmatch(text)
+        if denied:
+            return denied[1]
+        return f"not ({text})" if python else f"!({text})"
+    if gate.kind in ("if", "while"):
+        needs = (" or " in text) if python else ("||" in text)
+        return f"({text})" if needs else text
+    if gate.kind == "never":
+        return f"[never: {text}]"
+    if gate.kind in ("for", "do", "catch", "with", "macro", "cpp"):
+        return f"[{'#if' if gate.kind == 'cpp' else gate.kind} {text}]"
+    return text

@@ -1,0 +1,460 @@
+"""What a package says of publishing, in short: its publish statements with all that decides when they run, its
+publishers and its subscribers. Small enough to be kept for every commit of a repository's life."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import msgspec
+
+from ..facts import kinds
+from ..facts.flow import Call, FlowFile
+from ..model.flow.code import Code, Fn, tail
+from ..model.flow.endpoints import Site, Statement, shown
+from ..model.flow.graph import GuardAt, Node, Trigger, Way
+from ..model.flow.join import Join, Owner
+from ..model.flow.nodes import Built
+from ..model.flow.qos import qos_of
+from ..model.flow.values import Value
+from .history import File, State
+from .meaning import Meaning, conjuncts
+
+_LIVE = frozenset(
+    ("ros::ok()", "rclcpp::ok()", "ok()", "true", "True", "1", "rclpy.ok()", "not rospy.is_shutdown()",
+     "not rospy.core.is_shutdown()", "!ros::isShuttingDown()", "not is_shutdown()", "(1)", "(true)")
+)  # fmt: skip
+_OK = re.compile(r"(?:[\w.]|->)+(?:\.|->)ok\(\)")
+_LOOPS = frozenset(("while", "do"))
+_CALLS = re.compile(r"\w\s*[(\[]|\]\s*\(")
+_NAMES = re.compile(r"(?<![\w.>:\"'])(?:this->|self\.)?([A-Za-z_]\w*)(?![\w\"':])")
+"""Variables in a condition, without what stands behind a point or in a scope."""
+_WORDS = frozenset(("and", "or", "not", "is", "in", "true", "false", "True", "False", "None", "nullptr", "NULL"))
+
+
+class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A guard. kind, text and of as in GuardAt; meaning: the text with local variables and predicates of the package
+    put back into what they stand for, empty where that is the text. fixed: what it asks is the same wherever its
+    function asks it, since nothing there changes it."""
+
+    kind: str
+    text: str
+    of: str
+    meaning: str = ""
+    fixed: bool = False
+
+
+class Start(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What makes a statement run. kind: as in Trigger, `loop` where a loop does that the start of a program leads to,
+    `thread` for one that nothing leads to; detail: the period, topic or service, the rate of a loop."""
+
+    kind: str
+    detail: str = ""
+
+
+class Path(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """One way to a statement; gates outermost first. Loops that last as long as the node does are not among them."""
+
+    start: Start
+    gates: tuple[Gate, ...] = ()
+
+
+class Outlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A publisher. path: relative to the package. topic: as the node knows it (`~name` for a private one), empty when
+    it is not known. full: its names in a running system, for each node that has it. offers: (setting, value) of its
+    queue and quality of service as far as they are known; written: the expression of it."""
+
+    path: str
+    line: int
+    function: str
+    variable: str
+    topic: str
+    full: tuple[str, ...]
+    type: str
+    offers: tuple[tuple[str, str], ...] = ()
+    written: str = ""
+
+
+class Said(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A publish statement. path: relative to the package. variable: the publisher as written. outlets: places in
+    Digest.outlets of those that it may use. nodes: names of the nodes that run it."""
+
+    path: str
+    line: int
+    function: str
+    variable: str
+    outlets: tuple[int, ...]
+    type: str
+    expression: str
+    language: str
+    nodes: tuple[str, ...]
+    ways: tuple[Path, ...]
+
+
+class Inlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A subscriber. path: relative to the package, of the callback where that is known, as line is; topic: its full
+    name."""
+
+    topic: str
+    node: str
+    callback: str
+    path: str
+    line: int
+
+
+class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A package at one commit. unread: files that were not read, or not in full. unclear: path, function and callee of
+    calls that may publish, of which it is not known."""
+
+    statements: tuple[Said, ...] = ()
+    outlets: tuple[Outlet, ...] = ()
+    inlets: tuple[Inlet, ...] = ()
+    unread: tuple[str, ...] = ()
+    unclear: tuple[tuple[str, str, str], ...] = ()
+
+
+EMPTY = Digest()
+
+
+class Before:
+    """The code of the state that was digested last, for the next one of the same package."""
+
+    def __init__(self) -> None:
+        self.code: Code | None = None
+
+
+def digest(state: State, facts: Mapping[str, Any], before: Before | None = None) -> Digest:
+    """What a package says of publishing. facts: of each file of the state by its path: a FlowFile, CMakeFile or
+    SetupFile; those of a file that did not change are the same objects. before: of neighbouring states, to be quick."""
+    sources = {f.path: facts[f.path] for f in state.files if isinstance(facts.get(f.path), FlowFile)}
+    before = before or Before()
+    last, before.code = before.code, None
+    join = Join(sources, lambda _: state.name, (built(state, facts),), state.ros, before=last)
+    before.code = join.code
+    if not join.calls.uses:
+        return Digest(unread=_unread(join), unclear=_unclear(join))
+    return _Digester(join, state).digest()
+
+
+def _unread(join: Join) -> tuple[str, ...]:
+    return tuple(sorted(one.path for one in join.code.sources if one.facts.unread or one.facts.problems))
+
+
+def _unclear(join: Join) -> tuple[tuple[str, str, str], ...]:
+    names = {name for name, rows in join.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
+    clear = {id(statement.use.call) for statement in join.sites.statements}
+    return tuple(
+        (fn.source.path, fn.name, call.callee)
+        for fn in join.code.functions
+        for call in fn.facts.calls
+        if tail(call.callee) in names and "." in call.callee and id(call) not in clear
+    )
+
+
+class _Digester:
+    def __init__(self, join: Join, state: State):
+        self.join, self.state = join, state
+        self.running = join.running()
+        self.meaning = Meaning(join.code)
+        self._fixed: dict[tuple[str, str, str], bool] = {}
+        self._calling: dict[int, bool] = {}
+        self._changed: dict[int, frozenset[str]] = {}
+        # What a framework subscribes to by itself (a transform listener) makes nothing run.
+        self.implied = {
+            (site.use.fn.source.path, site.use.call.line)
+            for site in join.sites.endpoints
+            if site.implied and site.role == "subscriber"
+        }
+
+    def digest(self) -> Digest:
+        join = self.join
+        outlets: list[Outlet] = []
+        places: dict[int, int] = {}
+        inlets: list[Inlet] = []
+        for site in join.sites.endpoints:
+            if site.role == "publisher":
+                places[id(site)] = len(outlets)
+                outlets.append(self._outlet(site))
+            elif site.role == "subscriber":
+                inlets.extend(self._inlets(site))
+        known = {site: place for site in join.sites.endpoints if (place := places.get(id(site))) is not None}
+        said: list[Said] = []
+        for statement in join.sites.statements:
+            if statement.through:
+                continue
+            numbers: list[int] = []
+            for site in statement.sites:
+                if site not in known:  # published by name
+                    known[site] = len(outlets)
+                    outlets.append(self._outlet(site))
+                numbers.append(known[site])
+            said.append(self._said(statement, tuple(dict.fromkeys(numbers))))
+        return Digest(tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), _unread(join), _unclear(join))
+
+    def _owners(self, fn: Fn) -> list[Owner]:
+        found: list[Owner] = [one for one in self.running if id(fn) in one.functions]
+        return found or [one for one in self.running if fn.source.path in one.program.files] or [self._library(fn)]
+
+    def _library(self, fn: Fn) -> Node:
+        path = fn.source.path
+        made = self.join.built[0].libraries
+        name = next((name for name, files in made.items() if path in files), path.rpartition("/")[2])
+        return Node(f"{self.state.name}/{name}", "", self.state.name, "library")
+
+    def _outlet(self, site: Site) -> Outlet:
+        use = site.use
+        full = tuple(dict.fromkeys(self._full(site)))
+        value = site.names[0] if len({value.text for value in site.names}) == 1 else Value(None)
+        found = qos_of(self.join.calls, self.join.values, use)
+        offers: list[tuple[str, str]] = []
+        for name in found.__struct_fields__ if found is not None else ():
+            setting = getattr(found, name)
+            if name != "written" and setting not in ("", -1, None):
+                offers.append((name, str(setting)))
+        written = " ".join(found.written.split()) if found is not None else ""
+        variable = use.call.target or (site.variable.name if site.variable else "")
+        return Outlet(
+            use.fn.source.path, use.call.line, use.fn.name, variable,
+            _near(site, value), full, site.type, tuple(offers), written,
+        )  # fmt: skip
+
+    def _full(self, site: Site) -> Iterator[str]:
+        for value in site.names:
+            for owner in self._owners(site.use.fn):
+                node = owner if isinstance(owner, Node) else owner.node if owner is not None else None
+                own = _near(site, value).startswith("~") or "{" in (value.text or "")
+                if value.text is None or (own and (node is None or node.kind == "library")):
+                    continue  # the name of a node that is not known is not guessed
+                topic, _, _ = self.join.name(site, value, owner)
+                if topic:
+                    yield topic
+
+    def _inlets(self, site: Site) -> Iterator[Inlet]:
+        use = site.use
+        callback = site.callbacks[0] if site.callbacks else None
+        fn = callback or use.fn
+        line = callback.facts.line if callback is not None else use.call.line
+        for value in site.names:
+            for owner in self._owners(use.fn):
+                node = owner if isinstance(owner, Node) else owner.node if owner is not None else None
+                for topic in self._full(site._replace(names=(value,))):
+                    yield Inlet(topic, node.id if node else "", callback.name if callback else "", fn.source.path, line)
+
+    # Statements
+
+    def _said(self, statement: Statement, outlets: tuple[int, ...]) -> Said:
+        use, join = statement.use, self.join
+        fn = use.fn
+        own = join.guards(fn, use.call.guard)
+        found = [way for way in join.ways(fn) if not self._is_implied(way.trigger)]
+        found = found or [Way(Trigger("unknown", "", "", 0))]
+        ways = [self._path(way.trigger, (*way.guards, *own)) for way in found]
+        owners = [owner for owner in self._owners(fn) if owner is not None]
+        nodes = tuple(sorted({owner.id if isinstance(owner, Node) else owner.node.id for owner in owners}))
+        return Said(
+            fn.source.path, use.call.line, fn.name, join.calls.receiver_of(use), outlets, statement.type,
+            statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
+        )  # fmt: skip
+
+    def _is_implied(self, trigger: Trigger) -> bool:
+        return trigger.kind == "subscriber" and (trigger.path, trigger.line) in self.implied
+
+    def _path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
+        start = Start(trigger.kind, trigger.detail)
+        gates: list[Gate] = []
+        for guard in guards:
+            unsaid = trigger.kind in ("start", "unknown")
+            asked, lives = _without_life(guard.text) if guard.kind in _LOOPS else (guard.text, False)
+            if unsaid and guard.kind == "if" and _is_live(guard.text):
+                asked, lives = "", True  # what stands in the loop's condition itself
+            if unsaid and (lives or (guard.kind in _LOOPS and trigger.kind == "start")):
+                kind = "loop" if trigger.kind == "start" else "thread"
+                start = Start(kind, self._pace(guard) or (start.detail if start.kind == kind else ""))
+            if asked:
+                meaning = self.meaning.of(guard) if asked == guard.text else ""
+                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
+        if start.kind in ("start", "unknown"):
+            start = Start(start.kind)
+        return Path(start, tuple(gates))
+
+    def _is_fixed(self, guard: GuardAt) -> bool:
+        """Whether a guard asks for variables alone that its function, and what that calls of the code, leaves alone."""
+        asked = (guard.path, guard.of, guard.text)
+        known = self._fixed.get(asked)
+        if known is None:
+            fn = self.join.code.by_name.get((guard.path, guard.of))
+            plain = guard.kind in ("if", "unless") and not _CALLS.search(guard.text)
+            known = plain and fn is not None and all(self._stays(name, fn) for name in _NAMES.findall(guard.text))
+            self._fixed[asked] = known
+        return known
+
+    def _stays(self, name: str, fn: Fn) -> bool:
+        if name in _WORDS or name.isupper():
+            return True
+        local = name in fn.locals
+        made = [row for target in (name, f"this.{name}") for row in fn.assigned.get(target, ())]
+        parameter = any(one.name == name for one in fn.facts.parameters)
+        if len(made) > (local and not parameter) or any(row.operator != "=" for row in made):
+            return False
+        return name not in self._changes(fn) and (local or not self._calls_own(fn))
+
+    def _changes(self, fn: Fn) -> frozenset[str]:
+        """The variables of which a function changes more than by assigning to them."""
+        known = self._changed.get(id(fn))
+        if known is None:
+            written = (one.path for one in fn.facts.accesses if one.kind != "read")
+            changed = (path.removeprefix("this.").partition(".")[0] for path in written)
+            known = self._changed[id(fn)] = frozenset(changed)
+        return known
+
+    def _calls_own(self, fn: Fn) -> bool:
+        known = self._calling.get(id(fn))
+        if known is None:
+            code = self.join.code
+            known = self._calling[id(fn)] = any(code.targets(call.callee, fn) for call in fn.facts.calls)
+        return known
+
+    def _pace(self, guard: GuardAt) -> str:
+        """The rate at which a loop goes round, as it is written where it is made; empty when none is seen."""
+        fn = self.join.code.by_name.get((guard.path, guard.of))
+        if fn is None:
+            return ""
+        rows = fn.facts.guards
+        for call in fn.facts.calls:
+            if tail(call.callee) not in ("sleep", "sleep_for"):
+                continue
+            place = call.guard
+            while 0 <= place < len(rows) and (rows[place].line, rows[place].text) != (guard.line, guard.text):
+                place = rows[place].outer
+            if 0 <= place < len(rows):
+                pace = self._slept(call, fn)
+                if pace:
+                    return pace
+        return ""
+
+    def _slept(self, call: Call, fn: Fn) -> str:
+        if call.arguments:
+            return f"every {shown(call.arguments[0])}"
+        receiver = call.callee.rpartition(".")[0]
+        if receiver.endswith("()"):
+            name, line = receiver.removesuffix("()"), call.line
+            made = [one for one in fn.facts.calls if one.callee == name and one.line == line]
+            return f"{tail(name).lower()} {shown(made[0].arguments[0])}" if made and made[0].arguments else ""
+        code = self.join.code
+        variable = code.identity(receiver, fn)
+        for _, each in code.writes(variable):
+            paces = [shown(part) for part in each.value.parts if part.text not in ("this", "self", "*this")]
+            if paces and each.value.kind in ("make", "call", "list"):
+                kind = tail(each.value.text).lower() if each.value.text else "rate"
+                return f"{kind} {paces[0]}"
+        return ""
+
+
+def _near(site: Site, value: Value) -> str:
+    """A topic as the node's code knows it, before the node's own name."""
+    if value.text is None:
+        return ""
+    text, prefix = value.text, site.prefix
+    if not prefix or text[:1] in ("/", "~"):
+        return text
+    return f"~{text}" if prefix == "~" else f"{prefix}/{text}"
+
+
+def _without_life(text: str) -> tuple[str, bool]:
+    """A loop's condition without what only says that the node runs, and whether it says so."""
+    parts = conjuncts(text)
+    left = [part for part in parts if not _is_live(part)]
+    return (text, False) if len(left) == len(parts) else (f" {_AND[' and ' in text]} ".join(left), True)
+
+
+_AND = ("&&", "and")
+
+
+def _is_live(text: str) -> bool:
+    plain = text.strip()
+    return plain in _LIVE or bool(_OK.fullmatch(plain))
+
+
+# What is built
+
+
+def built(state: State, facts: Mapping[str, Any]) -> Built:
+    """What the build of a package makes, as far as its CMake files and setup.py say it without variables."""
+    executables: dict[str, tuple[str, ...]] = {}
+    libraries: dict[str, tuple[str, ...]] = {}
+    components: dict[str, tuple[str, ...]] = {}
+    links: dict[str, tuple[str, ...]] = {}
+    scripts: dict[str, str] = {}
+    paths = {file.path for file in state.files}
+    for file in state.files:
+        one = facts.get(file.path)
+        if one is None:
+            continue
+        if file.kind == "cmake":
+            folder = file.path.rpartition("/")[0]
+            for name, arguments in _commands(one, paths, folder):
+                if not arguments or "$" in arguments[0]:
+                    continue
+                target, rest = arguments[0], arguments[1:]
+                sources = tuple(path for path in (f"{folder}/{item}".lstrip("/") for item in rest) if path in paths)
+                if name in ("add_executable", "rosbuild_add_executable", "cuda_add_executable"):
+                    if sources:  # those of tests are not read
+                        executables[target] = sources
+                elif name in ("add_library", "rosbuild_add_library", "cuda_add_library"):
+                    libraries[target] = sources
+                elif name in ("target_link_libraries", "rosbuild_link_boost"):
+                    links[target] = (*links.get(target, ()), *rest)
+                elif name == "rclcpp_components_register_node":
+                    given = dict(zip(rest[::2], rest[1::2], strict=False))
+                    if "PLUGIN" in given:
+                        name, program = given["PLUGIN"].strip('"'), given.get("EXECUTABLE", "").strip('"')
+                        components[name] = (*components.get(name, ()), *((program,) if program else ()))
+        elif file.kind == "setup_py":
+            for name, module, _ in one.entry_points:
+                module, _, function = module.partition(":")
+                stem = module.strip().replace(".", "/")
+                where = next((p for p in (f"{stem}.py", f"src/{stem}.py", f"{stem}/__init__.py") if p in paths), None)
+                if where is not None:
+                    scripts[name] = f"{where}:{function.strip() or 'main'}"
+    reached = {where.partition(":")[0] for where in scripts.values()}
+    for file in state.files:
+        if file.kind == "python" and file.path not in reached and _starts(facts.get(file.path)):
+            scripts.setdefault(file.path.rpartition("/")[2].removesuffix(".py"), file.path)
+    return Built(state.name, executables, libraries, components, scripts, links)
+
+
+def _commands(facts: Any, paths: Iterable[str], folder: str) -> Iterator[tuple[str, list[str]]]:
+    """The commands of a CMake file with their arguments, variables that hold plain words put in."""
+    values: dict[str, list[str]] = {}
+    for command in facts.commands:
+        arguments: list[str] = []
+        for argument in command.arguments:
+            text = argument.text
+            if text.startswith("${") and text.endswith("}") and text.count("$") == 1:
+                arguments.extend(values.get(text[2:-1], [text]))
+            elif "${" in text:
+                for name, words in values.items():
+                    if len(words) == 1:
+                        text = text.replace(f"${{{name}}}", words[0])
+                arguments.append(text)
+            else:
+                arguments.append(text)
+        if command.name == "set" and arguments:
+            values[arguments[0]] = arguments[1:]
+        elif command.name == "project" and arguments:
+            values["PROJECT_NAME"] = arguments[:1]
+        yield command.name, arguments
+
+
+def _starts(facts: Any) -> bool:
+    """Whether a Python file is a program: one that asks for `__main__`, or that talks outside of any function."""
+    if not isinstance(facts, FlowFile):
+        return False
+    body = next((fn for fn in facts.functions if not fn.name), None)
+    return body is not None and any("__main__" in guard.text for guard in body.guards)
+
+
+def kind_of_facts(file: File) -> str:
+    """The kind of facts that are wanted of a file."""
+    return kinds.FLOW.get(file.kind, file.kind)

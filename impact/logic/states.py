@@ -1,0 +1,128 @@
+"""Two states of some packages compared, wherever their files are from; and digests as they are kept."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from pathlib import Path as FilePath
+from typing import Any
+
+import msgspec
+
+from ...edges.console import visible
+from ...edges.limits import limits_stamp
+from ..facts.store import pack, unpack
+from .changes import Change, Side, changes, settled
+from .guard_renames import propose_renames
+from .guard_solver import limited_questions
+from .guards import Language
+from .history import File, State
+from .match import Names
+from .statements import EMPTY, Before, Digest, digest
+
+_LONGEST_TEXT = 500_000
+_decoder = msgspec.msgpack.Decoder(Digest)
+
+
+@limited_questions()
+def compared(
+    old: Side, new: Side, renamed: Callable[[], Mapping[str, str]], read: Callable[[File], bytes]
+) -> list[Change]:
+    """What happened to publishing from one side to the other, by path and line, rewordings included.
+
+    renamed: gives files that are called otherwise now, as paths of the repository; asked where anything differs. read:
+    the bytes of a file of either side.
+    """
+    if settled(old, new):
+        return []
+    files = renamed()
+    found = list(changes(old, new, Names({}, files)))
+    if old.packages and new.packages and any(change.kind != "equivalent" for change in found):
+        words = renamed_words([one for one, _ in old.packages], [one for one, _ in new.packages], files, read)
+        if words:
+            found = list(changes(old, new, Names(words, files)))
+    return sorted(found, key=lambda change: (change.path, change.line, change.kind, change.why))
+
+
+def renamed_words(
+    old: Sequence[State], new: Sequence[State], files: Mapping[str, str], read: Callable[[File], bytes]
+) -> dict[str, str]:
+    """Identifiers that are called otherwise in the files that differ. files: those that are called otherwise."""
+    was = {state.whole(file.path): file for state in old for file in state.files}
+    is_now = {state.whole(file.path): file for state in new for file in state.files}
+    found: dict[str, str] = {}
+    languages: tuple[Language, ...] = ("cpp", "python")
+    for language in languages:
+        before: list[str] = []
+        after: list[str] = []
+        for path, file in sorted(was.items()):
+            other = is_now.get(files.get(path, path))
+            if file.kind == language and other is not None and other.id != file.id:
+                before.append(read(file).decode("utf-8", "replace"))
+                after.append(read(other).decode("utf-8", "replace"))
+        if before and sum(map(len, before)) + sum(map(len, after)) <= _LONGEST_TEXT:
+            found.update(propose_renames("\n".join(before), "\n".join(after), language))
+    return found
+
+
+def safe_digest(state: State, facts: Mapping[str, Any], before: Before | None = None) -> Digest:
+    """The digest of a state, an empty one of code that is nested beyond all reason: it must not end the run."""
+    try:
+        return digest(state, facts, before)
+    except RecursionError:
+        if before is not None:
+            before.code = None
+        return EMPTY
+
+
+def packed_digest(digest: Digest) -> bytes:
+    """A digest as it is kept. Names of bytes that are no UTF-8, which msgpack cannot carry, are kept as they are
+    shown."""
+    try:
+        return pack(msgspec.msgpack.encode(digest))
+    except UnicodeEncodeError:
+        return pack(msgspec.msgpack.encode(_visible_all(msgspec.to_builtins(digest))))
+
+
+def unread_digest(state: State) -> tuple[bytes, bytes]:
+    """What stands for the digest of a state that could not be made: all its files count as not read."""
+    files = tuple(file.path for file in state.files)
+    return state.key, packed_digest(msgspec.structs.replace(EMPTY, unread=files))
+
+
+def _visible_all(value: Any) -> Any:
+    if isinstance(value, str):
+        return visible(value)
+    if isinstance(value, (list, tuple)):
+        return [_visible_all(item) for item in value]
+    if isinstance(value, dict):
+        return {_visible_all(key): _visible_all(item) for key, item in value.items()}
+    return value
+
+
+def decoded(data: bytes | None) -> Digest:
+    """A digest as it was packed; an empty one where that cannot be read."""
+    if data is None:
+        return EMPTY
+    try:
+        return _decoder.decode(unpack(data))
+    except (ValueError, msgspec.MsgspecError):
+        return EMPTY
+
+
+def digest_key(key: bytes) -> bytes:
+    """Under which the digest of a state with this key is remembered."""
+    return key + stamp("facts", "model/flow")
+
+
+@cache
+def stamp(*folders: str) -> bytes:
+    """Changes whenever the code does that makes facts, joins them, or compares."""
+    root = FilePath(__file__).parent.parent
+    hashed = hashlib.sha1(limits_stamp().encode())
+    files = [path for folder in folders for path in (root / folder).glob("*.*") if path.suffix in (".py", ".toml")]
+    files += [root / "logic" / name for name in ("statements.py", "history.py", "meaning.py")]
+    for path in sorted(set(files)):
+        hashed.update(path.name.encode() + path.read_bytes())
+    return hashed.digest()[:8]

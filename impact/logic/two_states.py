@@ -1,0 +1,205 @@
+"""A workspace beside its base: the packages whose code differs, and what happened to publishing in them.
+
+It is the comparison that `logic` makes of a commit and its parent, on workspaces instead of commits.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+from ...edges import processes
+from ..facts.extract import Gathered, gather
+from ..facts.kinds import FLOW, script_kind
+from ..facts.store import Store, pack, unpack
+from ..model.package import role_of_folder
+from ..model.workspace import Package, Workspace
+from .changes import Change, Side
+from .history import File, State
+from .statements import Digest, kind_of_facts
+from .states import compared, decoded, digest_key, packed_digest, safe_digest, unread_digest
+
+_KINDS = {flow: plain for plain, flow in FLOW.items()} | {name: name for name in (*FLOW, "cmake", "setup_py")}
+"""What a file is called here, by its kind of facts, whether it was gathered for message flow or for other ends."""
+# Starting processes costs about as much as joining packages with this many files here.
+_ALONE_FILES = 150
+
+
+class Differing(NamedTuple):
+    """The packages whose code or build differs, as the base and as the workspace has them, and which files are called
+    otherwise. Paths are relative to the workspaces' roots."""
+
+    old: tuple[State, ...]
+    new: tuple[State, ...]
+    renamed: Mapping[str, str]
+
+    def changed(self) -> Iterator[tuple[str, File | None, File]]:
+        """Path, the file at the base (None where there was none) and now, of all whose content differs."""
+        was = {state.whole(file.path): file for state in self.old for file in state.files}
+        predecessors = {new: old for old, new in self.renamed.items()}
+        for state in self.new:
+            for file in state.files:
+                path = state.whole(file.path)
+                before = was.get(predecessors.get(path, path))
+                if before is None or before.id != file.id:
+                    yield path, before, file
+
+
+@lru_cache(maxsize=2)
+def differing(workspace: Workspace, base: Workspace) -> Differing:
+    """What of the code of two workspaces differs, told by the names and contents of files alone."""
+    listed = [{package.name: _listed(package, each) for package in each} for each in (base, workspace)]
+    names = [name for name in {**listed[0], **listed[1]} if listed[0].get(name) != listed[1].get(name)]
+    old, new = (
+        tuple(_state(each, each.packages[name], files[name]) for name in names if files.get(name))
+        for each, files in zip((base, workspace), listed, strict=True)
+    )
+    return Differing(old, new, _renamed(old, new))
+
+
+@lru_cache(maxsize=2)
+def publishing(workspace: Workspace, base: Workspace) -> tuple[Change, ...]:
+    """What happened to the logic of publishing since the base, by path and line; rewordings are left out."""
+    found = differing(workspace, base)
+    if not found.old and not found.new:
+        return ()
+    old = Side([*zip(found.old, _digests(base, found.old), strict=True)])
+    new = Side([*zip(found.new, _digests(workspace, found.new), strict=True)])
+    read = _Reading(workspace, base, found)
+    return tuple(c for c in compared(old, new, lambda: found.renamed, read) if c.kind != "equivalent")
+
+
+class _Reading:
+    """Bytes of files of either side."""
+
+    def __init__(self, workspace: Workspace, base: Workspace, found: Differing):
+        self.places = {
+            file.id: (each, state.whole(file.path))
+            for each, states in ((base, found.old), (workspace, found.new))
+            for state in states
+            for file in state.files
+        }
+
+    def __call__(self, file: File) -> bytes:
+        workspace, path = self.places[file.id]
+        try:
+            return workspace.read(path)
+        except OSError:
+            return b""
+
+
+def _listed(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str], ...]:
+    """Path in the package, content and kind of files that tell of the flow of messages, tests left out."""
+    main = workspace.gathered
+    sources = [main] if main.second is None else [main.second, main]
+    start = len(package.path) + 1 if package.path else 0
+    found: list[tuple[str, str, str]] = []
+    for path in package.digest.files:
+        gathered = next((each for each in sources if each.kinds.get(path) in _KINDS), None)
+        if gathered is not None and role_of_folder(path[start:]) != "test":
+            found.append((path[start:], gathered.ids.get(path, ""), _KINDS[gathered.kinds[path]]))
+    return tuple(found)
+
+
+def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, str, str]]) -> State:
+    """A package as `logic` knows it: its key is the same there for the same content."""
+    ros = 2 if package.build_type.startswith("ament") else 1
+    stamp = hashlib.sha1(f"{package.name} {ros}\n".encode())
+    files: list[File] = []
+    for path, content, kind in listed:
+        if kind == "script":
+            if path.endswith(".cfg") or not _is_python(workspace, f"{package.path}/{path}".lstrip("/")):
+                continue
+            kind = "python"
+        files.append(File(path, content, kind))
+        stamp.update(f"{path} {content} {kind}\n".encode("utf-8", "surrogateescape"))
+    return State(package.name, package.path, ros, tuple(files), stamp.digest())
+
+
+def _is_python(workspace: Workspace, path: str) -> bool:
+    try:
+        return script_kind(workspace.read(path)[:512]) == "python"
+    except OSError:
+        return False
+
+
+def _renamed(old: Sequence[State], new: Sequence[State]) -> dict[str, str]:
+    """Files that are called otherwise now: of the same content, or the only ones of a name."""
+    was = {state.whole(file.path): file for state in old for file in state.files}
+    is_now = {state.whole(file.path): file for state in new for file in state.files}
+    gone = {path: file for path, file in was.items() if path not in is_now}
+    come = {path: file for path, file in is_now.items() if path not in was}
+    found: dict[str, str] = {}
+    keys: tuple[Callable[[str, File], str], ...] = (lambda _, file: file.id, lambda path, _: path.rpartition("/")[2])
+    for key in keys:
+        before, after = _by(key, gone, set(found)), _by(key, come, set(found.values()))
+        for name, paths in before.items():
+            others = after.get(name, [])
+            if len(paths) == len(others) == 1:
+                found[paths[0]] = others[0]
+    return found
+
+
+def _by(key: Callable[[str, File], str], files: Mapping[str, File], done: set[str]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for path, file in files.items():
+        if path not in done:
+            found.setdefault(key(path, file), []).append(path)
+    return found
+
+
+# Digests
+
+
+def _digests(workspace: Workspace, states: Sequence[State]) -> list[Digest]:
+    """The digests of some packages, in their order; those that are not known are made and kept."""
+    store: Store = workspace.gathered.store
+    rows = {digest_key(state.key): state for state in states}
+    packed = {rows[row].key: pack(data) for row, data in store.memos("digest", rows).items()}
+    missing = [state for state in rows.values() if state.key not in packed]
+    if missing:
+        gathered = flow_facts(workspace, missing)
+        made = dict(_made(workspace, gathered, missing))
+        lost = {unread_digest(state) for state in missing}
+        store.remember("digest", [(digest_key(row[0]), unpack(row[1])) for row in made.items() if row not in lost])
+        packed.update(made)
+    return [decoded(packed.get(state.key)) for state in states]
+
+
+def flow_facts(workspace: Workspace, states: Sequence[State]) -> Gathered:
+    """The flow facts of some packages alone."""
+    main = workspace.gathered
+    if main.second is not None or not states:
+        return main.second or main
+    wanted = {state.whole(file.path): kind_of_facts(file) for state in states for file in state.files}
+    return gather(main.tree, main.store, kind_of=lambda path: wanted[path] if wanted.get(path) in _CODE else None)
+
+
+_CODE = frozenset(FLOW.values())
+
+
+def _made(workspace: Workspace, gathered: Gathered, states: Sequence[State]) -> Iterator[tuple[bytes, bytes]]:
+    jobs = processes.cores()
+    if jobs < 2 or sum(len(state.files) for state in states) < _ALONE_FILES or not processes.may_fork():
+        for state in states:
+            yield _one(workspace, gathered, state)
+        return
+    workspace.gathered.store.close()  # no other process may go on with a connection of this one
+    large_first = sorted(states, key=lambda state: -len(state.files))
+    for state, made in processes.forked(_one, large_first, jobs, workspace, gathered):
+        yield unread_digest(state) if isinstance(made, processes.Died) else made
+
+
+def _one(workspace: Workspace, gathered: Gathered, state: State) -> tuple[bytes, bytes]:
+    """The key of a state, and its digest, packed."""
+    whole = {file.path: state.whole(file.path) for file in state.files}
+    gathered.preload(whole.values())
+    facts = {}
+    for file in state.files:
+        path = whole[file.path]
+        source = gathered if kind_of_facts(file) in _CODE else workspace.gathered
+        facts[file.path] = source.facts(path).facts if path in source.kinds else None
+    gathered.forget(whole.values())
+    return state.key, packed_digest(safe_digest(state, facts))

@@ -1,0 +1,215 @@
+"""The CMake of one package, interpreted across files: what is found, built, linked, generated, installed, exported."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import msgspec
+
+from ...facts.condition import Condition
+
+
+class At(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A place in the workspace: path relative to its root, line, column (from 1; column 0 is the whole line)."""
+
+    path: str
+    line: int
+    column: int = 0
+
+
+class Found(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A package looked for by CMake.
+
+    how: `find_package`, `catkin` (a component of find_package(catkin)), `ament_auto` (declared dependencies found by
+    ament_auto_find_build_dependencies), `pkg_check_modules`, `find_library`, `find_path`, `find_program`.
+    version: as asked for, empty when not; components: of find_package, catkin excepted (each is its own Found).
+    conditions: everything the call stands under, outermost first. at is the argument's own place.
+    prefix: the variable or variable prefix of pkg_check_modules and find_library; its further names are in
+    optional_components. via: the command of another package that looks for it (`moveit_package`), empty when this
+    package asks itself; at is then the call of that command.
+    """
+
+    name: str
+    how: str
+    at: At
+    required: bool = False
+    quiet: bool = False
+    version: str = ""
+    exact: bool = False
+    components: tuple[tuple[str, At], ...] = ()
+    optional_components: tuple[str, ...] = ()
+    prefix: str = ""
+    conditions: tuple[Condition, ...] = ()
+    via: str = ""
+
+
+class Defined(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A preprocessor macro that CMake defines (-DNAME=value) for one target, or, where that is empty, for all."""
+
+    name: str
+    value: str
+    target: str
+    conditions: tuple[Condition, ...] = ()
+
+
+class Link(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """One item given to a target. how: `link` (target_link_libraries), `ament` (ament_target_dependencies),
+    `include` (target_include_directories), `order` (add_dependencies), `interfaces` (rosidl_target_interfaces).
+    item: as written with variables expanded; an unset X_LIBRARIES, X_INCLUDE_DIRS, X_EXPORTED_TARGETS or X_TARGETS
+    stays as `${X_LIBRARIES}` so that what it stands for can still be told, and so does any other variable that nothing
+    sets. visibility: PUBLIC, PRIVATE, INTERFACE or empty.
+    """
+
+    item: str
+    how: str
+    at: At
+    visibility: str = ""
+    conditions: tuple[Condition, ...] = ()
+
+
+class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Something CMake builds.
+
+    kind: executable, library, interface (INTERFACE library), module, test (add_gtest, ament_add_gtest, rostest ...),
+    custom (add_custom_target), generated (rosidl_generate_interfaces, generate_messages, generate_parameter_library,
+    generate_dynamic_reconfigure_options ...), imported, alias, external (ExternalProject_Add, ament_vendor), fetched
+    (FetchContent), unknown (something is given to it, but nothing that could be read makes it).
+    sources: paths relative to the workspace root when they can be told, else as written. guarded: of those, each that
+    stands under conditions besides the target's own, with these. export_name: what it is called where it is exported,
+    empty for its name. public_standard: the C++ standard that it asks of those who link it. installed_includes: folders
+    of the prefix that those search for headers, from $<INSTALL_INTERFACE:>.
+    """
+
+    name: str
+    kind: str
+    at: At
+    sources: tuple[str, ...] = ()
+    links: tuple[Link, ...] = ()
+    definitions: tuple[str, ...] = ()
+    standard: int = 0
+    output_name: str = ""
+    alias_of: str = ""
+    conditions: tuple[Condition, ...] = ()
+    guarded: tuple[tuple[str, tuple[Condition, ...]], ...] = ()
+    export_name: str = ""
+    public_standard: int = 0
+    installed_includes: tuple[str, ...] = ()
+
+
+class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """An install rule. kind: targets, files, programs, directory, python (catkin_python_setup,
+    ament_python_install_package), export. items: paths relative to the workspace root, or target names.
+    patterns: of PATTERN/REGEX/FILES_MATCHING; excluded patterns start with `!`, and regular expressions then with `~`.
+    only: with FILES_MATCHING, so that nothing but what the patterns name is installed. rename: of files. export: the
+    export set that targets are put into. namespace: of an export. includes: INCLUDES DESTINATION of targets."""
+
+    kind: str
+    items: tuple[str, ...]
+    destination: str
+    at: At
+    patterns: tuple[str, ...] = ()
+    conditions: tuple[Condition, ...] = ()
+    only: bool = False
+    rename: str = ""
+    export: str = ""
+    namespace: str = ""
+    includes: tuple[str, ...] = ()
+
+
+class Exported(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Something the package promises its dependants.
+
+    how: ament_export_dependencies, ament_export_include_directories, ament_export_libraries, ament_export_targets,
+    catkin_depends, system_depends (DEPENDS), include_dirs, libraries, cfg_extras, plugin_description, component
+    (rclcpp_components: item is the class).
+    context: for a plugin description the package of the base class, for a component the library it is in, for
+    ament_export_targets the namespace where one is given.
+    executable: the program that is made to run the component alone, empty for none.
+    """
+
+    item: str
+    how: str
+    at: At
+    conditions: tuple[Condition, ...] = ()
+    context: str = ""
+    executable: str = ""
+
+
+class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """One generator call: files relative to the workspace root, packages it depends on, the CMake target it makes.
+    how: rosidl, catkin (add_*_files plus generate_messages), reconfigure, parameters (generate_parameter_library),
+    protobuf. installed: False where what is made is for the package itself alone (SKIP_INSTALL)."""
+
+    how: str
+    target: str
+    files: tuple[str, ...]
+    dependencies: tuple[tuple[str, At], ...]
+    at: At
+    conditions: tuple[Condition, ...] = ()
+    installed: bool = True
+
+    @property
+    def offered(self) -> bool:
+        """Whether others find what is made."""
+        return self.installed and not for_tests(self.conditions)
+
+
+class Use(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
+    or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
+    for variable, context is the command it is read in; for a command of one of CMake's modules, the module that would
+    have to be included or found first (`FindPkgConfig` for `pkg_check_modules`)."""
+
+    kind: str
+    name: str
+    at: At
+    context: str = ""
+    conditions: tuple[Condition, ...] = ()
+
+
+def for_tests(conditions: Iterable[Condition]) -> bool:
+    """True for what CMake finds or makes only where tests are built."""
+    return any("TESTING" in c.text for c in conditions)
+
+
+class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What the CMake of a package says. minimum: cmake_minimum_required's version and place. standard: the highest C++
+    standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with its
+    place. standards: every one, with its place and conditions. standard_default_only: it is only set where the user or
+    a toolchain has not chosen one. standard_by_flag: by -std= flags alone, so that CMake adds what linked targets ask
+    for only where the compiler's default is lower. project_by_variable: its CMakeLists.txt calls targets after
+    ${PROJECT_NAME} rather than by the project's name. macros: what is given to the compiler with -D. message_files:
+    (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told. files: the CMake
+    files read, relative to the root."""
+
+    project: str = ""
+    minimum: tuple[str, At] | None = None
+    standard: tuple[int, At] | None = None
+    standard_default_only: bool = False
+    found: tuple[Found, ...] = ()
+    targets: tuple[BuildTarget, ...] = ()
+    installs: tuple[Install, ...] = ()
+    exports: tuple[Exported, ...] = ()
+    generated: tuple[GeneratedInterfaces, ...] = ()
+    uses: tuple[Use, ...] = ()
+    include_dirs: tuple[tuple[str, At], ...] = ()
+    links: tuple[Link, ...] = ()
+    catkin_package: At | None = None
+    ament_package: At | None = None
+    unresolved: tuple[tuple[At, str], ...] = ()
+    files: tuple[str, ...] = ()
+    standard_by_flag: bool = False
+    message_files: tuple[tuple[str, At], ...] = ()
+    project_by_variable: bool = False
+    standards: tuple[tuple[int, At, tuple[Condition, ...]], ...] = ()
+    macros: tuple[Defined, ...] = ()
+
+
+class Declared(msgspec.Struct, frozen=True, gc=False):
+    """What package.xml declares, as far as CMake reads it: see interpret()."""
+
+    build: tuple[str, ...] = ()
+    test: tuple[str, ...] = ()
+    exported: tuple[str, ...] = ()
+
+

@@ -1,0 +1,64 @@
+"""The CMake of one package interpreted without building it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ...facts.cmake import CMakeFile
+from . import ament, catkin, find, install, language, lists, paths, targets
+from .build import Build, Declared
+from .interpreter import Interpreter
+
+# Importing these registers what their commands mean.
+_FAMILIES = (language, lists, paths, find, targets, install, catkin, ament)
+
+
+
+def _no_extras(package: str) -> tuple[str, ...]:
+    return ()
+
+
+def interpret(
+    package_path: str,
+    read: Callable[[str], CMakeFile | None],
+    exists: Callable[[str], bool],
+    glob: Callable[[str, bool], list[str]],
+    *,
+    package: str = "",
+    dependencies: tuple[str, ...] = (),
+    test_dependencies: tuple[str, ...] = (),
+    exported_dependencies: tuple[str, ...] | None = None,
+    extras: Callable[[str], tuple[str, ...]] = _no_extras,
+) -> Build:
+    """Interprets the CMakeLists.txt of a package, and all that it includes, without building.
+
+    All paths are posix paths relative to the workspace root, `` being the root. read gives the facts of a CMake file,
+    None when there is none; exists tells about files (what is a folder is asked through glob); glob(pattern,
+    recursive) lists the files that match a pattern whose last part may hold wildcards, in all folders below when
+    recursive; neither is relied upon outside of the package. package: its name in package.xml. extras: the CMake files
+    that another package of the workspace gives to those that find it, see extras_of().
+
+    For ament_cmake_auto and ament_lint_auto, what package.xml declares: dependencies to build with (build and
+    buildtool), test_dependencies, and exported_dependencies (build_export, buildtool_export and exec; None counts all
+    of `dependencies` as exported).
+
+    Always returns; what could not be told or went beyond the bounds is in `unresolved`.
+    """
+    declared = Declared(
+        dependencies, test_dependencies, dependencies if exported_dependencies is None else exported_dependencies
+    )
+    return Interpreter(package_path, read, exists, glob, package, declared, extras).run()
+
+
+def extras_of(package_path: str, glob: Callable[[str, bool], list[str]]) -> tuple[str, ...]:
+    """The files from which dependants of a package get its functions and macros.
+
+    These are all CMake files in its `cmake` folder and beside its CMakeLists.txt, templates included. The caller reads
+    templates (`.cmake.in`, `.cmake.em`) as CMake.
+    """
+    base = f"{package_path}/" if package_path else ""
+    found: dict[str, None] = {}
+    for ending in (".cmake", ".cmake.in", ".cmake.em"):
+        found.update(dict.fromkeys(sorted(glob(f"{base}*{ending}", False))))
+        found.update(dict.fromkeys(sorted(glob(f"{base}cmake/*{ending}", True))))
+    return tuple(found)

@@ -1,0 +1,134 @@
+"""What all drawings show: edges between nodes and names, and how they differ from the base."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Literal, NamedTuple
+
+from msgspec import structs
+
+from .graph import Endpoint, Graph, GuardAt, Publish, Qos
+from .select import kind_of
+
+Mark = Literal["", "added", "removed", "changed"]
+_CHOICE = re.compile(r"\|\||\?|\b(?:or|if|lambda)\b")
+"""What binds less than `and`."""
+_PLACE = re.compile(r"lambda@\d+:\d+")
+_OUT = frozenset(("publisher", "client", "action client"))
+
+
+class Edge(NamedTuple):
+    """Endpoints of one role between a node and a name, and the publish statements there.
+
+    kind: topic, service or action. mark: how it differs from the base; why: in which of type, QoS, guards or triggers a
+    changed one does; before: what that was in the base.
+    """
+
+    node: str
+    name: str
+    kind: str
+    role: str
+    types: tuple[str, ...]
+    endpoints: tuple[Endpoint, ...]
+    publishes: tuple[Publish, ...]
+    mark: Mark = ""
+    why: str = ""
+    before: Edge | None = None
+
+    @property
+    def outward(self) -> bool:
+        """From the node to the name: it publishes or asks."""
+        return self.role in _OUT
+
+
+def edges(graph: Graph, base: Graph | None = None) -> list[Edge]:
+    """The edges of a graph, sorted by name, role and node; those that only the base has come marked as removed."""
+    now = {(edge.node, edge.name, edge.role): edge for edge in _edges(graph)}
+    if base is not None:
+        old = {(edge.node, edge.name, edge.role): edge for edge in _edges(base)}
+        for key, edge in now.items():
+            before = old.get(key)
+            why = "" if before is None else _difference(before, edge)
+            mark: Mark = "added" if before is None else "changed" if why else ""
+            now[key] = edge._replace(mark=mark, why=why, before=before if why else None)
+        now.update({key: edge._replace(mark="removed") for key, edge in old.items() if key not in now})
+    return sorted(now.values(), key=lambda edge: (edge.name, edge.kind, not edge.outward, edge.role, edge.node))
+
+
+def _edges(graph: Graph) -> Iterator[Edge]:
+    found: dict[tuple[str, str, str], list[Endpoint]] = {}
+    for endpoint in graph.endpoints:
+        if endpoint.topic:
+            found.setdefault((endpoint.node, endpoint.topic, endpoint.role), []).append(endpoint)
+    said: dict[tuple[str, str], list[Publish]] = {}
+    for publish in graph.publishes:
+        if publish.topic and not publish.through:
+            said.setdefault((publish.node, publish.topic), []).append(publish)
+    for (node, name, role), endpoints in found.items():
+        types = tuple(sorted({endpoint.type for endpoint in endpoints if endpoint.type}))
+        publishes = tuple(said.get((node, name), ())) if role == "publisher" else ()
+        yield Edge(node, name, kind_of(endpoints[0]), role, types, tuple(endpoints), publishes)
+
+
+def _difference(before: Edge, now: Edge) -> str:
+    found = []
+    if before.types != now.types:
+        found.append("type")
+    if {_qos(each) for each in before.endpoints} != {_qos(each) for each in now.endpoints}:
+        found.append("QoS")
+    if _guards(before.publishes) != _guards(now.publishes):
+        found.append("guards")
+    if _triggers(before.publishes) != _triggers(now.publishes):
+        found.append("trigger")
+    return ", ".join(found)
+
+
+def _qos(endpoint: Endpoint) -> Qos | str:
+    """What is told; how it is written counts where nothing else is known, and where it is written never."""
+    if endpoint.qos is None:
+        return Qos()
+    told = structs.replace(endpoint.qos, written="")
+    return _PLACE.sub("lambda", endpoint.qos.written) if told == Qos() and endpoint.qos.written else told
+
+
+def _guards(publishes: Sequence[Publish]) -> frozenset:
+    return frozenset(
+        tuple((guard.kind, guard.text) for guard in way.guards) for publish in publishes for way in publish.by
+    )
+
+
+def _triggers(publishes: Sequence[Publish]) -> frozenset:
+    return frozenset((trigger.kind, trigger.detail) for publish in publishes for trigger in publish.triggers)
+
+
+def names_of(graph: Graph) -> dict[str, str]:
+    """How drawings call each node, by its id: the name in the system where it is a name of one node alone."""
+    count: dict[str, int] = {}
+    for node in graph.nodes:
+        count[node.name] = count.get(node.name, 0) + 1
+    return {node.id: node.name if node.name and count[node.name] == 1 else node.id for node in graph.nodes}
+
+
+def conditions(guards: Sequence[GuardAt]) -> str:
+    """What must hold, in one line; what is a choice itself stands in parentheses among others. Empty for nothing."""
+    asked = [guard for guard in guards if guard.kind in ("if", "unless")]
+    return " and ".join(
+        f"not ({guard.text})"
+        if guard.kind == "unless"
+        else f"({guard.text})"
+        if len(asked) > 1 and _CHOICE.search(guard.text)
+        else guard.text
+        for guard in asked
+    )
+
+
+def loops(guards: Sequence[GuardAt]) -> str:
+    """The loops, `catch` and the like among guards, outermost first; empty for none."""
+    return " in ".join(f"{guard.kind} {guard.text}" for guard in guards if guard.kind not in ("if", "unless"))
+
+
+def guard_text(publish: Publish) -> str:
+    """The guards of a publish statement in one line."""
+    asked, around = conditions(publish.guards), loops(publish.guards)
+    return ", ".join([*([asked] if asked else []), *([f"in {around}"] if around else [])])

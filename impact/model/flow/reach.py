@@ -1,0 +1,122 @@
+"""What a change reaches downstream: from a node or topic to subscribers, and on to what their callbacks publish."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from .graph import Endpoint, Graph, Publish
+
+# Topics through which everything would reach everything.
+EVERYWHERE = frozenset(("/rosout", "/parameter_events", "/diagnostics", "/clock"))
+_ALL = 1_000_000
+_SENDS = {"publisher": "subscriber", "client": "server", "action client": "action server"}
+_KINDS = {"subscriber": "topic", "server": "service", "action server": "action"}
+
+
+class Step(NamedTuple):
+    """From one node to the next. kind: topic, service or action; path, line: of the subscriber or server."""
+
+    kind: str
+    name: str
+    node: str
+    path: str
+    line: int
+
+
+class Reached(NamedTuple):
+    """A node that is reached, and the shortest way there."""
+
+    node: str
+    steps: tuple[Step, ...]
+
+
+class Reach:
+    """Asks a graph what lies downstream."""
+
+    def __init__(self, graph: Graph):
+        self.graph = graph
+        self._receivers: dict[tuple[str, str], list[Endpoint]] = {}
+        for endpoint in graph.endpoints:
+            if endpoint.topic and endpoint.node:
+                self._receivers.setdefault((endpoint.role, endpoint.topic), []).append(endpoint)
+        self._publishes: dict[str, list[Publish]] = {}
+        for publish in graph.publishes:
+            self._publishes.setdefault(publish.node, []).append(publish)
+        self._calls: dict[str, list[Endpoint]] = {}
+        for endpoint in graph.endpoints:
+            if endpoint.role in ("client", "action client"):
+                self._calls.setdefault(endpoint.node, []).append(endpoint)
+
+    def from_topic(self, topic: str, role: str = "publisher", most: int = 200) -> list[Reached]:
+        """Nodes that a message on a topic (or a request, by the sender's role) reaches, nearest first."""
+        return self._walk(self._next(topic, role), most)
+
+    def from_node(self, node: str, most: int = 200) -> list[Reached]:
+        """Nodes downstream of all that a node sends, nearest first; the node itself is left out."""
+        first = [step for topic, role in self._sent(node, None) for step in self._next(topic, role)]
+        return [reached for reached in self._walk(first, most) if reached.node != node]
+
+    def from_sent(self, sent: Iterable[tuple[str, str]], node: str = "") -> list[Reached]:
+        """Nodes downstream of some topics, services and actions (name, role of who sends), nearest first. node: who
+        sends them, which is left out."""
+        first = [step for topic, role in sent for step in self._next(topic, role)]
+        return [reached for reached in self._walk(first, _ALL) if reached.node != node]
+
+    def sent_on(self, node: str, path: str, line: int, stored: bool) -> list[tuple[str, str]]:
+        """What a node may send because of a subscriber, server or timer that is made at a place; as from_sent() takes
+        it. It is what the callback publishes; where that is nothing, and with stored, what timers and loops publish."""
+        own, others = [], []
+        for publish in self._publishes.get(node, ()):
+            if publish.topic:
+                mine = any((one.path, one.line) == (path, line) for one in publish.triggers)
+                if mine:
+                    own.append((publish.topic, "publisher"))
+                elif stored and self._may_follow(publish, Step("topic", "", node, path, line)):
+                    others.append((publish.topic, "publisher"))
+        return list(dict.fromkeys(own or others))
+
+    def _walk(self, first: Iterable[Step], most: int) -> list[Reached]:
+        found: dict[str, Reached] = {}
+        queue: deque[tuple[Step, ...]] = deque((step,) for step in first)
+        while queue and len(found) < most:
+            steps = queue.popleft()
+            last = steps[-1]
+            if last.node in found:
+                continue
+            found[last.node] = Reached(last.node, steps)
+            for topic, role in self._sent(last.node, last):
+                queue.extend((*steps, step) for step in self._next(topic, role) if step.node not in found)
+        return list(found.values())
+
+    def _next(self, topic: str, role: str) -> Iterator[Step]:
+        if topic in EVERYWHERE:
+            return
+        receiver = _SENDS[role]
+        for endpoint in self._receivers.get((receiver, topic), ()):
+            yield Step(_KINDS[receiver], topic, endpoint.node, endpoint.path, endpoint.line)
+
+    def _sent(self, node: str, came: Step | None) -> Iterator[tuple[str, str]]:
+        """What a node sends on: everything, or what may be published because of what came in.
+
+        A publish statement that a timer or loop triggers may send what a callback has stored, so it counts too; one
+        that another subscriber's callback alone triggers does not.
+        """
+        seen = set()
+        for publish in self._publishes.get(node, ()):
+            if publish.topic and publish.topic not in seen and self._may_follow(publish, came):
+                seen.add(publish.topic)
+                yield publish.topic, "publisher"
+        for endpoint in self._calls.get(node, ()):
+            if endpoint.topic and (endpoint.role, endpoint.topic) not in seen:
+                seen.add((endpoint.role, endpoint.topic))
+                yield endpoint.topic, endpoint.role
+
+    @staticmethod
+    def _may_follow(publish: Publish, came: Step | None) -> bool:
+        if came is None or not publish.triggers:
+            return True
+        if any(trigger.kind not in ("subscriber", "service", "action") for trigger in publish.triggers):
+            return True
+        return any((trigger.path, trigger.line) == (came.path, came.line) for trigger in publish.triggers)

@@ -1,0 +1,151 @@
+"""Part of a message-flow graph: near a node or topic, of a package, without what every node has."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+from msgspec import structs
+
+from ....edges.console import UserError
+from .graph import Endpoint, Graph, Node
+
+HIDDEN = (
+    "/rosout", "/rosout_agg", "/parameter_events", "/clock", "/diagnostics", "*/get_loggers", "*/set_logger_level",
+    "*/parameter_descriptions", "*/parameter_updates", "*/set_parameters", "/tf", "/tf_static",
+)  # fmt: skip
+"""Names that most nodes have, and that tell little in a drawing."""
+
+
+class Selection(NamedTuple):
+    """Part of a graph. hidden: how many topics, services and actions were left out of it as HIDDEN; asked: whether
+    something was asked for, so that it need not be the whole."""
+
+    graph: Graph
+    hidden: int
+    asked: bool = False
+
+
+class NothingSelected(UserError, ValueError):
+    """No node or name fits; the text says which, and names like it."""
+
+
+def selected(
+    graph: Graph, *, nodes: Sequence[str] = (), topics: Sequence[str] = (), packages: Sequence[str] = (),
+    around: str = "", hops: int = 2, everything: bool = False,
+) -> Selection:  # fmt: skip
+    """Part of a graph: what fits all that is asked for.
+
+    nodes, topics: names, `*` for any text, the leading slash may be left out. around: a node, topic, service or action;
+    hops: how many steps from node to node. everything: keep HIDDEN names. Raises NothingSelected.
+    """
+    names = {endpoint.topic for endpoint in graph.endpoints} | {publish.topic for publish in graph.publishes}
+    asked = bool(nodes or topics or packages or around)
+    kept_nodes = {node.id for node in graph.nodes}
+    kept_names = set(names)
+    if packages:
+        kept_nodes &= {node.id for node in graph.nodes if _fits(node.package, packages, ("",))}
+        if not kept_nodes:
+            raise NothingSelected(_unknown("package with nodes", packages, [node.package for node in graph.nodes]))
+    if nodes:
+        kept_nodes &= _nodes(graph, nodes)
+    if topics:
+        fitting = {name for name in names if name and _fits(name, topics, ("", "/"))}
+        if not fitting:
+            raise NothingSelected(_unknown("topic, service or action", topics, names))
+        kept_names &= fitting
+        kept_nodes &= _using(graph, fitting)
+    if around:
+        near_nodes, near_names = _near(graph, around, hops)
+        kept_nodes &= near_nodes
+        kept_names &= near_names
+    if asked and not topics and not around:
+        # Whom a node talks to belongs to it.
+        kept_names = {e.topic for e in graph.endpoints if e.node in kept_nodes and e.topic}
+        if nodes:
+            kept_nodes = kept_nodes | _using(graph, {n for n in kept_names if not _fits(n, HIDDEN, ("",))})
+    if not kept_nodes and asked:
+        raise NothingSelected(_unknown("node", (*nodes, *packages), [node.id for node in graph.nodes]))
+    hidden = set() if everything or topics else {name for name in kept_names if _fits(name, HIDDEN, ("",))}
+    if around:
+        hidden -= {name for name in hidden if _fits(name, (around,), ("", "/"))}
+    kept_names -= hidden
+    if not asked:
+        kept_nodes |= {""}
+        kept_names |= {""}
+    part = structs.replace(
+        graph,
+        nodes=tuple(node for node in graph.nodes if node.id in kept_nodes),
+        endpoints=tuple(e for e in graph.endpoints if e.node in kept_nodes and e.topic in kept_names),
+        publishes=tuple(p for p in graph.publishes if p.node in kept_nodes and p.topic in kept_names),
+        timers=tuple(t for t in graph.timers if t.node in kept_nodes),
+        parameters=tuple(p for p in graph.parameters if p.node in kept_nodes),
+    )
+    return Selection(part, len(hidden), asked)
+
+
+def _fits(name: str, patterns: Collection[str], prefixes: Sequence[str]) -> bool:
+    return any(fnmatchcase(name, prefix + pattern) for pattern in patterns for prefix in prefixes)
+
+
+def _called(node: Node) -> tuple[str, ...]:
+    return (node.id, node.name, node.name.lstrip("/"), node.name.rpartition("/")[2], node.executable, node.plugin)
+
+
+def _nodes(graph: Graph, patterns: Sequence[str]) -> set[str]:
+    found = {node.id for node in graph.nodes if any(name and _fits(name, patterns, ("",)) for name in _called(node))}
+    if not found:
+        raise NothingSelected(_unknown("node", patterns, [node.id for node in graph.nodes]))
+    return found
+
+
+def _using(graph: Graph, names: Collection[str]) -> set[str]:
+    return {endpoint.node for endpoint in graph.endpoints if endpoint.topic in names}
+
+
+def _near(graph: Graph, around: str, hops: int) -> tuple[set[str], set[str]]:
+    """Nodes and names within some steps of a node or a name."""
+    begun = {node.id for node in graph.nodes if any(name and _fits(name, (around,), ("",)) for name in _called(node))}
+    names = {e.topic for e in graph.endpoints if e.topic and _fits(e.topic, (around,), ("", "/"))}
+    if not begun and not names:
+        known = [node.id for node in graph.nodes] + [e.topic for e in graph.endpoints]
+        raise NothingSelected(_unknown("node or topic", (around,), known))
+    reached = begun | _using(graph, names)
+    of_node: dict[str, set[str]] = {}
+    of_name: dict[str, set[str]] = {}
+    for endpoint in graph.endpoints:
+        if endpoint.topic and not _fits(endpoint.topic, HIDDEN, ("",)):
+            of_node.setdefault(endpoint.node, set()).add(endpoint.topic)
+            of_name.setdefault(endpoint.topic, set()).add(endpoint.node)
+    edge = reached
+    for _ in range(hops):
+        through = {name for node in edge for name in of_node.get(node, ())}
+        edge = {node for name in through for node in of_name[name]} - reached
+        names |= through
+        reached = reached | edge
+    return reached, names
+
+
+def _unknown(what: str, asked: Sequence[str], known: Collection[str]) -> str:
+    from difflib import get_close_matches
+
+    wanted = ", ".join(asked)
+    close = get_close_matches(wanted.lstrip("/"), sorted({name.lstrip("/") for name in known if name}), 3, 0.5)
+    near = f"; there is {', '.join(f'`{name}`' for name in close)}" if close else ""
+    return f"`{wanted}`: no {what} of this name{near}"
+
+
+def endpoints_of(graph: Graph) -> dict[tuple[str, str], list[Endpoint]]:
+    """Endpoints by kind (`topic`, `service`, `action`) and name, sorted; those without a name are left out."""
+    found: dict[tuple[str, str], list[Endpoint]] = {}
+    for endpoint in graph.endpoints:
+        if endpoint.topic:
+            found.setdefault((kind_of(endpoint), endpoint.topic), []).append(endpoint)
+    return dict(sorted(found.items()))
+
+
+def kind_of(endpoint: Endpoint) -> str:
+    """`topic`, `service` or `action`."""
+    role = endpoint.role
+    return "action" if role.startswith("action") else "topic" if role in ("publisher", "subscriber") else "service"

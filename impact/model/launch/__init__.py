@@ -1,0 +1,1 @@
+"""Launch files followed: what they start, with which names and parameters."""

@@ -1,0 +1,419 @@
+"""Substitutions of a launch filled in where it stands, and the parameter files it names, changed as it asks."""
+
+from __future__ import annotations
+
+import math
+import posixpath
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from ...facts.flow_launch import Action, Entry, Piece, Value, literal, scalar, substitutions
+from .result import At, Remap, Setting, SettingFile, Sources, Unresolved
+from .text import (
+    CannotTell,
+    Text,
+    evaluate,
+    every,
+    flag,
+    known,
+    ros1_value,
+    show,
+    text_method,
+    together,
+    truth_of,
+    unknown,
+    yaml_value,
+)
+
+
+class Scope:
+    """What holds where an action runs. open: how many undecided conditions stood when it began."""
+
+    __slots__ = ("arguments", "constants", "environment", "namespace", "open", "private", "remaps", "settings")
+
+    def __init__(self, arguments: dict[str, Text], environment: dict[str, Text], open_: int):
+        self.arguments = arguments
+        self.environment = environment
+        self.namespace = known("")
+        self.remaps: list[Remap] = []
+        self.settings: list[Setting | SettingFile] = []
+        self.private: list[Action] = []
+        self.constants: set[str] = set()
+        self.open = open_
+
+    def inner(self, open_: int) -> Scope:
+        """A copy, whose changes do not reach this one."""
+        scope = Scope(dict(self.arguments), dict(self.environment), open_)
+        scope.namespace = self.namespace
+        scope.remaps = list(self.remaps)
+        scope.settings = list(self.settings)
+        scope.private = list(self.private)
+        scope.constants = set(self.constants)
+        return scope
+
+
+class Rewrite(NamedTuple):
+    """A parameter file that is changed before it is read. root: the key all is put below, empty for none. changes: old
+    and new, which are keys and the values they get or, where is_text, texts wherever they stand."""
+
+    source: Text
+    root: Text
+    changes: tuple[tuple[Text, Text], ...]
+    is_text: bool
+
+
+class Filling:
+    """Where a launch stands: the file it reads, and what holds there. package and path: of that file."""
+
+    def __init__(self, sources: Sources, scope: Scope, generation: int):
+        self.sources = sources
+        self.scope = scope
+        self.generation = generation
+        self.package = ""
+        self.path = ""
+        self.rewrites: dict[str, Rewrite] = {}
+        self.unresolved: list[Unresolved] = []
+
+    def at(self, line: int) -> At:
+        return At(self.package, self.path, line)
+
+    def miss(self, line: int, what: str, *reasons: str) -> None:
+        """Lists what could not be followed, once."""
+        unresolved = Unresolved(self.at(line), what, reasons)
+        if unresolved not in self.unresolved[-20:]:
+            self.unresolved.append(unresolved)
+
+    def told(self, text: Text, line: int, what: str) -> Text:
+        """The text; where it is not known that is listed."""
+        if text.value is None:
+            self.miss(line, f"{what} `{text.shown}`", *text.reasons)
+        return text
+
+    def substituted(self, entry: Entry) -> Entry:
+        """An entry whose keys or values hold substitutions, filled in where that can be done."""
+        path = tuple(self.filled(part) if "$(" in part else part for part in entry.path)
+        return Entry(path, self.filled_value(entry.value), entry.line)
+
+    def filled(self, text: str) -> str:
+        made = self.text(substitutions(text, self.generation))
+        return text if made.value is None else made.value
+
+    def filled_value(self, value: Any) -> Any:
+        if isinstance(value, str) and "$(" in value:
+            return yaml_value(self.filled(value))
+        if isinstance(value, list):
+            return [self.filled_value(item) for item in value]
+        if isinstance(value, dict):
+            return {self.filled(key): self.filled_value(item) for key, item in value.items()}
+        return value
+
+    def entries(self, file: str, line: int) -> tuple[Entry, ...] | None:
+        """The entries of a parameter file, changed as it is before it is read; None where it cannot be had."""
+        rewrite = self.rewrites.get(file)
+        if rewrite is not None:
+            if rewrite.source.value is None:
+                self.miss(line, f"parameters `{rewrite.source.shown}`", *rewrite.source.reasons)
+                return None
+            entries = self.entries(rewrite.source.value, line)
+            return None if entries is None else _rewritten(entries, rewrite)
+        place = self.place(file)
+        if place is None:
+            self.miss(line, f"parameters `{file}`", "the file lies in no package that is named")
+            return None
+        found = self.sources.parameters(*place)
+        if found is None:
+            self.miss(line, f"parameters `{file}`", "the file is not in the workspace")
+            return None
+        for problem in found.problems:
+            self.miss(line, f"parameters `{file}`, line {problem.line}", problem.message)
+        return found.entries
+
+    def place(self, path: str) -> tuple[str, str] | None:
+        """Package and path in it of a file below a package's share folder."""
+        m = _PLACE.match(path)
+        if m is None:
+            return None
+        inner = posixpath.normpath(m[2].lstrip("/")) if m[2].strip("/") else ""
+        return None if inner.startswith("..") or not inner else (m[1], inner)
+
+    def text(self, value: Value) -> Text:
+        """A value with its substitutions filled in."""
+        if len(value) == 1:
+            return self.piece(value[0])
+        return together([self.piece(piece) for piece in value])
+
+    def piece(self, piece: Piece) -> Text:
+        if piece.kind == "text":
+            return known(piece.text)
+        if piece.kind == "other":
+            return unknown(piece.text, "it is only known when it runs")
+        maker = _FILLING.get(piece.kind)
+        if maker is None or len(piece.parts) < _PARTS.get(piece.kind, 0):
+            return unknown(piece.kind, f"`{piece.kind}` is not filled in")
+        return maker(self, piece)
+
+    def named(self, piece: Piece) -> tuple[Text, tuple[Value, ...]]:
+        """A piece's name, and its other parts."""
+        if piece.text:
+            return known(piece.text), piece.parts
+        return (self.text(piece.parts[0]), piece.parts[1:]) if piece.parts else (known(""), ())
+
+    def fill_arg(self, piece: Piece) -> Text:
+        name, rest = self.named(piece)
+        if name.value is None:
+            return unknown(name.shown, *name.reasons)
+        text = self.scope.arguments.get(name.value)
+        if text is not None:
+            return text._replace(assumed=every((text.assumed, name.assumed)))
+        if rest:
+            default = self.text(rest[0])
+            return default._replace(assumed=every((default.assumed, (name.value,))))
+        return unknown(name.value, f"argument `{name.value}` has no value")
+
+    def fill_env(self, piece: Piece) -> Text:
+        name, rest = self.named(piece)
+        if name.value is None:
+            return unknown(name.shown, *name.reasons)
+        text = self.scope.environment.get(name.value)
+        if text is not None:
+            return text
+        if rest:
+            default = self.text(rest[0])
+            return default._replace(assumed=every((default.assumed, (f"${name.value}",))))
+        return unknown(f"${name.value}", f"the environment variable `{name.value}` is not known")
+
+    def fill_package(self, piece: Piece) -> Text:
+        name, _ = self.named(piece)
+        if name.value is None:
+            return unknown(f"$({piece.kind} {name.shown})", *name.reasons)
+        return known(f"$({piece.kind} {name.value})", name.assumed)
+
+    def fill_executable(self, piece: Piece) -> Text:
+        name, package = (self.text(part) for part in piece.parts[:2])
+        return together((known("$(prefix "), package, known(")/lib/"), package, known("/"), name))
+
+    def fill_program(self, piece: Piece) -> Text:
+        return self.named(piece)[0]
+
+    def fill_dirname(self, piece: Piece) -> Text:
+        folder = posixpath.dirname(self.path)
+        return known(f"$(find {self.package})" + (f"/{folder}" if folder else ""))
+
+    def fill_filename(self, piece: Piece) -> Text:
+        return known(f"$(find {self.package})/{self.path}")
+
+    def fill_anon(self, piece: Piece) -> Text:
+        name, _ = self.named(piece)
+        return Text(None, f"{name.shown}_<anonymous>", ("an anonymous name is made up at every start",))
+
+    def fill_command(self, piece: Piece) -> Text:
+        return unknown(show((piece,)), "it is the output of a command")
+
+    def fill_content(self, piece: Piece) -> Text:
+        return unknown(show((piece,)), "it is the content of a file")
+
+    def fill_join(self, piece: Piece) -> Text:
+        texts: list[Text] = []
+        for part in piece.parts:
+            text = self.text(part)
+            if (text.value is not None and text.value[:1] == "/") or (text.value or "").startswith("$("):
+                texts = []
+            texts.append(text)
+        if not texts:
+            return known("")
+        done = [t._replace(value=t.value.rstrip("/") if t.value is not None else None, shown=t.shown.rstrip("/"))
+                for t in texts[:-1]]  # fmt: skip
+        return together([*done, texts[-1]], "/")
+
+    def fill_equals(self, piece: Piece) -> Text:
+        left, right = (self.text(part) for part in piece.parts[:2])
+        both = together((left, right))
+        if both.value is None:
+            return both._replace(shown=show((piece,)))
+        return known(flag(left.value == right.value), both.assumed)
+
+    def fill_in(self, piece: Piece) -> Text:
+        texts = [self.text(part) for part in piece.parts]
+        both = together(texts)
+        if both.value is None:
+            return both._replace(shown=show((piece,)))
+        return known(flag(texts[0].value in [t.value for t in texts[1:]]), both.assumed)
+
+    def fill_not(self, piece: Piece) -> Text:
+        text = self.text(piece.parts[0]) if piece.parts else known("")
+        truth = truth_of(text)
+        if truth is None:
+            return unknown(show((piece,)), *(text.reasons or (f"`{text.value}` is neither true nor false",)))
+        return known(flag(not truth), text.assumed)
+
+    def fill_logic(self, piece: Piece) -> Text:
+        """`and` and `or`: what decides them alone is enough."""
+        deciding = piece.kind == "or"
+        texts = [self.text(part) for part in piece.parts]
+        truths = [truth_of(text) for text in texts]
+        for text, truth in zip(texts, truths, strict=True):
+            if truth is deciding:
+                return known(flag(deciding), text.assumed)
+        if None in truths:
+            return unknown(show((piece,)), *every(t.reasons for t in texts))
+        return known(flag(not deciding), every(t.assumed for t in texts))
+
+    def fill_choose(self, piece: Piece) -> Text:
+        asked = self.text(piece.parts[0])
+        truth = truth_of(asked)
+        if truth is None:
+            yes, no = (self.text(part) for part in piece.parts[1:3])
+            if yes.value is not None and yes.value == no.value:
+                return yes
+            reasons = asked.reasons or (f"`{asked.value}` is neither true nor false",)
+            return unknown(f"{yes.shown} or {no.shown}", *reasons)
+        text = self.text(piece.parts[1 if truth else 2])
+        return text._replace(assumed=every((text.assumed, asked.assumed)))
+
+    def fill_method(self, piece: Piece) -> Text:
+        texts = [self.text(part) for part in piece.parts]
+        both = together(texts)
+        if both.value is None:
+            return unknown(show((piece,)), *both.reasons)
+        try:
+            result = text_method(texts[0].value or "", piece.text, [t.value for t in texts[1:]])
+        except CannotTell as error:
+            return unknown(show((piece,)), str(error))
+        return known(flag(result) if isinstance(result, bool) else str(result), both.assumed)
+
+    def fill_rewritten(self, piece: Piece) -> Text:
+        """A changed parameter file: its name stands for it until it is read."""
+        texts = [self.text(part) for part in piece.parts]
+        is_text = piece.kind == "replaced"
+        source, rest = texts[0], texts[1:] if is_text else texts[2:]
+        pairs = tuple(zip(rest[::2], rest[1::2], strict=False))
+        rewrite = Rewrite(source, known("") if is_text else texts[1], pairs, is_text)
+        name = f"$({piece.kind} {source.shown} {len(self.rewrites)})"
+        self.rewrites[name] = rewrite
+        return known(name, source.assumed)
+
+    def fill_has_node(self, piece: Piece) -> Text:
+        file, node = (self.text(part) for part in piece.parts[:2])
+        both = together((file, node))
+        entries = self.entries(file.value, 0) if both.value is not None and file.value is not None else None
+        if entries is None:
+            return unknown(show((piece,)), *(both.reasons or ("the file is not in the workspace",)))
+        return known(flag(any(node.value in entry.path[:-1] for entry in entries)), both.assumed)
+
+    def fill_eval(self, piece: Piece) -> Text:
+        expression = self.text(piece.parts[0])
+        if expression.value is None:
+            return unknown(f"$(eval {expression.shown})", *expression.reasons, assumed=expression.assumed)
+        used: list[tuple[str, ...]] = [expression.assumed]
+
+        def argument(name: str) -> Any:
+            text = self.fill_arg(Piece("arg", name))
+            if text.value is None:
+                raise CannotTell(*text.reasons)
+            used.append(text.assumed)
+            return ros1_value(text.value)
+
+        def variable(name: str, *default: str) -> str:
+            text = self.fill_env(Piece("env", name, tuple(literal(d) for d in default)))
+            if text.value is None:
+                raise CannotTell(*text.reasons)
+            used.append(text.assumed)
+            return text.value
+
+        functions: dict[str, Any] = {}
+        names: Any = {"True": True, "False": False, "None": None, "pi": math.pi}
+        if piece.text == "roslaunch":
+            functions = {
+                "arg": argument,
+                "env": variable,
+                "optenv": lambda name, default="": variable(name, default),
+                "find": lambda package: f"$(find {package})",
+                "dirname": lambda: self.fill_dirname(piece).value,
+            }
+            names = _Arguments(self.scope.arguments, argument)
+        try:
+            result = evaluate(expression.value, names, functions)
+        except CannotTell as error:
+            return unknown(f"$(eval {expression.value[:80]})", str(error), assumed=every(used))
+        return known(str(result), every(used))
+
+
+class _Arguments(dict):
+    """The names that an expression of roslaunch sees: launch arguments, and a few constants."""
+
+    def __init__(self, arguments: Mapping[str, Text], look: Any):
+        super().__init__(true=True, false=False, True_=True, pi=math.pi)
+        self.arguments = arguments
+        self.look = look
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or name in self.arguments
+
+    def __getitem__(self, name: str) -> Any:
+        return super().__getitem__(name) if super().__contains__(name) else self.look(name)
+
+
+_PLACE = re.compile(r"\$\(find ([\w.-]+)\)(/.*|)\Z", re.DOTALL)
+_FILLING = {
+    "arg": Filling.fill_arg,
+    "env": Filling.fill_env,
+    "find": Filling.fill_package,
+    "prefix": Filling.fill_package,
+    "executable": Filling.fill_executable,
+    "program": Filling.fill_program,
+    "dirname": Filling.fill_dirname,
+    "filename": Filling.fill_filename,
+    "anon": Filling.fill_anon,
+    "command": Filling.fill_command,
+    "content": Filling.fill_content,
+    "join": Filling.fill_join,
+    "equals": Filling.fill_equals,
+    "in": Filling.fill_in,
+    "not": Filling.fill_not,
+    "and": Filling.fill_logic,
+    "or": Filling.fill_logic,
+    "choose": Filling.fill_choose,
+    "method": Filling.fill_method,
+    "rewritten": Filling.fill_rewritten,
+    "replaced": Filling.fill_rewritten,
+    "has-node": Filling.fill_has_node,
+    "eval": Filling.fill_eval,
+}
+# How many parts a piece needs before it can be filled in.
+_PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewritten": 2, "replaced": 1, "has-node": 2,
+          "eval": 1}  # fmt: skip
+
+
+def _rewritten(entries: Sequence[Entry], rewrite: Rewrite) -> tuple[Entry, ...]:
+    """Entries as RewrittenYaml or ReplaceString of nav2_common would leave them."""
+    if rewrite.is_text:
+        return tuple(_replaced(entry, rewrite.changes) for entry in entries)
+    changes = {old.value: new for old, new in rewrite.changes if old.value is not None}
+    root = (rewrite.root.value,) if rewrite.root.value else ()
+    made: list[Entry] = []
+    for entry in entries:
+        new = changes.get(".".join(entry.path), changes.get(entry.path[-1] if entry.path else ""))
+        value = entry.value
+        if new is not None:
+            value = scalar(new.value) if new.value else new.shown
+        made.append(Entry((*root, *entry.path), value, entry.line))
+    return tuple(made)
+
+
+def _replaced(entry: Entry, changes: tuple[tuple[Text, Text], ...]) -> Entry:
+    def change(text: str) -> str:
+        for old, new in changes:
+            if old.value:
+                text = text.replace(old.value, new.value if new.value is not None else new.shown)
+        return text
+
+    value = entry.value
+    if isinstance(value, str):
+        # The text is changed before it is read as YAML, so that what comes of it may be a number or a bool.
+        changed = change(value)
+        value = value if changed == value else scalar(changed)
+    elif isinstance(value, list):
+        value = [change(item) if isinstance(item, str) else item for item in value]
+    path = tuple(part for key in entry.path for part in [change(key)] if part)
+    return Entry(path, value, entry.line)

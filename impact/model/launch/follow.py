@@ -1,0 +1,703 @@
+"""What a launch file starts: its includes followed, its substitutions filled in, its conditions decided.
+
+What is not known stays unknown, with the reason; what rests on the default of a launch argument says so. Paths in the
+share folder of a package are written `$(find PACKAGE)/path`, whatever the launch file wrote.
+
+Sources: roslaunch's loader.py, xmlloader.py and substitution_args.py; launch's actions and substitutions; launch_ros'
+node.py, load_composable_nodes.py and push_ros_namespace.py.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from ...facts.flow_launch import Action, Condition, Entry, LaunchFile, literal, parameters, plain
+from ..flow.names import canonical, ros2_rule
+from .fill import Filling, Scope
+from .result import (
+    Argument,
+    At,
+    Launched,
+    Remap,
+    Setting,
+    SettingFile,
+    Skipped,
+    Sources,
+    Started,
+    Unresolved,
+    file_values,
+)
+from .text import Text, every, known, ros1_value, show, show_condition, truth_of, unknown, within, yaml_value
+
+__all__ = [
+    "Argument",
+    "At",
+    "Launched",
+    "Remap",
+    "Setting",
+    "SettingFile",
+    "Skipped",
+    "Sources",
+    "Started",
+    "Text",
+    "Unresolved",
+    "file_values",
+    "follow",
+]
+
+DEEPEST = 30
+MOST_ACTIONS = 20_000
+
+
+def follow(
+    package: str,
+    path: str,
+    sources: Sources,
+    arguments: Mapping[str, str] | None = None,
+    environment: Mapping[str, str] | None = None,
+    generation: int = 0,
+    most: int = MOST_ACTIONS,
+) -> Launched:
+    """All that the launch file `$(find package)/path` starts.
+
+    arguments: as given on the command line. environment: variables that are known. generation: of the workspace, for
+    files that could be of either. most: how many actions are done.
+    """
+    given = {name: known(value) for name, value in (arguments or {}).items()}
+    variables = {name: known(value) for name, value in (environment or {}).items()}
+    launch = _Launch(sources, given, variables, generation, most)
+    launch.top(package, posixpath.normpath(path).lstrip("/"))
+    return Launched(
+        tuple(launch.started),
+        launch.server,
+        tuple(launch.declared),
+        tuple(launch.skipped),
+        tuple(launch.unresolved),
+        tuple(dict.fromkeys(launch.files)),
+        most - max(0, launch.budget),
+    )
+
+
+class _Launch(Filling):
+    """One launch under way."""
+
+    def __init__(
+        self, sources: Sources, arguments: dict[str, Text], environment: dict[str, Text], generation: int, most: int
+    ):
+        super().__init__(sources, Scope(arguments, environment, 0), generation or 2)
+        self.chain: list[At] = []
+        self.open: list[str] = []
+        self.assumed: list[str] = []
+        self.after: list[str] = []
+        self.container = known("")
+        self.most = self.budget = most
+        self.started: list[Started] = []
+        self.server: dict[str, Setting] = {}
+        self.declared: list[Argument] = []
+        self.skipped: list[Skipped] = []
+        self.files: list[tuple[str, str]] = []
+
+    def top(self, package: str, path: str) -> None:
+        self.package, self.path = package, path
+        file = self.sources.launch(package, path)
+        if file is None:
+            self.unresolved.append(Unresolved(At(package, path, 0), path, ("the launch file is not there",)))
+            return
+        try:
+            self.file(file)
+        except RecursionError:
+            self.miss(0, "the rest of the launch", "it is nested too deeply to be followed")
+
+    def file(self, file: LaunchFile) -> None:
+        self.files.append((self.package, self.path))
+        before = self.generation
+        self.generation = file.generation or before
+        for problem in file.problems:
+            self.miss(problem.line, "the launch file", problem.message)
+        self.run(file.actions)
+        self.generation = before
+
+    # Actions
+
+    def run(self, actions: Iterable[Action]) -> None:
+        for action in actions:
+            self.budget -= 1
+            if self.budget <= 0:
+                if self.budget == 0:
+                    self.miss(action.line, "the rest of the launch", f"more than {self.most} actions")
+                return
+            verdict, open_, assumed, after = self.decide(action.conditions)
+            if verdict is False:
+                if action.kind in _STARTING:
+                    texts = tuple(show_condition(c) for c in action.conditions)
+                    self.skipped.append(Skipped(action.kind, self.at(action.line), texts, assumed))
+                continue
+            marks = len(self.open), len(self.assumed), len(self.after)
+            self.open += open_
+            self.assumed += assumed
+            self.after += after
+            _DOING.get(action.kind, _Launch.do_unknown)(self, action)
+            del self.open[marks[0] :], self.assumed[marks[1] :], self.after[marks[2] :]
+
+    def decide(self, conditions: Sequence[Condition]) -> tuple[bool | None, list[str], tuple[str, ...], list[str]]:
+        """Whether conditions hold (None: not known), which are not known, the defaults they rest on, and events."""
+        open_: list[str] = []
+        after: list[str] = []
+        assumed: list[tuple[str, ...]] = []
+        for condition in conditions:
+            if condition.kind == "after":
+                after.append(self.text(condition.value).shown)
+                continue
+            if condition.kind == "each":
+                open_.append(show(condition.value))
+                continue
+            text = self.text(condition.value)
+            truth = truth_of(text)
+            if truth is None:
+                open_.append(show_condition(condition))
+                reasons = text.reasons or (f"`{text.value}` is neither true nor false",)
+                self.miss(condition.line, f"condition `{show_condition(condition)}`", *reasons)
+                continue
+            assumed.append(text.assumed)
+            if truth == (condition.kind == "unless"):
+                return False, open_, every(assumed), after
+        return (None if open_ else True), open_, every(assumed), after
+
+    def uncertain(self) -> bool:
+        """Whether what is set here may not be set at all, as seen by what follows."""
+        return len(self.open) > self.scope.open
+
+    def set(self, name: str, text: Text) -> None:
+        """An argument's new value; one set under an undecided condition is not known afterwards."""
+        if self.uncertain():
+            before = self.scope.arguments.get(name)
+            if before is not None and before.value is not None and before.value == text.value:
+                return
+            shown = text.shown if before is None else f"{before.shown} or {text.shown}"
+            text = unknown(shown, f"`{name}` is set only if {self.open[-1]}")
+        self.scope.arguments[name] = text
+
+    def name_of(self, action: Action) -> str | None:
+        text = self.told(self.text(action.get("name") or literal("")), action.line, f"name of {action.kind}")
+        return text.value
+
+    def do_argument(self, action: Action) -> None:
+        name = self.name_of(action)
+        if name is None:
+            return
+        value, default = action.get("value"), action.get("default")
+        if value is not None and self.generation == 1:
+            if name in self.scope.arguments and name not in self.scope.constants:
+                self.miss(action.line, f"argument `{name}`", "it is constant and is given another value")
+            self.set(name, self.text(value))
+            self.scope.constants.add(name)
+        elif name not in self.scope.arguments:
+            if default is None:
+                reason = f"argument `{name}` has no default and is not given"
+                self.scope.arguments[name] = unknown(f"{name}", reason)
+            else:
+                text = self.text(default)
+                self.set(name, text._replace(assumed=every((text.assumed, (name,)))))
+        self.declared.append(Argument(name, self.scope.arguments[name], self.at(action.line)))
+
+    def do_let(self, action: Action) -> None:
+        name = self.name_of(action)
+        if name is not None:
+            self.set(name, self.text(action.get("value") or literal("")))
+
+    def do_environment(self, action: Action) -> None:
+        name = self.name_of(action)
+        if name is not None:
+            self.scope.environment[name] = self.text(action.get("value") or literal(""))
+
+    def do_group(self, action: Action) -> None:
+        scoped = action.get("scoped")
+        if self.generation == 2 and scoped is not None and truth_of(self.text(scoped)) is False:
+            self.run(action.children)
+            return
+        outer, self.scope = self.scope, self.scope.inner(len(self.open))
+        forwarding = action.get("forwarding")
+        if forwarding is not None and truth_of(self.text(forwarding)) is False:
+            self.scope = Scope({}, {}, len(self.open))
+        if action.get("namespace") is not None:
+            self.scope.namespace = self.inside(self.text(action.get("namespace") or literal("")))
+        self.clear(action, self.scope.namespace)
+        self.run(action.children)
+        self.scope = outer
+
+    def inside(self, namespace: Text) -> Text:
+        """A namespace below the one that holds here, absolute."""
+        base = self.scope.namespace
+        if namespace.value == "":
+            return base
+        return within(base if base.value != "" else known("/"), namespace)
+
+    def do_namespace(self, action: Action) -> None:
+        pushed = self.text(action.get("namespace") or literal(""))
+        namespace = self.inside(pushed)
+        if self.uncertain() and namespace.value != self.scope.namespace.value:
+            namespace = unknown(
+                f"{self.scope.namespace.shown or '/'} or {namespace.shown}", f"pushed only if {self.open[-1]}"
+            )
+        self.scope.namespace = namespace
+
+    def do_remap(self, action: Action) -> None:
+        self.scope.remaps.append(self.remap(action))
+
+    def remap(self, action: Action) -> Remap:
+        old = self.told(self.text(action.get("from") or literal("")), action.line, "remapping from")
+        new = self.told(self.text(action.get("to") or literal("")), action.line, "remapping to")
+        return Remap(old, new, self.at(action.line), tuple(self.open[self.scope.open :]))
+
+    def do_include(self, action: Action) -> None:
+        file = self.told(self.text(action.get("file") or literal("")), action.line, "include")
+        if file.value is None:
+            return
+        place = self.place(file.value)
+        if place is None:
+            self.miss(action.line, f"include `{file.shown}`", "it lies in no package that is named")
+            return
+        found = self.sources.launch(*place)
+        if found is None:
+            self.miss(action.line, f"include `{file.shown}`", "the file is not in the workspace")
+            return
+        if len(self.chain) >= DEEPEST or [(a.package, a.path) for a in self.chain].count(place) > 3:
+            self.miss(action.line, f"include `{file.shown}`", "includes go round in a circle or too deep")
+            return
+        outer = self.scope, self.package, self.path
+        if (found.generation or self.generation) == 1:
+            self.scope = self.scope1(action)
+        else:
+            # One after the other: the value of one argument may name an argument given before it.
+            for name, text in self.passed(action):
+                self.scope.arguments[name] = text
+        self.chain.append(self.at(action.line))
+        self.package, self.path = place
+        self.assumed += file.assumed
+        self.file(found)
+        del self.assumed[len(self.assumed) - len(file.assumed) :]
+        self.chain.pop()
+        scope, self.package, self.path = outer
+        self.scope = scope
+
+    def passed(self, action: Action) -> Iterator[tuple[str, Text]]:
+        """The arguments given to an include, in order, each filled in when it is asked for."""
+        for child in action.children:
+            if child.kind == "unknown":
+                self.do_unknown(child)
+                continue
+            if child.kind != "pass":
+                continue
+            verdict, open_, _, _ = self.decide(child.conditions)
+            name = self.name_of(child)
+            if verdict is False or name is None:
+                continue
+            value, default = child.get("value"), child.get("default")
+            text = self.text(value if value is not None else default if default is not None else literal(""))
+            if verdict is None:
+                text = unknown(text.shown, f"`{name}` is given only if {open_[-1]}")
+            yield name, text
+
+    def scope1(self, action: Action) -> Scope:
+        """The scope of a file that roslaunch includes: namespace and remappings are passed on, arguments only as
+        given."""
+        scope = self.scope.inner(len(self.open))
+        if action.get("namespace") is not None:
+            scope.namespace = self.inside(self.text(action.get("namespace") or literal("")))
+        self.clear(action, scope.namespace)
+        all_ = action.get("pass-all")
+        scope.arguments = dict(self.scope.arguments) if all_ is not None and truth_of(self.text(all_)) else {}
+        scope.arguments.update(list(self.passed(action)))
+        # With pass_all_args, a constant of the included file replaces what is passed without complaint
+        scope.constants = set(scope.arguments) if all_ is not None else set()
+        return scope
+
+    def clear(self, action: Action, namespace: Text) -> None:
+        clear = action.get("clear")
+        if clear is not None and namespace.value and truth_of(self.text(clear)):
+            self.forget(namespace.value)
+
+    def forget(self, name: str) -> None:
+        """Removes parameters of the server below a name."""
+        for key in [key for key in self.server if key == name or key.startswith(f"{name.rstrip('/')}/")]:
+            del self.server[key]
+
+    def do_unknown(self, action: Action) -> None:
+        text = action.get("text")
+        self.miss(action.line, show(text) if text is not None else action.kind, "it cannot be followed")
+
+    def do_nothing(self, action: Action) -> None:
+        """What has no place where it stands."""
+
+    # Parameters
+
+    def do_parameter(self, action: Action) -> None:
+        if self.generation == 1:
+            name = self.text(action.get("name") or literal(""))
+            if name.value is not None and name.value[:1] == "~":
+                self.scope.private.append(action)
+                return
+            self.serve(action, self.scope.namespace)
+            return
+        setting = self.setting(action)
+        if setting is not None:
+            self.scope.settings.append(setting)
+
+    def do_parameter_file(self, action: Action) -> None:
+        if self.generation == 1:
+            self.serve_file(action, self.scope.namespace)
+            return
+        self.scope.settings.append(self.setting_file(action))
+
+    def setting(self, action: Action) -> Setting | None:
+        """A parameter of a ROS 2 node."""
+        name = self.name_of(action)
+        if name is None:
+            return None
+        text = self.text(action.get("value") or literal(""))
+        type_ = plain(action.get("type")) or ""
+        value: Any = text.value
+        if value is not None and type_ not in ("str", "string"):
+            value = yaml_value(value)
+        return Setting(name, value, text, self.at(action.line), tuple(self.open[self.scope.open :]))
+
+    def setting_file(self, action: Action) -> SettingFile:
+        """A parameter file of a ROS 2 node."""
+        file = self.text(action.get("file") or literal(""))
+        at, conditions = self.at(action.line), tuple(self.open[self.scope.open :])
+        if file.value is None:
+            self.miss(action.line, f"parameters `{file.shown}`", *file.reasons)
+            return SettingFile(file, None, at, conditions)
+        if file.value == "":
+            return SettingFile(file, (), at, conditions)
+        entries = self.entries(file.value, action.line)
+        if entries is not None and plain(action.get("substitute")) is not None:
+            entries = tuple(self.substituted(entry) for entry in entries)
+        below = [self.text(key).value for key in action.all("below")]
+        name = action.get("name")
+        if not below and name is None:
+            return SettingFile(file, entries, at, conditions)
+        prefix = (self.text(name).shown,) if name is not None else ()
+        if entries is not None:
+            entries = tuple(
+                Entry((*prefix, *entry.path[len(below) :]), entry.value, entry.line)
+                for entry in entries
+                if list(entry.path[: len(below)]) == below
+            )
+        return SettingFile(file, entries, at, conditions, True)
+
+    def serve(self, action: Action, namespace: Text) -> None:
+        """Puts a <param> of ROS 1 on the server, below a namespace."""
+        name = self.text(action.get("name") or literal(""))
+        if name.value is not None and name.value[:1] == "~":
+            name = known(name.value[1:], name.assumed)
+        full = self.told(within(namespace if namespace.value != "" else known("/"), name), action.line, "parameter")
+        if full.value is None:
+            return
+        given = next((key for key in ("textfile", "binfile", "command") if action.get(key) is not None), "value")
+        if given == "value":
+            text = self.text(action.get("value") or literal(""))
+        else:
+            what = {"command": "the output of a command"}.get(given, "the content of a file")
+            text = unknown(show(action.get(given) or literal("")), f"it is {what}")
+        value = None
+        if text.value is not None:
+            value = ros1_value(text.value.strip(), plain(action.get("type")) or "auto")
+        self.put(full.value, value, text, action.line)
+
+    def put(self, name: str, value: Any, text: Text, line: int) -> None:
+        if self.open:
+            before = self.server.get(name)
+            if before is not None and before.text.value != text.value:
+                text, value = unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}"), None
+        self.server.pop(name, None)
+        self.server[name] = Setting(name, value, text, self.at(line), tuple(self.open))
+
+    def serve_file(self, action: Action, namespace: Text) -> None:
+        """Does a <rosparam>."""
+        below = self.text(action.get("name") or literal(""))
+        base = namespace if namespace.value != "" else known("/")
+        if below.value is not None and below.value[:1] == "~":
+            below = known(below.value[1:].lstrip("/"), below.assumed)
+        full = base if below.value == "" else within(base, below)
+        if self.told(full, action.line, "parameters below").value is None:
+            return
+        command = plain(action.get("command")) or "load"
+        if command == "delete":
+            self.forget(full.value or "/")
+        if command != "load":
+            return
+        substitute = action.get("substitute")
+        fill = substitute is not None and truth_of(self.text(substitute)) is True
+        file, content = action.get("file"), action.get("text")
+        if file is not None:
+            text = self.told(self.text(file), action.line, "parameters")
+            entries = self.entries(text.value, action.line) if text.value is not None else None
+            assumed = text.assumed
+        else:
+            # What is filled in may be any piece of YAML, so that it comes before reading.
+            text = self.text(content or literal(""))
+            entries, assumed, fill = parameters(text.shown).entries, text.assumed, False
+        for entry in entries or ():
+            filled = self.substituted(entry) if fill else entry
+            key = "/".join(part.strip("/") for part in (full.value or "/", *filled.path) if part.strip("/"))
+            self.put(f"/{key}", filled.value, known(str(filled.value), assumed), action.line)
+
+    # Nodes
+
+    def do_node(self, action: Action) -> None:
+        if self.generation == 1:
+            self.node1(action)
+        else:
+            self.node2(action, known(""))
+
+    def node2(self, action: Action, container: Text) -> None:
+        package, executable, plugin = (self.field(action, key) for key in ("package", "executable", "plugin"))
+        name = self.field(action, "name")
+        namespace = self.field(action, "namespace")
+        full_namespace = self.scope.namespace if namespace.value == "" else self.inside(namespace)
+        arguments = tuple(self.text(value) for value in action.all("arguments"))
+        outer = self.scope
+        self.scope = outer.inner(len(self.open))
+        first_remaps, first_settings, renamed, moved = self.ros_arguments(arguments, action.line)
+        self.run(child for child in action.children if child.kind in _OF_NODE)
+        remaps, settings = self.scope.remaps, self.scope.settings
+        self.scope = outer
+        if moved is not None:
+            full_namespace = within(known("/"), moved)
+        if renamed is not None:
+            name = renamed
+        kind = action.kind if action.kind in ("lifecycle", "container", "composable", "test") else "node"
+        started = self.begin(
+            action,
+            kind,
+            package=package,
+            executable=executable,
+            plugin=plugin,
+            container=container,
+            name=name,
+            namespace=full_namespace,
+            remaps=(*first_remaps, *remaps),
+            settings=(*first_settings, *settings),
+            arguments=arguments,
+        )
+        if kind == "container":
+            self.load(action, started.full_name)
+
+    def field(self, action: Action, key: str) -> Text:
+        return self.text(action.get(key) or literal(""))
+
+    def begin(self, action: Action, kind: str, **fields: Any) -> Started:
+        """Notes that an action starts something. fields: those of Started that are not empty."""
+        empty = known("")
+        texts: dict[str, Any] = {key: fields.get(key, empty) for key in _TEXTS}
+        lists: dict[str, Any] = {key: tuple(fields.get(key, ())) for key in ("remaps", "settings", "arguments")}
+        started = Started(
+            kind=kind,
+            generation=self.generation,
+            **texts,
+            **lists,
+            conditions=tuple(self.open),
+            assumed=every([tuple(self.assumed)]),
+            after=tuple(self.after),
+            at=self.at(action.line),
+            chain=tuple(self.chain),
+        )
+        self.started.append(started)
+        for key, text in texts.items():
+            self.told(text, action.line, f"{key} of {kind}")
+        return started
+
+    def ros_arguments(
+        self, arguments: Sequence[Text], line: int
+    ) -> tuple[list[Remap], list[Setting | SettingFile], Text | None, Text | None]:
+        """Remappings, parameters, name and namespace that ROS 2 arguments on a command line give."""
+        remaps: list[Remap] = []
+        settings: list[Setting | SettingFile] = []
+        name: Text | None = None
+        namespace: Text | None = None
+        inside, option = False, ""
+        for text in arguments:
+            word = text.value
+            if word == "--ros-args":
+                inside, option = True, ""
+            elif word == "--":
+                inside = False
+            elif not inside:
+                continue
+            elif word in ("-r", "--remap", "-p", "--param", "--params-file"):
+                option = word
+            elif option and word is not None:
+                old, _, new = word.partition(":=")
+                rule = ros2_rule(word)
+                if option in ("-r", "--remap") and rule is not None:
+                    if rule.match in ("__node", "__name"):
+                        name = name or known(new, text.assumed)
+                    elif rule.match == "__ns":
+                        namespace = namespace or known(new, text.assumed)
+                    else:
+                        remaps.append(Remap(known(old), known(new, text.assumed), self.at(line)))
+                elif option in ("-p", "--param"):
+                    settings.append(Setting(old, yaml_value(new), known(new, text.assumed), self.at(line)))
+                elif option == "--params-file":
+                    settings.append(SettingFile(text, self.entries(word, line), self.at(line)))
+                option = ""
+            elif option:
+                self.miss(line, f"argument `{option} {text.shown}`", *text.reasons)
+                option = ""
+        return remaps, settings, name, namespace
+
+    def load(self, action: Action, container: Text) -> None:
+        """Starts the composable nodes below an action."""
+        outer, self.scope = self.scope, self.scope.inner(len(self.open))
+        before, self.container = self.container, container
+        self.run(child for child in action.children if child.kind == "composable")
+        self.container = before
+        self.scope = outer
+
+    def do_load(self, action: Action) -> None:
+        own = action.get("container-node")
+        if own is not None:
+            container = self.inside(self.text(own))
+        else:
+            container = within(known("/"), self.field(action, "container"))
+        self.load(action, self.told(container, action.line, "container"))
+
+    def do_composable(self, action: Action) -> None:
+        self.node2(action, self.container)
+
+    def do_process(self, action: Action) -> None:
+        words = tuple(self.text(value) for value in action.all("command"))
+        package = executable = known("")
+        rest = words
+        if [w.value for w in words[:2]] == ["ros2", "run"] and len(words) >= 4:
+            package, executable, rest = words[2], words[3], words[4:]
+        elif words:
+            installed = _INSTALLED.match(words[0].value or "")
+            executable, rest = words[0], words[1:]
+            if installed is not None:
+                package, executable = (known(part, words[0].assumed) for part in installed.groups())
+        remaps, settings, name, namespace = self.ros_arguments(rest, action.line)
+        self.begin(
+            action,
+            "process",
+            package=package,
+            executable=executable,
+            name=name or known(""),
+            namespace=namespace or known(""),
+            remaps=remaps,
+            settings=settings,
+            arguments=words,
+        )
+
+    def node1(self, action: Action) -> None:
+        package, executable, name = (self.field(action, key) for key in ("package", "executable", "name"))
+        base = self.scope.namespace if self.scope.namespace.value != "" else known("/")
+        namespace = within(base, self.field(action, "namespace")) if action.get("namespace") is not None else base
+        words = [word for value in action.all("arguments") for word in self.split(self.text(value))]
+        for text in words:
+            if text.value is not None and text.value.startswith("__name:="):
+                name = known(text.value[8:], text.assumed)
+            elif text.value is not None and text.value.startswith("__ns:="):
+                namespace = within(known("/"), known(text.value[6:], text.assumed))
+        full = within(namespace, name)
+        if full.value is not None:
+            self.clear(action, full)
+        outer, self.scope = self.scope, self.scope.inner(len(self.open))
+        self.scope.remaps = []
+        own: list[Remap] = []
+        given: list[tuple[Action, list[str]]] = [(action, []) for action in self.scope.private]
+        for child in action.children:
+            verdict, open_, _, _ = self.decide(child.conditions)
+            if verdict is False:
+                continue
+            self.open += open_
+            if child.kind == "remap":
+                own.append(self.remap(child))
+            elif child.kind == "parameter":
+                given.append((child, open_))
+            elif child.kind == "parameter-file" and full.value is not None:
+                self.serve_file(child, full)
+            del self.open[len(self.open) - len(open_) :]
+        self.scope = outer
+        # Files are loaded as they are met, then come the private parameters of the scope, then the node's own.
+        for child, open_ in given if full.value is not None else ():
+            self.open += open_
+            self.serve(child, full)
+            del self.open[len(self.open) - len(open_) :]
+        remaps = _without_earlier([*self.scope.remaps, *own])
+        for text in words:
+            old, sign, new = (text.value or "").partition(":=")
+            if not sign or old.startswith("__"):
+                continue
+            if old.startswith("_"):
+                if full.value is not None:
+                    self.put(f"{full.value}/{old[1:]}", ros1_value(new), known(new, text.assumed), action.line)
+            else:
+                remaps.append(Remap(known(old), known(new, text.assumed), self.at(action.line)))
+        kind, plugin, container = ("test" if action.kind == "test" else "node"), known(""), known("")
+        if package.value == "nodelet" and words:
+            command = words[0].value
+            if command == "manager":
+                kind = "container"
+            elif command in ("load", "standalone") and len(words) > 1:
+                plugin = words[1]
+                kind = "composable" if command == "load" else "node"
+                if command == "load" and len(words) > 2:
+                    container = within(namespace, words[2])
+        self.begin(
+            action,
+            kind,
+            package=package,
+            executable=executable,
+            plugin=plugin,
+            container=container,
+            name=name,
+            namespace=namespace,
+            remaps=remaps,
+            arguments=words,
+        )
+
+    def split(self, text: Text) -> list[Text]:
+        """The words of one argument, which a substitution may have brought several of."""
+        if text.value is None:
+            return [text]
+        return [known(word, text.assumed) for word in text.value.split()] if " " in text.value else [text]
+
+
+_INSTALLED = re.compile(r"\$\(prefix ([\w.-]+)\)/lib/\1/([^/]+)\Z")
+_TEXTS = ("package", "executable", "plugin", "container", "name", "namespace")
+_OF_NODE = frozenset(("remap", "parameter", "parameter-file", "unknown"))
+_STARTING = frozenset(("node", "lifecycle", "test", "container", "composable", "load", "include", "group", "process"))
+_DOING = {
+    "argument": _Launch.do_argument,
+    "let": _Launch.do_let,
+    "environment": _Launch.do_environment,
+    "group": _Launch.do_group,
+    "namespace": _Launch.do_namespace,
+    "remap": _Launch.do_remap,
+    "include": _Launch.do_include,
+    "parameter": _Launch.do_parameter,
+    "parameter-file": _Launch.do_parameter_file,
+    "node": _Launch.do_node,
+    "lifecycle": _Launch.do_node,
+    "test": _Launch.do_node,
+    "container": _Launch.do_node,
+    "composable": _Launch.do_composable,
+    "load": _Launch.do_load,
+    "process": _Launch.do_process,
+    "pass": _Launch.do_nothing,
+}
+
+
+def _without_earlier(remaps: list[Remap]) -> list[Remap]:
+    """Remappings less those for whose name there is a later one, as roslaunch keeps them."""
+    kept: list[Remap] = []
+    for remap in remaps:
+        if remap.old.value is not None and not remap.conditions:
+            kept = [k for k in kept if k.old.value is None or canonical(k.old.value) != canonical(remap.old.value)]
+        kept.append(remap)
+    return kept

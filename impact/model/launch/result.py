@@ -1,0 +1,201 @@
+"""What following a launch gives: the nodes it starts, with all that the launch file gives them, and what is unknown."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any, NamedTuple, Protocol
+
+from ...facts.flow_launch import Entry, LaunchFile, ParameterFile
+from ..flow.names import canonical, joined
+from .text import Text, known, within
+
+
+class Sources(Protocol):
+    """Where launch and parameter files come from. package and path: as in `$(find package)/path`, the path normal and
+    without a leading slash. None for what is not there."""
+
+    def launch(self, package: str, path: str) -> LaunchFile | None:
+        """The facts of a launch file."""
+        ...
+
+    def parameters(self, package: str, path: str) -> ParameterFile | None:
+        """The facts of a file of parameters."""
+        ...
+
+
+class At(NamedTuple):
+    """A line of a file in a package's share folder."""
+
+    package: str
+    path: str
+    line: int
+
+
+class Remap(NamedTuple):
+    """A remapping as given; in ROS 2 old may have a node's name before it (`node:old`). conditions: as in Started."""
+
+    old: Text
+    new: Text
+    at: At
+    conditions: tuple[str, ...] = ()
+
+
+class Setting(NamedTuple):
+    """A parameter. name: private to its node (`scan_topic`), or global on ROS 1's parameter server (`/robot/scan`).
+    value: bool, int, float, str, None or list, if text.value is known. conditions: as in Started."""
+
+    name: str
+    value: Any
+    text: Text
+    at: At
+    conditions: tuple[str, ...] = ()
+
+
+class SettingFile(NamedTuple):
+    """A parameter file given to a node of ROS 2. entries: None where it could not be had. plain: its entries are
+    parameters by themselves, without the name of a node above them."""
+
+    file: Text
+    entries: tuple[Entry, ...] | None
+    at: At
+    conditions: tuple[str, ...] = ()
+    plain: bool = False
+
+
+class Started(NamedTuple):
+    """A node, or another program, that the launch starts.
+
+    kind: `node`, `lifecycle`, `test`, `container`, `composable` (ROS 1: a nodelet that is loaded) or `process`.
+    executable or plugin: what runs. container: full name of where a composable is loaded. name: empty where it is left
+    to the program. namespace: absolute; empty where it is left to the program, which then means `/`.
+    remaps, settings: in the order in which they are given to the node; of remaps ROS 1 takes the last for a name, ROS 2
+    the first; of settings the last holds. settings of ROS 1 are on the server: Launched.values().
+    conditions: those that could not be decided, as text. assumed: launch arguments whose defaults decided the others.
+    after: events or times it waits for. at: the line that starts it. chain: the lines of the includes that lead there,
+    outermost first.
+    """
+
+    kind: str
+    generation: int
+    package: Text
+    executable: Text
+    plugin: Text
+    container: Text
+    name: Text
+    namespace: Text
+    remaps: tuple[Remap, ...]
+    settings: tuple[Setting | SettingFile, ...]
+    arguments: tuple[Text, ...]
+    conditions: tuple[str, ...]
+    assumed: tuple[str, ...]
+    after: tuple[str, ...]
+    at: At
+    chain: tuple[At, ...]
+
+    @property
+    def full_name(self) -> Text:
+        """Namespace and name together; unknown where either is, or where the name is left to the program."""
+        if self.name.value == "":
+            return Text(None, joined(self.namespace.shown or "/", "<its own>"), ("the name is left to the program",))
+        full = within(self.namespace if self.namespace.value != "" else known("/"), self.name)
+        if full.value is not None and full.value[:1] != "/":
+            return Text(None, full.shown, (f"`{full.value}` is no name of a node",), full.assumed)
+        return full
+
+
+class Skipped(NamedTuple):
+    """Something not started because a condition is false. assumed: the arguments whose defaults made it so; empty when
+    it is false whatever the arguments."""
+
+    kind: str
+    at: At
+    conditions: tuple[str, ...]
+    assumed: tuple[str, ...]
+
+
+class Unresolved(NamedTuple):
+    """Something that could not be followed or filled in: what, and why."""
+
+    at: At
+    what: str
+    reasons: tuple[str, ...]
+
+
+class Argument(NamedTuple):
+    """A launch argument as declared. value: what it has in this launch."""
+
+    name: str
+    value: Text
+    at: At
+
+
+class Launched(NamedTuple):
+    """All that a launch does. server: ROS 1's parameters by their global names. files: (package, path) of the launch
+    files read. actions: how many were done."""
+
+    started: tuple[Started, ...]
+    server: Mapping[str, Setting]
+    arguments: tuple[Argument, ...]
+    skipped: tuple[Skipped, ...]
+    unresolved: tuple[Unresolved, ...]
+    files: tuple[tuple[str, str], ...]
+    actions: int = 0
+
+    def values(self, started: Started, name: str = "") -> dict[str, Setting]:
+        """The private parameters of a node. name: its full name where the launch leaves it to the program; without one
+        only what holds for any node is given."""
+        full = name or started.full_name.value or ""
+        if started.generation == 1:
+            below = f"{full}/"
+            return {
+                key[len(below) :]: setting for key, setting in self.server.items() if full and key.startswith(below)
+            }
+        found: dict[str, Setting] = {}
+        for setting in started.settings:
+            if isinstance(setting, Setting):
+                found.pop(setting.name, None)
+                found[setting.name] = setting
+                continue
+            for key, entry in file_values(setting, full).items():
+                found.pop(key, None)
+                shown = str(entry.value)
+                text = Text(shown, shown, (), setting.file.assumed)
+                found[key] = Setting(key, entry.value, text, setting.at, setting.conditions)
+        return found
+
+
+def file_values(setting: SettingFile, full_name: str) -> dict[str, Entry]:
+    """The entries of a ROS 2 parameter file that hold for a node, later ones over earlier ones. full_name: empty for a
+    node whose name is not known: then only what is for every node."""
+    found: dict[str, Entry] = {}
+    for entry in setting.entries or ():
+        if setting.plain:
+            found[".".join(entry.path)] = entry
+            continue
+        if "ros__parameters" not in entry.path:
+            continue
+        split = entry.path.index("ros__parameters")
+        name = ".".join(entry.path[split + 1 :])
+        if name and _names_node(entry.path[:split], full_name):
+            found.pop(name, None)
+            found[name] = entry
+    return found
+
+
+def _names_node(keys: tuple[str, ...], full_name: str) -> bool:
+    """Whether the keys above `ros__parameters` mean a node: `/**` any, `*` one part of a name, `**` any number."""
+    pattern = _pattern(keys)
+    return pattern is None or (bool(full_name) and pattern.fullmatch(full_name) is not None)
+
+
+@lru_cache(maxsize=4096)
+def _pattern(keys: tuple[str, ...]) -> re.Pattern[str] | None:
+    """What names of nodes match some keys; None for any."""
+    pattern = canonical("/" + "/".join(keys))
+    if pattern == "/**":
+        return None
+    parts = [r"(?:/\w+)*" if part == "**" else r"/\w+" if part == "*" else "/" + re.escape(part)
+             for part in pattern.split("/")[1:]]  # fmt: skip
+    return re.compile("".join(parts))

@@ -1,0 +1,304 @@
+"""Texts of a launch as far as they are known, and the small expressions that launch files compute with.
+
+Sources: roslaunch's substitution_args.py and convert_value(); launch's PythonExpression.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from ...facts.flow_launch import Condition, Piece, Value, parameters, scalar
+from ..flow.names import joined
+
+LONGEST = 100_000
+
+
+class Text(NamedTuple):
+    """A text as far as it is known. value: None where it is not. shown: what is known of it, the rest as `<...>`.
+    reasons: why it is not known. assumed: launch arguments, and `$VARIABLE`s of the environment, on whose defaults it
+    rests."""
+
+    value: str | None
+    shown: str
+    reasons: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
+
+
+def known(value: str, assumed: tuple[str, ...] = ()) -> Text:
+    """A text that is known."""
+    return Text(value, value, (), assumed)
+
+
+def unknown(shown: str, *reasons: str, assumed: tuple[str, ...] = ()) -> Text:
+    """A text that is not."""
+    return Text(None, f"<{shown}>", reasons, assumed)
+
+
+def together(texts: Sequence[Text], between: str = "") -> Text:
+    """Texts one after the other as one."""
+    value = None if any(t.value is None for t in texts) else between.join(t.value or "" for t in texts)
+    if value is not None and len(value) > LONGEST:
+        return unknown("...", "is too long")
+    shown = value if value is not None else between.join(t.shown for t in texts)[:LONGEST]
+    return Text(value, shown, every(t.reasons for t in texts), every(t.assumed for t in texts))
+
+
+def within(namespace: Text, name: Text) -> Text:
+    """A name put into a namespace."""
+    if name.value is not None and name.value[:1] == "/":
+        return name
+    if namespace.value is None or name.value is None:
+        both = together((namespace, name), "/")
+        return both._replace(value=None, shown=both.shown.replace("//", "/"))
+    return Text(joined(namespace.value, name.value), joined(namespace.value, name.value), (),
+                every((namespace.assumed, name.assumed)))  # fmt: skip
+
+
+_MOST = 200
+
+
+def every(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
+    """All of several tuples, each once, in order, as far as a person reads on."""
+    return tuple(dict.fromkeys(item for group in groups for item in group))[:_MOST]
+
+
+def show(value: Value) -> str:
+    """A value as a person would write it."""
+    return "".join(_show_piece(piece) for piece in value)
+
+
+def _show_piece(piece: Piece) -> str:
+    if piece.kind == "text":
+        return piece.text
+    if piece.kind == "other":
+        return f"<{piece.text}>"
+    parts = [show(part) for part in piece.parts]
+    if piece.kind == "eval":
+        return f"$(eval {parts[0]})"
+    if piece.kind == "equals" and len(parts) == 2:
+        return f"{parts[0]} == {parts[1]}"
+    if piece.kind in ("and", "or"):
+        return f" {piece.kind} ".join(f"({part})" for part in parts)
+    if piece.kind == "not":
+        return f"not ({parts[0]})" if parts else "not"
+    if piece.kind == "in":
+        return f"{parts[0]} in ({', '.join(parts[1:])})"
+    if piece.kind == "choose":
+        return f"({parts[1]} if {parts[0]} else {parts[2]})"
+    if piece.kind == "join":
+        return "/".join(parts)
+    return f"$({' '.join([piece.kind, *([piece.text] if piece.text else []), *parts])})"
+
+
+def show_condition(condition: Condition) -> str:
+    text = show(condition.value)
+    return f"not ({text})" if condition.kind == "unless" else text
+
+
+def truth_of(text: Text) -> bool | None:
+    """What roslaunch and launch make of a text that is asked: True, False, or None for what they refuse."""
+    if text.value is None:
+        return None
+    return {"true": True, "1": True, "false": False, "0": False}.get(text.value.strip().lower())
+
+
+def flag(value: bool) -> str:
+    return "true" if value else "false"
+
+
+# Expressions
+
+
+class CannotTell(Exception):
+    """An expression that is not evaluated; the message says why."""
+
+
+_FUNCTIONS: dict[str, Any] = {
+    "str": str, "int": int, "float": float, "bool": bool, "abs": abs, "min": min, "max": max, "len": len,
+    "round": round, "any": any, "all": all,
+}  # fmt: skip
+METHODS = frozenset(
+    ("lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "replace", "capitalize", "title", "split",
+     "removeprefix", "removesuffix", "isdigit", "find", "count"),
+)  # fmt: skip
+
+
+def text_method(receiver: str, name: str, arguments: Sequence[Any]) -> Any:
+    """What one of METHODS gives. Raises CannotTell for other methods, wrong arguments and long results."""
+    longest = max((len(a) for a in arguments if isinstance(a, str)), default=0)
+    if name not in METHODS or len(receiver) * longest > LONGEST:
+        raise CannotTell(f"`{name}` is not evaluated")
+    try:
+        return getattr(receiver, name)(*arguments)
+    except (TypeError, ValueError) as error:
+        raise CannotTell(f"`{name}` fails: {error}") from error
+
+
+def evaluate(expression: str, names: Mapping[str, Any], functions: Mapping[str, Any]) -> Any:
+    """The value of a small Python expression: constants, comparisons, sums, methods of str, and the names and functions
+    given. Raises CannotTell for anything else."""
+    if len(expression) > 10_000:
+        raise CannotTell("is too long")
+    try:
+        tree = ast.parse(expression.strip(), mode="eval")
+        return _Evaluator(names, functions).value(tree.body)
+    except CannotTell:
+        raise
+    except (SyntaxError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
+        raise CannotTell(f"`{expression[:80]}` fails: {error}") from error
+    except (RecursionError, MemoryError) as error:
+        raise CannotTell("is nested too deeply") from error
+
+
+class _Evaluator:
+    def __init__(self, names: Mapping[str, Any], functions: Mapping[str, Any]):
+        self.names = names
+        self.functions = functions
+
+    def value(self, node: ast.expr) -> Any:
+        if isinstance(node, ast.Constant):
+            return node.value
+        if isinstance(node, ast.Name):
+            if node.id in self.names:
+                found = self.names[node.id]
+                if isinstance(found, CannotTell):
+                    raise found
+                return found
+            raise CannotTell(f"`{node.id}` is no name an expression may use")
+        if isinstance(node, ast.BoolOp):
+            result: Any = None
+            for part in node.values:
+                result = self.value(part)
+                if bool(result) == isinstance(node.op, ast.Or):
+                    break
+            return result
+        if isinstance(node, ast.UnaryOp):
+            operand = self.value(node.operand)
+            if isinstance(node.op, ast.Not):
+                return not operand
+            if isinstance(node.op, ast.USub):
+                return -operand
+            if isinstance(node.op, ast.UAdd):
+                return +operand
+        if isinstance(node, ast.BinOp):
+            return self.sum(node)
+        if isinstance(node, ast.Compare):
+            left = self.value(node.left)
+            for op, right_node in zip(node.ops, node.comparators, strict=True):
+                right = self.value(right_node)
+                if not _COMPARISONS[type(op)](left, right):
+                    return False
+                left = right
+            return True
+        if isinstance(node, ast.IfExp):
+            return self.value(node.body if self.value(node.test) else node.orelse)
+        if isinstance(node, (ast.List, ast.Tuple)):
+            return [self.value(element) for element in node.elts]
+        if isinstance(node, ast.Subscript):
+            return self.value(node.value)[self.index(node.slice)]
+        if isinstance(node, ast.Call) and not node.keywords:
+            return self.call(node)
+        raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
+
+    def index(self, node: ast.expr) -> Any:
+        if not isinstance(node, ast.Slice):
+            return self.value(node)
+        return slice(*(None if bound is None else self.value(bound) for bound in (node.lower, node.upper, node.step)))
+
+    def sum(self, node: ast.BinOp) -> Any:
+        left, right = self.value(node.left), self.value(node.right)
+        calculate = _SUMS.get(type(node.op))
+        if calculate is None:
+            raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
+        if isinstance(node.op, (ast.Mult, ast.Mod)) and (
+            isinstance(left, (str, list)) or isinstance(right, (str, list))
+        ):
+            raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
+        result = calculate(left, right)
+        if isinstance(result, int) and abs(result) > 2**63:
+            raise CannotTell("is too large a number")
+        return result
+
+    def call(self, node: ast.Call) -> Any:
+        arguments = [self.value(argument) for argument in node.args]
+        if isinstance(node.func, ast.Name):
+            function = self.functions.get(node.func.id) or _FUNCTIONS.get(node.func.id)
+            if function is not None:
+                return function(*arguments)
+        if isinstance(node.func, ast.Attribute):
+            if isinstance(node.func.value, ast.Name) and node.func.value.id == "math":
+                function = getattr(math, node.func.attr, None)
+                if callable(function) and node.func.attr in (
+                    "sqrt",
+                    "sin",
+                    "cos",
+                    "radians",
+                    "degrees",
+                    "floor",
+                    "ceil",
+                ):
+                    return function(*arguments)
+            if node.func.attr in METHODS:
+                receiver = self.value(node.func.value)
+                if isinstance(receiver, str):
+                    return text_method(receiver, node.func.attr, arguments)
+        raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
+
+
+_SUMS = {
+    ast.Add: lambda a, b: a + b,
+    ast.Sub: lambda a, b: a - b,
+    ast.Mult: lambda a, b: a * b,
+    ast.Div: lambda a, b: a / b,
+    ast.FloorDiv: lambda a, b: a // b,
+    ast.Mod: lambda a, b: a % b,
+}
+_COMPARISONS = {
+    ast.Eq: lambda a, b: a == b,
+    ast.NotEq: lambda a, b: a != b,
+    ast.Lt: lambda a, b: a < b,
+    ast.LtE: lambda a, b: a <= b,
+    ast.Gt: lambda a, b: a > b,
+    ast.GtE: lambda a, b: a >= b,
+    ast.In: lambda a, b: a in b,
+    ast.NotIn: lambda a, b: a not in b,
+    ast.Is: lambda a, b: a is b or a == b,
+    ast.IsNot: lambda a, b: not (a is b or a == b),
+}
+
+
+def ros1_value(text: str, type_: str = "auto") -> Any:
+    """A parameter of ROS 1 from its text, as roslaunch's convert_value() makes it; the text where that would fail."""
+    kind = type_.lower().strip() or "auto"
+    try:
+        if kind == "auto":
+            if "." in text:
+                return float(text)
+            if "_" not in text:
+                return int(text)
+        elif kind == "int":
+            return int(text)
+        elif kind == "double":
+            return float(text)
+    except ValueError:
+        pass
+    if kind in ("auto", "bool", "boolean"):
+        word = text.lower().strip()
+        if word in ("true", "false"):
+            return word == "true"
+        if kind != "auto" and word in ("1", "0"):
+            return word == "1"
+    if kind == "yaml":
+        return yaml_value(text)
+    return text
+
+
+def yaml_value(text: str) -> Any:
+    """What a text is by YAML's rules; mappings stay text."""
+    if text[:1] not in ("[", "'", '"', "-", "!", "&", "{", ">", "|"):
+        return scalar(text.strip())
+    entries = parameters(text).entries
+    return entries[0].value if len(entries) == 1 and entries[0].path == () else scalar(text)

@@ -1,0 +1,1 @@
+"""Names of Python resolved across files and into what packages offer."""

@@ -1,0 +1,86 @@
+"""Names of other packages that Python files use and that only some stored versions have, or have in the same form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from ...facts.python import PythonFile
+from ...facts.python_objects import PythonUse
+
+if TYPE_CHECKING:
+    from ...targets.surface.store import Surfaces
+
+
+class Changing:
+    """The words by which uses of names that change between versions are told. What they are uses of is told where the
+    versions are known, see targets/offers_python.py."""
+
+    def __init__(self, surfaces: Surfaces):
+        self._surfaces = surfaces
+        self._words: dict[str, frozenset[str]] = {}
+
+    def words(self, module: str) -> frozenset[str]:
+        """Last parts of the changing names of a top-level module."""
+        known = self._words.get(module)
+        if known is None:
+            known = self._words[module] = frozenset(self._words_of(packages_of(module)))
+        return known
+
+    def _words_of(self, packages: Iterable[str]) -> Iterator[str]:
+        for package in packages:
+            for line in self._surfaces.lines(package).values():
+                for name in line.events.get("python", ()):
+                    parts = name.split(".")
+                    if parts[-1] in ("__init__", "__new__"):
+                        yield parts[-2] if len(parts) > 1 else parts[0]
+                    elif not parts[-1].startswith("__"):
+                        yield parts[-1]
+
+    def stored(self, module: str) -> bool:
+        """Whether versions of a package that a top-level module may come from are stored."""
+        return not self._surfaces.packages.isdisjoint(packages_of(module))
+
+    def concerned(self, name: str) -> bool:
+        """Whether a dotted name may be, or lie in, one that changes."""
+        head, *parts = name.split(".")
+        words = self.words(head)
+        return bool(words) and (head in words or not words.isdisjoint(parts))
+
+
+def packages_of(module: str) -> tuple[str, ...]:
+    """Packages that a top-level module may come from. In ROS 2 the Python half of a package that has both is often one
+    of its own, after which the module is not called."""
+    return (module, f"{module}_py")
+
+
+def python_packages(files: Iterable[str]) -> set[str]:
+    """Names of the folders that are Python packages among some files."""
+    return {path.split("/")[-2] for path in files if path.endswith("/__init__.py")}
+
+
+def uses_of(facts: PythonFile, own: frozenset[str], changing: Changing) -> Iterator[PythonUse]:
+    """Uses in one file of names that may have changed, or never been. own: top-level modules of the package itself.
+    Besides what PythonUse tells, how is `import` for a module that is imported, `from` for a name that is imported from
+    one and has not changed, and `name` for any other name."""
+    told: set[str] = set()
+    for item in facts.imports:
+        head = item.module.partition(".")[0]
+        if item.level or head in own or not changing.stored(head):
+            continue
+        if changing.concerned(item.module):
+            yield PythonUse(item.module, "import", item.line, item.column, None, "", item.lazy, True, item.conditions)
+        for word in item.names:
+            name = f"{item.module}.{word}"
+            if word != "*" and name not in told and not changing.concerned(name):
+                told.add(name)
+                yield PythonUse(name, "from", item.line, item.column, None, "", item.lazy, True, item.conditions)
+    for attribute in facts.attributes:
+        if attribute.text.partition(".")[0] not in own and changing.concerned(attribute.text):
+            yield PythonUse(
+                attribute.text, "name", attribute.line, attribute.column, None, "", attribute.lazy, True,
+                attribute.conditions,
+            )  # fmt: skip
+    for use in facts.uses:
+        if use.name[0] != "." and use.name.partition(".")[0] not in own and changing.concerned(use.name):
+            yield use

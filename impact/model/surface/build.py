@@ -1,0 +1,463 @@
+"""What a version of a package offers to CMake and at run time: targets, headers, commands, programs, plugins, launch
+files; and what changed.
+
+All of it is read from the build of one repository state. What hangs on a condition, or on what only CMake knows, is
+marked or listed as unknown, never guessed.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import posixpath
+import re
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from ...facts import flow_launch
+from ...facts.cmake import CMakeFile
+from ...facts.flow_launch import Action, plain
+from ...facts.kinds import kind_of as kind_by_name
+from ...targets.surface.fields import snake
+from ...targets.surface.surface import BuildSurface, ExportedTarget, Header, LaunchFile, Plugin, Program
+from ..cmake.build import Install, for_tests
+from ..flow.started import launch_kind
+from ..package import role_of_folder
+
+if TYPE_CHECKING:
+    from ..workspace import Package, Workspace
+
+KINDS = frozenset((
+    "manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "pyproject", "plugin_xml", "xml",
+    "msg", "srv", "action", "idl",
+))  # fmt: skip
+"""The kinds of facts that a surface of the build needs."""
+
+
+def surface_of(workspace: Workspace, package: Package) -> BuildSurface:
+    """The surface of a package as the state of the workspace builds it. The workspace needs no facts besides KINDS;
+    its tree is read for the arguments of launch files."""
+    return _Surface(workspace, package).surface()
+
+
+# Names of headers, by their last part.
+_HEADER = re.compile(r"\.(?:h|hpp|hh|hxx|h\+\+|ipp|tpp|tcc|txx|inl|impl|cuh)\Z")
+_CONFIGURATION = re.compile(r"(.+?)(?:-config|Config)\.cmake(?:\.in)?\Z")
+_LIBRARIES = frozenset(("library", "interface", "module", "imported", "generated", "external"))
+# Where files that are made while building lie.
+_BUILT = ("${CMAKE_BINARY_DIR}", "${CATKIN_DEVEL_PREFIX}")
+_FOLLOWED = 30
+
+
+class _Surface:
+    def __init__(self, workspace: Workspace, package: Package):
+        self.workspace, self.package, self.build = workspace, package, package.build
+        self.prefix = f"{package.path}/" if package.path else ""
+        self.name = self.build.project or package.name
+        self.unknown: dict[tuple[str, str], None] = {}
+        self.targets = {target.name: target for target in self.build.targets}
+        # Packages of catkin that DEPENDS names are taken for CATKIN_DEPENDS.
+        self.of_catkin = frozenset(found.name for found in self.build.found if found.how == "catkin")
+        self.installs = [install for install in self.build.installs if not for_tests(install.conditions)]
+        self.exports = [export for export in self.build.exports if not for_tests(export.conditions)]
+        self.generated = [made for made in self.build.generated if made.offered]
+
+    def surface(self) -> BuildSurface:
+        package, manifest = self.package, self.package.manifest
+        commands, variables = self.extras()
+        targets = tuple(self.exported_targets())
+        return BuildSurface(
+            package.name,
+            manifest.version,
+            package.build_type,
+            tuple(self.cmake_names()),
+            targets,
+            _once(self.libraries()),
+            _once(self.roots()),
+            _once(self.dependencies()),
+            _once(e.item for e in self.exports if e.how == "system_depends" and e.item not in self.of_catkin),
+            tuple(sorted(commands)),
+            tuple(sorted(variables)),
+            max((target.standard for target in targets), default=0),
+            tuple(sorted(set(self.programs()), key=msgspec.structs.astuple)),  # what is sure comes last, and counts
+            tuple(sorted(set(self.plugins()), key=msgspec.structs.astuple)),
+            tuple(self.launches()),
+            tuple(sorted(set(self.headers()), key=msgspec.structs.astuple)),
+            tuple(self.unknown),
+        )
+
+    def inside(self, path: str) -> str:
+        return path.removeprefix(self.prefix)
+
+    def note(self, part: str, why: str) -> None:
+        self.unknown[part, why] = None
+
+    # -- CMake
+
+    def cmake_names(self) -> Iterator[str]:
+        if self.build.ament_package is not None or self.build.catkin_package is not None:
+            yield self.name
+        given = {posixpath.basename(item) for install in self.installs for item in install.items}
+        found = set()
+        for file in self.build.files:
+            if not file.startswith(self.prefix):
+                continue
+            for command in self.commands_of(file):
+                if command.name in ("configure_package_config_file", "configure_file") and len(command.arguments) > 1:
+                    given.update(posixpath.basename(a.text) for a in command.arguments[:2])
+        for text in given:
+            made = _CONFIGURATION.match(text.replace("${PROJECT_NAME}", self.name).replace("@PROJECT_NAME@", self.name))
+            if made is not None and not made[1].startswith("$") and made[1] != self.name:
+                found.add(made[1])
+            elif made is not None and made[1] == self.name and not self.build.ament_package:
+                found.add(self.name)
+        yield from sorted(found - ({self.name} if self.build.catkin_package is not None else set()))
+
+    def exported_targets(self) -> Iterator[ExportedTarget]:
+        """Targets of export sets that install(EXPORT) or ament_export_targets() give away."""
+        spaces: dict[str, tuple[str, bool]] = {}
+        for export in self.exports:
+            if export.how == "ament_export_targets":
+                spaces[export.item] = (export.context or f"{self.name}::", not export.conditions)
+        for install in self.installs:
+            if install.kind == "export":
+                for item in install.items:
+                    spaces.setdefault(item, (install.namespace, not install.conditions))
+        members: dict[str, bool] = {}
+        seen: set[str] = set()
+        for install in self.installs:
+            if install.kind != "targets" or not install.export:
+                continue
+            seen.add(install.export)
+            if install.export not in spaces:
+                continue
+            space, sure = spaces[install.export]
+            for item in install.items:
+                target = self.targets.get(item)
+                kind = target.kind if target is not None else "unknown"
+                name = f"{space}{(target.export_name if target is not None else '') or item}"
+                if "$" in name:
+                    self.note("targets", f"`{name}` is exported")
+                elif name not in members:
+                    certain = sure and not install.conditions and not (target is not None and target.conditions)
+                    members[name] = certain
+                    yield ExportedTarget(name, kind, target.public_standard if target is not None else 0, certain)
+        for made in self.generated:
+            if made.how == "rosidl":
+                # The other type supports are those that are installed where the package is built.
+                for support in ("rosidl_typesupport_c", "rosidl_typesupport_cpp"):
+                    yield ExportedTarget(f"{self.name}::{made.target}__{support}", "generated", 0, not made.conditions)
+                self.note("targets", f"`{self.name}::{made.target}__*` is generated")
+        for missing in sorted(set(spaces) - seen):
+            if not any(made.target == missing for made in self.generated):
+                self.note("targets", f"the export set `{missing}`")
+
+    def libraries(self) -> Iterator[str]:
+        for export in self.exports:
+            if export.how not in ("libraries", "ament_export_libraries"):
+                continue
+            if "$" in export.item:
+                self.note("libraries", f"`{export.item}`")
+            else:
+                yield export.item
+
+    def roots(self) -> Iterator[str]:
+        """Folders of the prefix that dependants search for headers."""
+        for export in self.exports:
+            if export.how == "ament_export_include_directories" and "$" not in export.item:
+                yield export.item.removeprefix("./").rstrip("/")
+            elif export.how == "include_dirs":
+                yield "include"
+        for install in self.installs:
+            yield from (one.rstrip("/") for one in install.includes if "$" not in one)
+        for target in self.build.targets:
+            for folder in target.installed_includes:
+                root = folder.replace("${CMAKE_INSTALL_INCLUDEDIR}", "include").strip("/")
+                if "$" not in root:
+                    yield root
+
+    def dependencies(self) -> Iterator[str]:
+        for export in self.exports:
+            of_catkin = export.how == "system_depends" and export.item in self.of_catkin
+            if of_catkin or export.how in ("ament_export_dependencies", "catkin_depends"):
+                yield export.item
+        # In catkin the packages that messages come from are declared again; rosidl exports them by itself.
+        yield from (name for made in self.generated if made.how == "rosidl" for name, _ in made.dependencies)
+
+    # -- what the package's CMake files define
+
+    def commands_of(self, path: str):
+        """The commands of a CMake file of the workspace."""
+        gathered = self.workspace.gathered
+        if gathered.kinds.get(path) != "cmake":
+            return ()
+        file = gathered.facts(path).facts
+        return file.commands if isinstance(file, CMakeFile) else ()
+
+    def extras(self) -> tuple[set[str], set[str]]:
+        """Commands and variables that come with find_package()."""
+        cmake = {path for path in self.package.digest.files if kind_by_name(path) == "cmake"}
+        by_name: dict[str, list[str]] = {}
+        for path in cmake:
+            by_name.setdefault(re.sub(r"\.(?:in|em)\Z", "", posixpath.basename(path)), []).append(path)
+        wanted: list[str] = []
+        for export in self.exports:
+            if export.how == "cfg_extras":
+                wanted += self.file_of(export.item, cmake, by_name)
+        for path in cmake:
+            if _CONFIGURATION.match(posixpath.basename(path)) and role_of_folder(self.inside(path)) is None:
+                wanted.append(path)
+        commands: set[str] = set()
+        variables: set[str] = set()
+        read: set[str] = set()
+        while wanted and len(read) < _FOLLOWED:
+            path = wanted.pop(0)
+            if path in read:
+                continue
+            read.add(path)
+            inner = 0
+            for command in self.commands_of(path):
+                arguments = [a.text.replace("@PROJECT_NAME@", self.name) for a in command.arguments]
+                first = arguments[0] if arguments else ""
+                if command.name in ("function", "macro"):
+                    inner += 1
+                    if "$" in first or "@" in first:
+                        self.note("commands", f"`{first}` is defined")
+                    elif first and not first.startswith("_"):
+                        commands.add(first.lower())
+                elif command.name in ("endfunction", "endmacro"):
+                    inner -= 1
+                elif inner > 0:
+                    continue
+                elif command.name == "set" and first and not re.search(r"[$@]", first) and not first.startswith("_"):
+                    variables.add(first)
+                elif command.name == "include" and first:
+                    wanted += by_name.get(posixpath.basename(first), ())
+                elif any("FIND_COMPONENTS" in argument for argument in arguments):
+                    self.note("targets", "what there is hangs on COMPONENTS")
+        return commands, variables
+
+    def file_of(self, item: str, cmake: set[str], by_name: dict[str, list[str]]) -> list[str]:
+        """The file of the package that an extra is made from."""
+        for path in (item, f"{item}.in", f"{item}.em"):
+            if path in cmake:
+                return [path]
+        found = by_name.get(re.sub(r"\.(?:in|em)\Z", "", posixpath.basename(item)), [])
+        if len(found) != 1:
+            self.note("commands", f"`{item}` comes with it")
+        return found[:1]
+
+    # -- headers
+
+    def headers(self) -> Iterator[Header]:
+        roots = sorted({*self.roots(), "include"}, key=len, reverse=True)
+        for install in self.installs:
+            destination = posixpath.normpath(install.destination.replace("${CMAKE_INSTALL_INCLUDEDIR}", "include"))
+            if "$" in destination and install.kind in ("files", "directory"):
+                if any(_HEADER.search(item) or item.rstrip("/").endswith("include") for item in install.items):
+                    self.note("headers", f"`{install.destination}` is where they go")
+                continue
+            if not f"{destination}/".startswith("include/") or install.kind not in ("files", "directory", "programs"):
+                continue
+            sure = not install.conditions
+            for source, installed in self.copied(install, destination):
+                if _HEADER.search(installed):
+                    include, certain = _below(installed, roots)
+                    yield Header(include, installed, source, sure and certain)
+        yield from self.generated_headers(roots)
+
+    def copied(self, install: Install, destination: str) -> Iterator[tuple[str, str]]:
+        """(source, path in the prefix) of the files that an install rule copies."""
+        for item in install.items:
+            if install.kind != "directory":
+                if "$" in item and not item.startswith(_BUILT):
+                    self.note("headers" if destination.startswith("include") else "launches", f"`{item}` is installed")
+                    continue
+                name = install.rename or posixpath.basename(item)
+                yield "" if item.startswith(_BUILT) else self.inside(item), f"{destination}/{name}"
+                continue
+            if "$" in item:
+                self.note("headers" if destination.startswith("include") else "launches", f"`{item}` is installed")
+                continue
+            folder = item.rstrip("/")
+            base = "" if folder in ("", ".") else f"{folder}/"
+            top = destination if item.endswith("/") or not folder else f"{destination}/{posixpath.basename(folder)}"
+            for path in self.package.digest.files:
+                if path.startswith(base) and _let_in(install, path[len(base) :]):
+                    yield self.inside(path), f"{top}/{path[len(base) :]}"
+
+    def generated_headers(self, roots: list[str]) -> Iterator[Header]:
+        for made in self.generated:
+            sure = not made.conditions
+            for path in made.files if made.how != "protobuf" else ():
+                stem, ending = posixpath.splitext(posixpath.basename(path))
+                if made.how == "rosidl":
+                    folder = posixpath.basename(posixpath.dirname(path)) or ending.lstrip(".")
+                    for end in (".hpp", ".h"):
+                        yield _made(f"{self.name}/{folder}/{snake(stem)}{end}", sure)
+                elif made.how == "catkin":
+                    for end in _ROS1.get(ending, ()):
+                        yield _made(f"{self.name}/{stem}{end}.h", sure)
+                elif made.how == "reconfigure":
+                    yield _made(f"{self.name}/{stem}Config.h", sure)
+            if made.how == "parameters":
+                yield _made(f"{self.name}/{made.target}.hpp", False)
+                yield _made(f"{made.target}.hpp", False)
+            elif made.how == "protobuf":
+                self.note("headers", f"`{made.target}` is generated")
+
+    # -- programs, plugins, launch files
+
+    def programs(self) -> Iterator[Program]:
+        package = self.package
+        places = ("bin", f"lib/{package.name}", f"lib/{self.name}")
+        components = {export.executable for export in self.exports if export.how == "component" and export.executable}
+        for install in self.installs:
+            destination = install.destination.rstrip("/").replace("${PROJECT_NAME}", self.name)
+            if "$" in destination and install.kind in ("targets", "programs"):
+                self.note("programs", f"`{install.destination}` is where they go")
+            if destination not in places:
+                continue
+            sure = not install.conditions
+            for item in install.items:
+                target = self.targets.get(item)
+                if install.kind == "targets" and target is not None and target.kind == "executable":
+                    how = "component" if item in components else "binary"
+                    yield Program(target.output_name or item, destination, how, sure and not target.conditions)
+                elif install.kind in ("programs", "files") and "$" not in item:
+                    name = install.rename or posixpath.basename(item)
+                    if install.kind == "programs" or item.endswith(".py"):
+                        yield Program(name, destination, "script", sure)
+            if install.kind == "directory":
+                for _, installed in self.copied(install, destination):
+                    yield Program(posixpath.basename(installed), destination, "script", False)
+        if package.build_type == "ament_python" or any(i.kind == "python" for i in self.installs):
+            yield from self.entry_points()
+
+    def entry_points(self) -> Iterator[Program]:
+        files = {path: file for path, file in self.package.digest.setup}
+        place = next((f.install_scripts.removeprefix("$base/") for f in files.values() if f.install_scripts), "bin")
+        for name in ("setup.py", "setup.cfg", "pyproject.toml"):
+            file = files.get(f"{self.prefix}{name}")
+            if file is None:
+                continue
+            for entry, _, _ in file.entry_points:
+                yield Program(entry, place, "entry point")
+            for script in file.scripts:
+                yield Program(posixpath.basename(script), place, "script")
+            for clause in file.unresolved:
+                if clause.startswith(("entry_points", "scripts")):
+                    self.note("programs", clause)
+                elif clause.startswith("data_files"):
+                    self.note("launches", clause)
+
+    def plugins(self) -> Iterator[Plugin]:
+        for path, plugin in self.package.digest.plugins:
+            if role_of_folder(self.inside(path)) is None:
+                yield Plugin(plugin.name or plugin.type, plugin.type, plugin.base)
+        for export in self.exports:
+            if export.how == "component" and "$" not in export.item:
+                yield Plugin(export.item, export.item, "rclcpp_components", not export.conditions)
+
+    def launches(self) -> Iterator[LaunchFile]:
+        """Installed launch files, by the path below share/<package>."""
+        found: dict[str, str] = {}
+        share = (f"share/{self.package.name}", f"share/{self.name}")
+        for install in self.installs:
+            destination = install.destination.rstrip("/")
+            if install.kind not in ("directory", "files", "programs"):
+                continue
+            if not f"{destination}/".startswith((f"{share[0]}/", f"{share[1]}/")):
+                continue
+            for source, installed in self.copied(install, destination):
+                found[installed.split("/", 2)[2]] = source
+        for path, file in self.package.digest.setup:
+            if path not in (f"{self.prefix}setup.py", f"{self.prefix}setup.cfg"):
+                continue
+            for destination, pattern, _ in file.data_files:
+                if f"{destination}/".startswith((f"{share[0]}/", f"{share[1]}/")):
+                    wanted = re.compile(fnmatch.translate(pattern.replace("**/", "*")))
+                    for source in map(self.inside, self.package.digest.files):
+                        if wanted.match(source) and source.count("/") >= pattern.count("/"):
+                            folder = destination.rstrip("/").split("/", 2)[2:]
+                            found["/".join([*folder, posixpath.basename(source)])] = source
+        for path, source in sorted(found.items()):
+            kind = launch_kind(source)
+            # A folder of Python holds more than launch files.
+            if kind and ("launch" in path) and not path.endswith("__init__.py"):
+                yield LaunchFile(path, tuple(self.arguments(f"{self.prefix}{source}", kind)))
+
+    def arguments(self, path: str, kind: str) -> Iterator[tuple[str, str | None]]:
+        try:
+            data = self.workspace.read(path)
+        except OSError:
+            return
+        yield from launch_arguments(flow_launch.extract(data, kind).actions)
+
+
+def launch_arguments(actions: Iterable[Any]) -> Iterator[tuple[str, str | None]]:
+    """Name and default of each argument that a launch file takes, as LaunchFile has them."""
+    seen: set[str] = set()
+    for action in _actions(actions):
+        name = plain(action.get("name"))
+        if action.kind != "argument" or name is None or name in seen or action.get("value") is not None:
+            continue
+        seen.add(name)
+        default = action.get("default")
+        text = plain(default)
+        yield name, None if default is None else "?" if text is None else text
+
+
+_ROS1 = {
+    ".msg": ("",),
+    ".srv": ("", "Request", "Response"),
+    ".action": ("Action", "ActionGoal", "ActionResult", "ActionFeedback", "Goal", "Result", "Feedback"),
+}
+
+
+def _made(include: str, sure: bool) -> Header:
+    return Header(include, f"include/{include}", "", sure)
+
+
+def _actions(actions: Iterable[Action]) -> Iterator[Action]:
+    for action in actions:
+        yield action
+        if action.kind == "group":
+            yield from _actions(action.children)
+
+
+def _below(installed: str, roots: list[str]) -> tuple[str, bool]:
+    """What dependants write for a header: its path below the longest exported folder that leaves it in a folder, as
+    they all are called after their package; and whether that is the longest folder of all. Roots come longest first."""
+    rests = [installed[len(root) + 1 :] for root in roots if installed.startswith(f"{root}/")]
+    chosen = next((rest for rest in rests if "/" in rest), rests[-1] if rests else installed)
+    return chosen, not rests or chosen == rests[0]
+
+
+def _let_in(install: Install, inside: str) -> bool:
+    """Whether the patterns of install(DIRECTORY) let a file in; they are for names, or folders above them."""
+    let_in = not install.only
+    parts = inside.split("/")
+    for pattern in install.patterns:
+        text = pattern.lstrip("!")
+        if text.startswith("~"):
+            try:
+                # CMake's regular expressions are close to Python's; they are matched against the whole path.
+                hit = re.search(text[1:], f"/{inside}") is not None
+            except re.error:
+                continue
+        else:
+            hit = any(fnmatch.fnmatchcase(part, text) for part in parts) or fnmatch.fnmatchcase(inside, f"*{text}")
+        if hit and pattern.startswith("!"):
+            return False
+        let_in = let_in or hit
+    return let_in
+
+
+def _once(items: Iterable[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(items))
+
+
+# -- what changed ------------------------------------------------------------------------------------------------------
+

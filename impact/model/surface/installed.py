@@ -1,0 +1,362 @@
+"""What an installed package offers: read from a prefix (`/opt/ros/humble`, `/usr` of Debian's ROS), or from Debian
+packages. In the form of surface.py, so that it can be compared with what the sources of a version offer.
+
+Which headers are whose is told by Debian's lists of files where a prefix has them, else by the folder they lie in.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from ....edges.files import read_file, read_start, too_large
+from ....edges.limits import limits
+from ...facts import flow_launch, surface_cpp, surface_python
+from ...facts import interface as interfaces
+from ...facts import manifest as manifests
+from ...facts.interface import Field, Interface, Section
+from ...facts.surface import HeaderSurface
+from ...targets.machine.unpacked_deb import DebError, Member, members
+from ...targets.surface.compare import State
+from ...targets.surface.fields import ROS1_SUFFIXES
+from ...targets.surface.includes import compiled
+from ...targets.surface.surface import (
+    BuildSurface,
+    ExportedTarget,
+    Header,
+    LaunchFile,
+    Module,
+    Program,
+    PythonSurface,
+    Surface,
+)
+from .build import launch_arguments, launch_kind
+from .clones import VersionError
+
+_DPKG = Path("/var/lib/dpkg/info")
+_START = 4
+_HEADER = re.compile(r"\.(?:h|hpp|hh|hxx|h\+\+|ipp|tpp|tcc|txx|inl|impl|cuh)\Z")
+_PYTHON = re.compile(r"(?:local/)?lib/python3?[\d.]*/(?:dist|site)-packages/(.+)")
+_EXTENSION = re.compile(r"(?:\.cpython-[\w-]+|\.abi3)?\.so\Z")
+_CONFIGURATION = re.compile(r"(.+?)(?:-config|Config)\.cmake\Z")
+_IMPORTED = re.compile(r"\badd_library\s*\(\s*([\w:.+-]+)\s+(SHARED|STATIC|MODULE|INTERFACE|UNKNOWN)\s+IMPORTED\b")
+_COMMAND = re.compile(r"^\s*(?:function|macro)\s*\(\s*([A-Za-z]\w*)", re.MULTILINE | re.IGNORECASE)
+_DEPENDENCIES = re.compile(r"""set\s*\(\s*(?:_exported_dependencies|depends)\s+"([\w;]*)"\s*\)""")
+_STANDARD = re.compile(r"\bcxx_std_(\d\d)\b")
+_KINDS = {"SHARED": "library", "STATIC": "library", "MODULE": "module", "INTERFACE": "interface", "UNKNOWN": "imported"}
+# What gencpp and the generators of rosidl begin their headers with.
+_GENERATED = re.compile(rb"[Gg]enerated (?:by gencpp|from rosidl_)")
+_INTERFACES = ("msg", "srv", "action")
+_LIBRARIES = re.compile(r"""^set\s*\(\s*libraries\s+"([^"]*)"\s*\)""", re.MULTILINE)
+_TOLD = (
+    ("system", "what DEPENDS named is spelt out in an installed prefix"),
+    ("plugins", "plugins are not read from an installed prefix"),
+)
+
+
+class Part(NamedTuple):
+    """Files that were installed together: by one Debian package, or in a prefix without any. paths: from the prefix.
+    read: the content of one; start: its first bytes. Both raise OSError."""
+
+    paths: frozenset[str]
+    read: Callable[[str], bytes]
+    start: Callable[[str], bytes]
+    executable: Callable[[str], bool]
+    convention: bool = False
+
+    @property
+    def packages(self) -> frozenset[str]:
+        """ROS packages of which it has the manifest, or anything else below their share folder."""
+        return frozenset(found[1] for path in self.paths if (found := re.match(r"share/([^/]+)/package\.xml\Z", path)))
+
+
+def is_installed(asked: str) -> bool:
+    """Whether a user means an installed prefix, a Debian package or a folder of those, not a version."""
+    return os.sep in asked and os.path.exists(asked)
+
+
+def surface_at(package: str, asked: str) -> tuple[Surface, State]:
+    """What a package offers that is installed in a prefix, or in a .deb or a folder of them. Raises VersionError."""
+    place = Path(asked)
+    try:
+        parts = debs([place]) if place.is_file() else debs(found) if (found := sorted(place.glob("*.deb"))) else None
+        if parts is None:
+            parts = prefix(place, package)
+    except (DebError, OSError) as error:
+        raise VersionError(str(error)) from None
+    if not any(f"share/{package}/package.xml" in part.paths for part in parts):
+        known = sorted(frozenset().union(*(part.packages for part in parts)))
+        names = f"; it has {', '.join(known[:8])}" if known else ""
+        raise VersionError(f"{asked}: there is no `{package}` (no share/{package}/package.xml){names}")
+    surface = surface_of(package, parts)
+    return surface, State({package: surface})
+
+
+# -- where files are ---------------------------------------------------------------------------------------------------
+
+
+def prefix(folder: Path, package: str) -> list[Part]:
+    """The files of one package in a prefix, and of what its Debian packages have besides."""
+    share = folder / "share" / package
+    if not share.is_dir():
+        have = sorted(path.parent.name for path in folder.glob("share/*/package.xml"))
+        if not have:
+            raise VersionError(f"{folder}: is no prefix of ROS packages (nothing has share/PACKAGE/package.xml)")
+        return [_part(folder, [f"share/{name}/package.xml" for name in have])]
+    owned = _of_dpkg(folder, package)
+    if owned:
+        return [_part(folder, paths) for paths in owned]
+    roots = [f"share/{package}", f"include/{package}", f"lib/{package}"]
+    roots += [str(path.relative_to(folder)) for path in folder.glob(f"lib/python3*/*-packages/{package}")]
+    roots += [str(path.relative_to(folder)) for path in folder.glob(f"local/lib/python3*/*-packages/{package}")]
+    found = (path for root in roots for path in (folder / root).rglob("*") if path.is_file())
+    return [_part(folder, [path.relative_to(folder).as_posix() for path in found], convention=True)]
+
+
+def _part(folder: Path, paths: Iterable[str], convention: bool = False) -> Part:
+    return Part(
+        frozenset(paths),
+        lambda path: read_file(folder / path, limits().text),
+        lambda path: read_start(folder / path, _START),
+        lambda path: os.access(folder / path, os.X_OK),
+        convention,
+    )
+
+
+def _of_dpkg(folder: Path, package: str) -> list[list[str]]:
+    """Files below a prefix by Debian package, of those that have something of a ROS package; empty without dpkg."""
+    start = f"{folder.resolve().as_posix().rstrip('/')}/"
+    marks = [f"\n{start}share/{package}/".encode()]
+    marks += [f"\n{start}lib/{name}/dist-packages/{package}/".encode() for name in ("python3", "python2.7")]
+    found = []
+    for file in sorted(_DPKG.glob("*.list")):
+        try:
+            data = read_file(file, limits().listing)
+        except OSError:
+            continue
+        if any(mark in data for mark in marks):
+            lines = data.decode("utf-8", "replace").splitlines()
+            paths = [line.removeprefix(start) for line in lines if line.startswith(start)]
+            found.append([path for path in paths if (folder / path).is_file()])
+    return found
+
+
+def _content(files: Mapping[str, Member], path: str) -> bytes:
+    data = files[path].data
+    if len(data) > limits().text:
+        raise too_large(path, limits().text)
+    return data
+
+
+def debs(files: Sequence[Path]) -> list[Part]:
+    """The files of Debian packages, from the prefix in which their ROS packages lie. Raises DebError and OSError."""
+    parts = []
+    for file in files:
+        held = members(file)
+        starts = {found[1] for path in held if (found := re.match(r"((?:usr|opt/ros/[^/]+)/)", path))}
+        for start in sorted(starts):
+            inside = {path.removeprefix(start): member for path, member in held.items() if path.startswith(start)}
+            parts.append(
+                Part(
+                    frozenset(inside),
+                    partial(_content, inside),
+                    partial(lambda inside, path: inside[path].data[:_START], inside),
+                    partial(lambda inside, path: inside[path].executable, inside),
+                )
+            )
+    return parts
+
+
+# -- what they tell ----------------------------------------------------------------------------------------------------
+
+
+def surface_of(package: str, parts: Sequence[Part]) -> Surface:
+    """The surface of a package by its installed files. One of the parts has its manifest. What cannot be read is left
+    out, and listed as unknown."""
+    share = f"share/{package}/"
+    unread: dict[str, str] = {}
+    parts = [
+        part._replace(read=partial(_contained, part.read, unread), start=partial(_contained, part.start, unread))
+        for part in parts
+    ]
+    home = next(part for part in parts if f"{share}package.xml" in part.paths)
+    manifest = manifests.extract(home.read(f"{share}package.xml"))
+    mine = [part for part in parts if package in part.packages or _touches(part, package)]
+    defined = dict(_interfaces(package, mine))
+    headers: list[tuple[str, HeaderSurface]] = []
+    listed: list[Header] = []
+    for part, path in _headers(package, mine):
+        include, data = _include(path), part.read(path)
+        if _GENERATED.search(data[:400]):
+            listed.append(Header(include, path))
+            continue
+        listed.append(Header(include, path, path))
+        headers.append((include, compiled(surface_cpp.extract(data))))
+    cmake = _cmake(package, mine)
+    modules, unknown = _python(package, mine)
+    declared = [d.name for d in manifest.dependencies if d.kind in ("exec", "build_export")]
+    build = BuildSurface(
+        package,
+        manifest.version,
+        cmake_names=tuple(sorted(cmake.names)),
+        targets=tuple(sorted(cmake.targets, key=lambda target: target.name)),
+        libraries=tuple(cmake.libraries),
+        dependencies=tuple(cmake.dependencies),
+        commands=tuple(sorted(cmake.commands)),
+        standard=max((target.standard for target in cmake.targets), default=0),
+        programs=tuple(_programs(package, mine)),
+        launches=tuple(_launches(package, mine)),
+        headers=tuple(sorted(set(listed), key=lambda header: (header.include, header.installed))),
+        unknown=(*_TOLD, *_unread(unread)),
+    )
+    return Surface(
+        package,
+        manifest.version,
+        build,
+        PythonSurface(package, tuple(modules), tuple(sorted(unknown))),
+        tuple(sorted(headers, key=lambda item: item[0])),
+        tuple(sorted(defined.items())),
+        any(part.convention for part in mine),
+        tuple(sorted(set(declared))),
+    )
+
+
+def _contained(read: Callable[[str], bytes], unread: dict[str, str], path: str) -> bytes:
+    """What a file holds, nothing where it cannot be read, which is noted."""
+    try:
+        return read(path)
+    except OSError as error:
+        unread[path] = error.strerror or type(error).__name__
+        return b""
+
+
+def _unread(files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    for path, reason in sorted(files.items()):
+        yield "headers" if _HEADER.search(path) else "files", f"{path} cannot be read: {reason}"
+
+
+def _touches(part: Part, package: str) -> bool:
+    """Whether a Debian package has something of a ROS package whose manifest another one has."""
+    starts = (f"share/{package}/", f"include/{package}/", f"lib/{package}/")
+    return any(path.startswith(starts) or _module(path).startswith(f"{package}/") for path in part.paths)
+
+
+def _module(path: str) -> str:
+    found = _PYTHON.match(path)
+    return found[1] if found else ""
+
+
+def _headers(package: str, parts: Sequence[Part]) -> Iterator[tuple[Part, str]]:
+    for part in parts:
+        alone = not part.convention and part.packages == {package}
+        for path in sorted(part.paths):
+            if path.startswith("include/") and _HEADER.search(path):
+                folder = re.sub(r"\Ainclude/(?:[\w]+-linux-gnu\w*/)?", "", path).partition("/")[0]
+                if alone or folder == package:
+                    yield part, path
+
+
+def _include(path: str) -> str:
+    """What dependants write: since Humble a package has a folder of its own below include/ (`include/a/a/b.hpp`)."""
+    inside = re.sub(r"\Ainclude/(?:[\w]+-linux-gnu\w*/)?", "", path)
+    first, _, rest = inside.partition("/")
+    return rest if rest.startswith(f"{first}/") else inside
+
+
+def _interfaces(package: str, parts: Sequence[Part]) -> Iterator[tuple[str, Interface]]:
+    wanted = re.compile(rf"share/{re.escape(package)}/(msg|srv|action)/([A-Za-z]\w*)\.(msg|srv|action)\Z")
+    found: dict[str, Interface] = {}
+    for part in parts:
+        for path in sorted(part.paths):
+            told = wanted.match(path)
+            if told is not None and told[1] == told[3]:
+                read = interfaces.extract(part.read(path), told[3])
+                sections = tuple(
+                    Section(s.name, tuple(Field(f.name, f.type, f.array, f.default, f.line) for f in s.fields),
+                            s.constants)
+                    for s in read.sections
+                )  # fmt: skip
+                found.setdefault(f"{told[1]}/{told[2]}", Interface(told[1], sections))
+    # What genmsg makes of an action is no message that anybody wrote.
+    made = {f"msg/{name[7:]}{suffix}" for name in found if name.startswith("action/")
+            for suffix in ROS1_SUFFIXES["action"]}  # fmt: skip
+    yield from ((name, one) for name, one in found.items() if name not in made)
+
+
+class _CMake(NamedTuple):
+    """What the CMake files of a package tell, as in BuildSurface."""
+
+    targets: set[ExportedTarget]
+    commands: set[str]
+    names: set[str]
+    libraries: dict[str, None]
+    dependencies: dict[str, None]
+
+
+def _cmake(package: str, parts: Sequence[Part]) -> _CMake:
+    found = _CMake(set(), set(), set(), {}, {})
+    # Debian keeps configurations below the folder of the architecture.
+    place = re.compile(
+        rf"(?:share/{re.escape(package)}/|lib/(?:[\w]+-linux-gnu\w*/)?cmake/{re.escape(package)}/).*\.cmake\Z"
+    )
+    for part in parts:
+        for path in sorted(filter(place.match, part.paths)):
+            text = part.read(path).decode("utf-8", "replace")
+            told = _CONFIGURATION.match(path.rpartition("/")[2])
+            if told is not None:
+                found.names.add(told[1])
+            standard = max((int(number) for number in _STANDARD.findall(text)), default=0)
+            found.targets.update(ExportedTarget(name, _KINDS[kind], standard) for name, kind in _IMPORTED.findall(text))
+            if not told:
+                found.commands.update(_COMMAND.findall(text))
+            for names in _LIBRARIES.findall(text):
+                found.libraries.update((name, None) for name in names.split(";") if re.fullmatch(r"[\w.+]+", name))
+            for names in _DEPENDENCIES.findall(text):
+                found.dependencies.update((name, None) for name in names.split(";") if name)
+    return found
+
+
+def _python(package: str, parts: Sequence[Part]) -> tuple[list[Module], set[str]]:
+    modules: dict[str, Module] = {}
+    unknown: set[str] = set()
+    for part in parts:
+        alone = not part.convention and part.packages == {package}
+        for path in sorted(part.paths):
+            inside = _module(path)
+            if not inside or ".egg-info/" in inside or not (inside.startswith(f"{package}/") or alone):
+                continue
+            dotted = inside.replace("/", ".")
+            if inside.endswith(".so"):
+                unknown.add(_EXTENSION.sub("", inside).replace("/", "."))
+            elif any(inside.startswith(f"{package}/{kind}/") for kind in _INTERFACES):
+                unknown.add(f"{package}.{inside.split('/')[1]}")
+            elif inside.endswith(".py"):
+                init = inside.endswith("/__init__.py")
+                name = dotted.removesuffix(".__init__.py").removesuffix(".py")
+                modules[name] = Module(name, path, init, surface_python.extract(part.read(path)))
+    return [modules[name] for name in sorted(modules)], unknown
+
+
+def _programs(package: str, parts: Sequence[Part]) -> Iterator[Program]:
+    found = {}
+    for part in parts:
+        for path in part.paths:
+            folder, _, name = path.rpartition("/")
+            if folder == f"lib/{package}" and "." not in name.removesuffix(".py") and part.executable(path):
+                how = "binary" if part.start(path).startswith(b"\x7fELF") else "script"
+                found[name] = Program(name, folder, how)
+    return iter(sorted(found.values(), key=lambda program: program.name))
+
+
+def _launches(package: str, parts: Sequence[Part]) -> Iterator[LaunchFile]:
+    share = f"share/{package}/"
+    for part in parts:
+        for path in sorted(part.paths):
+            kind = launch_kind(path) if path.startswith(share) and "launch" in path else None
+            if kind and not path.endswith("__init__.py"):
+                actions = flow_launch.extract(part.read(path), kind).actions
+                yield LaunchFile(path.removeprefix(share), tuple(launch_arguments(actions)))

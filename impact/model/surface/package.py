@@ -1,0 +1,206 @@
+"""What one version of one package offers: headers, interfaces, Python, CMake and programs; and what changed.
+
+`surfaces_of` reads all packages of one repository state; `compare` tells every kind of change in one form.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import posixpath
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from ...facts import kinds
+from ...facts.interface import Field, Interface, Section
+from ...facts.parameters import last_part
+from ...facts.store import encodable
+from ...targets.surface.includes import compiled
+from ...targets.surface.surface import BuildSurface, Surface
+from ..package import role_of_folder
+from . import build as surface_build
+from . import python as surface_python
+
+if TYPE_CHECKING:
+    from ...facts.extract import Gathered
+    from ...facts.store import Store
+    from ...tree import Tree
+    from ..workspace import Package
+
+
+# -- reading -----------------------------------------------------------------------------------------------------------
+
+
+def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, Surface]:
+    """The surfaces of all packages of a tree, by name. What is equal in two trees is worked out once: facts by the
+    content of their file, surfaces by all that they are made from. jobs: processes to parse with. Raises TreeError."""
+    from ...facts.extract import gather
+    from ..package import Watched
+    from ..workspace import link
+
+    gathered = gather(tree, store, jobs=jobs, kind_of=_kind_for_build)
+    workspace = link(tree, gathered, store, None, Watched(), jobs)
+    builds = {package.name: surface_build.surface_of(workspace, package) for package in workspace}
+    wanted: dict[str, str] = {}
+    headers: dict[str, dict[str, str]] = {}
+    guessed: set[str] = set()
+    for package in workspace:
+        found, sure = _headers(package, builds[package.name])
+        headers[package.name] = found
+        if not sure:
+            guessed.add(package.name)
+        wanted.update((path, "surface_cpp") for path in found.values())
+        for path in surface_python.installed(package).modules.values():
+            if surface_python.kind_of(path) is not None:
+                wanted[path] = "surface_python"
+    declaring = {package.name: dict(_declaring(package)) for package in workspace}
+    looked = gather(tree, store, jobs=jobs, kind_of=wanted.get)
+    sources = {path: kind for each in declaring.values() for path, kind in each.items()}
+    declared = gather(tree, store, jobs=jobs, kind_of=sources.get)
+
+    def facts(path: str) -> Any:
+        file = looked.facts(path) if path in looked.kinds else None
+        return None if file is None else file.facts
+
+    surfaces = {}
+    for package in workspace:
+        name = package.name
+        looked.preload(headers[name].values())
+        known = [(include, facts(path)) for include, path in sorted(headers[name].items())]
+        surfaces[name] = Surface(
+            name,
+            package.manifest.version,
+            builds[name],
+            surface_python.surface_of(package, facts),
+            tuple((include, compiled(surface)) for include, surface in known if surface is not None),
+            tuple(sorted(dict(_interfaces(package)).items())),
+            name in guessed,
+            tuple(sorted(name for name, how in package.declared.items() if how & _WITH)),
+            *_parameters(declared, declaring[name]),
+        )
+    return surfaces
+
+
+_WITH = frozenset(("exec", "build_export"))
+
+
+def _declaring(package: Package) -> Iterator[tuple[str, str]]:
+    """Files that may declare parameters of nodes, with the kind of facts that tells it."""
+    base = f"{package.path}/" if package.path else ""
+    for path in package.files:
+        full = path if path.startswith(base) else f"{base}{path}"
+        kind = kinds.kind_of(full)
+        if kind in ("cpp", "python") and role_of_folder(full[len(base) :]) is None:
+            yield full, f"parameters_{kind}"
+    for made in package.build.generated:
+        kind = {"parameters": "parameters_yaml", "reconfigure": "parameters_cfg"}.get(made.how)
+        if kind is not None and made.offered:
+            yield from ((path, kind) for path in made.files if "$" not in path)
+
+
+def _parameters(declared: Gathered, files: Iterable[str]) -> tuple[tuple[tuple[str, str | None], ...], tuple[str, ...]]:
+    """The parameters that some files declare, each with the default that all of them give it, and what they mention."""
+    found: dict[str, set[str | None]] = defaultdict(set)
+    mentioned: set[str] = set()
+    for path in files:
+        facts = declared.facts(path) if path in declared.kinds else None
+        if facts is not None and facts.facts is not None:
+            for one in facts.facts.parameters:
+                found[one.name].add(one.default)
+            mentioned.update(facts.facts.mentioned)
+    mentioned.update(last_part(name) for name in found)
+    parameters = tuple((name, next(iter(each)) if len(each) == 1 else "?") for name, each in sorted(found.items()))
+    return parameters, tuple(sorted(mentioned))
+
+
+def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:
+    """The same as surfaces_of, remembered as a whole for trees that git names by one id. folder: that id, empty for a
+    tree that has none."""
+    key = hashlib.sha1(f"{folder} {_stamp()}".encode()).digest()
+    if folder:
+        memory = store.memo("surface", key)
+        if memory is not None:
+            try:
+                return _decoder.decode(memory)
+            except msgspec.MsgspecError:
+                pass  # of another version; it is made again
+    surfaces = surfaces_of(tree, store, jobs)
+    if folder:
+        store.remember("surface", encodable([(key, surfaces)]))
+    return surfaces
+
+
+_decoder = msgspec.msgpack.Decoder(dict[str, Surface])
+
+
+@cache
+def _stamp() -> str:
+    """Changes with the code that surfaces are made by."""
+    from ...cache import code_stamp
+
+    return code_stamp()
+
+
+def _kind_for_build(path: str) -> str | None:
+    kind = kinds.kind_of(path)
+    return kind if kind in surface_build.KINDS else None
+
+
+def _headers(package: Package, build: BuildSurface) -> tuple[dict[str, str], bool]:
+    """Path in the workspace by what dependants write, and whether the build tells that."""
+    base = f"{package.path}/" if package.path else ""
+    found = {}
+    for header in build.headers:
+        if header.source and kinds.kind_of(header.source) == "cpp":
+            found.setdefault(header.include, f"{base}{header.source}")
+    if found or not any(part == "headers" for part, _ in build.unknown):
+        return found, True
+    start = f"{base}include/"
+    for path in package.files:
+        full = path if path.startswith(base) else f"{base}{path}"
+        if full.startswith(start) and kinds.kind_of(full) == "cpp":
+            found[full[len(start) :]] = full
+    return found, not found
+
+
+def _interfaces(package: Package) -> Iterator[tuple[str, Interface]]:
+    made = {path: False for one in package.build.generated if not one.offered for path in one.files}
+    made.update((path, True) for one in package.build.generated if one.offered for path in one.files)
+    for file in package.digest.interfaces:
+        if not made.get(file.path, True):
+            continue
+        kind = file.definition.kind
+        if kind == "idl":
+            kind = posixpath.basename(posixpath.dirname(file.path)) or "msg"
+        sections = tuple(
+            Section(
+                section.name,
+                tuple(Field(f.name, f.type, f.array, f.default, f.line) for f in section.fields),
+                section.constants,
+            )
+            for section in file.definition.sections
+        )
+        yield f"{kind}/{posixpath.splitext(posixpath.basename(file.path))[0]}", Interface(kind, sections)
+
+
+# -- a repository state ------------------------------------------------------------------------------------------------
+
+
+# -- what changed ------------------------------------------------------------------------------------------------------
+
+
+# C++
+
+
+# Python
+
+
+# Messages
+
+
+# The build
+
+

@@ -1,0 +1,93 @@
+"""Versions of packages in a file of surfaces: which of them stands for what is asked for. No clone is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from ...facts.interface import Interface
+from ...targets.distro.distro import DistroTarget
+from ...targets.snapshot import Snapshot, default
+from ...targets.surface.compare import State
+from ...targets.surface.store import Surfaces
+from .clones import VersionError, newest_with, release_of
+
+
+class StoredVersion(NamedTuple):
+    """version: as released. stored: the version in the file that stands for it. approximate: it is another one, or a
+    branch stood for its tag when it was read."""
+
+    version: str
+    stored: str
+    approximate: bool
+
+
+class StoredVersions:
+    """What a file of surfaces has of versions (`28.1.0`) and distros (`jazzy`, `jazzy@2024-08-01`)."""
+
+    def __init__(self, surfaces: Surfaces, data: Snapshot | None = None):
+        self.surfaces, self._data = surfaces, data or default()
+
+    def newest(self, package: str) -> str:
+        """The newest distro that has a package. Raises VersionError when none has it."""
+        return newest_with(package, self._data)
+
+    def find(self, package: str, asked: str) -> StoredVersion:
+        """What stands for a version or a distro's version: of the latter the newest one before it, when it is not
+        there itself, at a tag. Raises VersionError when there is none."""
+        lines = self.surfaces.lines(package)
+        if asked[:1].isdigit():
+            version = asked
+            stored = version if any(version in line.versions for line in lines.values()) else None
+        else:
+            release = release_of(package, asked, self._data)
+            version = release.version
+            line = lines.get(DistroTarget(release.distro, data=self._data).ros)
+            place = None if line is None else line.place(version)
+            stored = None if line is None or place is None else line.versions[place]
+        if not lines:
+            raise VersionError(f"surfaces of `{package}` are not shipped; read them from a clone: --repos DIR")
+        if stored is None:
+            having = [f"{line.versions[0]} to {line.versions[-1]}" for line in lines.values()]
+            raise VersionError(
+                f"`{package}` {version} is not shipped, others from {' and '.join(having)} are; read it from a clone:"
+                " --repos DIR"
+            )
+        branch = any(stored in line.approximate for line in lines.values())
+        return StoredVersion(version, stored, branch or stored != version)
+
+    def surface(self, package: str, asked: str) -> tuple[StoredVersion, State]:
+        """What stands for a version of a package, with the packages that its repository released along with it. Raises
+        VersionError, see find()."""
+        found = self.find(package, asked)
+        surfaces = {}
+        for name in (package, *self._beside(package, found.stored)):
+            history = self.surfaces.history(name)
+            surface = history.surface(found.stored) if history is not None else None
+            if surface is not None:
+                surfaces[name] = surface
+        return found, State(surfaces)
+
+    def message(self, distro: str, name: str) -> Interface | None:
+        """What a distro (`jazzy`, `jazzy@2024-08-01`) has of a message, by `package/Name`; None where it has none, or
+        it is not stored."""
+        package, _, short = name.partition("/")
+        try:
+            found = self.find(package, distro)
+        except VersionError:
+            return None
+        history = self.surfaces.history(package)
+        return history.interfaces(found.stored).get(f"msg/{short}") if history is not None else None
+
+    def _beside(self, package: str, version: str) -> Iterator[str]:
+        """Other packages that were released with a version of a package."""
+        told = {package}
+        for known, names in self._data.rows(
+            "SELECT DISTINCT r.version, n.names FROM release r JOIN packages n ON n.id = r.packages"
+            " JOIN home h ON h.distro = r.distro AND h.repository = r.repository JOIN package p ON p.id = h.package"
+            " WHERE p.name = ? AND r.version LIKE ?",
+            (package, f"{version}%"),
+        ):
+            if known.partition("-")[0] == version and package in names.split(" "):
+                yield from (name for name in names.split(" ") if name not in told)
+                told.update(names.split(" "))

@@ -1,0 +1,83 @@
+"""The names that rules look out for, gathered from the tables of known changes."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from functools import cache
+
+import msgspec
+
+from ..facts.usage import Pattern
+from ..targets.behaviour import all_behaviour
+from ..targets.changes import all_rows, transitive_includes
+from ..targets.providers.includes import offered
+from ..targets.providers.library import OPENCV_FUNCTIONS
+from ..targets.providers.standard import offering
+from ..targets.surface.fields import default_fields
+from ..targets.surface.store import shipped
+from ..targets.uses import all_uses, stamp
+from .package import Watched
+
+_KINDS = frozenset({"api-removed", "api-renamed", "api-changed", "python-removed", "python-api"})
+_WORD = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*\Z")
+_DOTTED = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\Z")
+
+
+@cache
+def watched() -> Watched:
+    """All names that some known change is about, with a version that changes when the tables do."""
+    words, qualified, python, headers = set(), set(OPENCV_FUNCTIONS), set(), {}
+    for row in all_rows():
+        if row.kind not in _KINDS or not row.old:
+            continue
+        if row.kind.startswith("python"):
+            if _DOTTED.match(row.old):
+                python.add(row.old)
+        elif _WORD.match(row.old):
+            if "::" in row.old:
+                qualified.add(row.old)
+            elif not row.ambiguous and len(row.old) > 3:
+                words.add(row.old)
+            # A new name of which an old one is told may be used where it is not there yet.
+            if row.new_since and len(row.new) > 7 and _WORD.match(row.new) and not row.ambiguous:
+                (qualified if "::" in row.new else words).add(row.new)
+    headers.update({name: found for name, found in offered().items() if name not in headers})
+    headers.update({name: tuple(h for h in found if "bits/" not in h) for name, found in offering().items()})
+    for include in transitive_includes():
+        headers[include.name] = tuple(dict.fromkeys((*include.headers, *headers.get(include.name, ()))))
+    modules: dict[str, list[tuple[str, Pattern]]] = {}
+    for row in all_uses():
+        if row.pattern.language == "python":
+            modules.setdefault(row.package, []).append((row.label, _bare(row.pattern)))
+    parameters = []
+    for row in all_behaviour().values():
+        if row.pattern.language == "yaml":
+            parameters.append((row.label, _bare(row.pattern)))
+        for module in row.imports:
+            modules.setdefault(module, []).append((row.label, _bare(row.pattern)))
+    fields = default_fields()
+    version = hashlib.sha1(
+        repr(
+            (
+                sorted(words),
+                sorted(qualified),
+                sorted(python),
+                sorted(headers.items()),
+                modules,
+                parameters,
+                stamp(),
+                fields.version,
+                shipped().stamp,
+            )
+        ).encode()
+    ).hexdigest()
+    return Watched(
+        *(frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields, shipped()),
+        parameters=parameters,
+    )
+
+
+def _bare(pattern: Pattern) -> Pattern:
+    """How a use looks, without what its table says besides, so that it can be remembered and read back."""
+    return msgspec.convert(pattern, Pattern, from_attributes=True)

@@ -1,0 +1,110 @@
+"""The message-flow graph as JSON, see docs/graph.schema.json."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import msgspec
+
+from ....edges.console import json_text
+from ....edges.version import __version__
+from ...model.flow.connections import edges
+from ...model.flow.graph import Coverage, Endpoint, Graph, Node, ParameterUse, Publish, Timer
+from ...model.flow.select import Selection, endpoints_of
+
+SCHEMA = 1
+_LISTS = {
+    "publisher": "publishers", "subscriber": "subscribers", "server": "servers", "client": "clients",
+    "action server": "action_servers", "action client": "action_clients",
+}  # fmt: skip
+
+
+def render(selection: Selection, base: Graph | None) -> str:
+    """The graph as one JSON object."""
+    graph = selection.graph
+    found: dict[str, Any] = {
+        "schema": SCHEMA,
+        "tool": {"name": "rosimpact", "version": __version__},
+        "workspace": graph.root,
+        "rev": graph.rev,
+        "ros": graph.ros,
+        "nodes": msgspec.to_builtins(graph.nodes),
+        "topics": [],
+        "services": [],
+        "actions": [],
+    }
+    for (kind, name), endpoints in endpoints_of(graph).items():
+        row: dict[str, Any] = {"name": name, "types": sorted({e.type for e in endpoints if e.type})}
+        for role in dict.fromkeys(endpoint.role for endpoint in endpoints):
+            row[_LISTS[role]] = sorted({e.node for e in endpoints if e.role == role})
+        found[f"{kind}s"].append(row)
+    for role, name in _LISTS.items():
+        found[name] = [_endpoint(endpoint) for endpoint in graph.endpoints if endpoint.role == role]
+    found["publishes"] = msgspec.to_builtins(graph.publishes)
+    found["timers"] = msgspec.to_builtins(graph.timers)
+    found["parameters"] = msgspec.to_builtins(graph.parameters)
+    found["coverage"] = msgspec.to_builtins(graph.coverage)
+    if base is not None:
+        found["base"] = base.rev
+        found["changes"] = [
+            {"change": edge.mark, "why": edge.why, "node": edge.node, "name": edge.name, "kind": edge.kind,
+             "role": edge.role, "path": edge.endpoints[0].path, "line": edge.endpoints[0].line}
+            for edge in edges(graph, base)
+            if edge.mark
+        ]  # fmt: skip
+    return json_text(found) + "\n"
+
+
+def schema() -> str:
+    """The JSON schema (draft 2020-12) of what render() gives; docs/graph.schema.json holds it."""
+    kinds = [Node, Endpoint, Publish, Timer, ParameterUse, Coverage]
+    (node, endpoint, publish, timer, parameter, coverage), parts = msgspec.json.schema_components(
+        kinds, ref_template="#/$defs/{name}"
+    )
+    parts["Endpoint"]["properties"].pop("role")
+    parts["Endpoint"]["required"].remove("role")
+    for part in parts.values():
+        part["description"] = " ".join(part.get("description", "").split())
+        # Fields may come in, none is taken away: whoever reads must not trip over a new one.
+        part.pop("additionalProperties", None)
+    text, texts = {"type": "string"}, {"type": "array", "items": {"type": "string"}}
+    change = dict.fromkeys(("why", "node", "name", "kind", "role", "path"), text)
+    change |= {"change": {"enum": ["added", "removed", "changed"]}, "line": {"type": "integer"}}
+    name = {"name": text, "types": texts} | {each: texts for each in _LISTS.values()}
+    properties: dict[str, Any] = {
+        "schema": {"const": SCHEMA},
+        "tool": {"type": "object", "required": ["name", "version"], "properties": {"name": text, "version": text}},
+        "workspace": text,
+        "rev": text,
+        "ros": {"enum": [1, 2]},
+        "nodes": {"type": "array", "items": node},
+        **{kind: {"type": "array", "items": {"$ref": "#/$defs/Name"}} for kind in ("topics", "services", "actions")},
+        **{each: {"type": "array", "items": endpoint} for each in _LISTS.values()},
+        "publishes": {"type": "array", "items": publish},
+        "timers": {"type": "array", "items": timer},
+        "parameters": {"type": "array", "items": parameter},
+        "coverage": coverage,
+    }
+    parts["Name"] = {
+        "description": "A topic, service or action: its types, and the ids of the nodes that use it, by role.",
+        "type": "object", "required": ["name", "types"], "properties": name,
+    }  # fmt: skip
+    whole = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": f"rosimpact message-flow graph, schema {SCHEMA}",
+        "description": "What `rosimpact graph --format json` prints. Fields may be added without a new schema number; "
+        "none is removed, renamed or given another meaning. `base` and `changes` are there with --base alone.",
+        "type": "object",
+        "required": list(properties),
+        "properties": properties
+        | {"base": text, "changes": {"type": "array", "items": {"type": "object", "properties": change}}},
+        "$defs": dict(sorted(parts.items())),
+    }
+    return json.dumps(whole, indent=1) + "\n"
+
+
+def _endpoint(endpoint: Endpoint) -> dict[str, Any]:
+    row = msgspec.to_builtins(endpoint)
+    del row["role"]
+    return row

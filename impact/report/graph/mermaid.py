@@ -1,0 +1,61 @@
+"""The message-flow graph as a Mermaid flowchart, for Markdown pages."""
+
+from __future__ import annotations
+
+from ....edges.console import visible
+from ...model.flow.connections import Edge, edges, names_of
+from ...model.flow.graph import Graph
+from ...model.flow.select import Selection
+from .dot import COLOURS
+
+MOST = 280
+"""Edges that Mermaid draws by default are 500 (its maxEdges); beyond a few hundred nobody sees anything."""
+ROOM = 50_000
+"""Characters that Mermaid reads by default (its maxTextSize)."""
+_LINES = 90
+"""Characters around the names of an edge and its ends, at most."""
+
+
+def render(selection: Selection, base: Graph | None) -> str:
+    """A flowchart (https://mermaid.js.org/syntax/flowchart.html). What goes beyond MOST edges or ROOM is left out, what
+    differs from the base last, and said."""
+    graph = selection.graph
+    names = (names_of(base) if base is not None else {}) | names_of(graph)
+    found = [edge for edge in edges(graph, base) if edge.node in names]
+    kept = _kept(found, names)
+    ids: dict[tuple[str, str], str] = {}
+
+    def id_of(kind: str, name: str) -> str:
+        return ids.setdefault((kind, name), f"{kind[0]}{len(ids)}")
+
+    lines = ["flowchart LR"]
+    if len(kept) < len(found):
+        lines.append(f"  %% {len(found) - len(kept)} of {len(found)} edges are left out: ask for less with --around")
+    links, styles = [], []
+    for edge in kept:
+        node, name = id_of("node", edge.node), id_of(edge.kind, edge.name)
+        ends = (node, name) if edge.outward else (name, node)
+        if edge.mark:
+            styles.append(f"  linkStyle {len(links)} stroke:{COLOURS[edge.mark]},stroke-width:3px")
+        links.append(f"  {ends[0]} {'-->' if edge.kind == 'topic' else '-.->'} {ends[1]}")
+    for (kind, name), short in ids.items():
+        label = escaped(names.get(name, name) if kind == "node" else name)
+        lines.append(f'  {short}(["{label}"])' if kind == "node" else f'  {short}["{label}"]')
+    return "\n".join([*lines, *links, *styles]) + "\n"
+
+
+def _kept(found: list[Edge], names: dict[str, str]) -> list[Edge]:
+    """Edges for which there is room, those that differ from the base before others, in the order given."""
+    room = ROOM
+    kept: set[int] = set()
+    for place in sorted(range(len(found)), key=lambda place: not found[place].mark)[:MOST]:
+        room -= len(escaped(names[found[place].node])) + len(escaped(found[place].name)) + _LINES
+        if room < 0:
+            break
+        kept.add(place)
+    return [edge for place, edge in enumerate(found) if place in kept]
+
+
+def escaped(text: str) -> str:
+    """A label's text: what Mermaid would read as its own is written as an entity."""
+    return "".join(c if c.isalnum() or c in " /_-.:~" else f"#{ord(c)};" for c in visible(text))

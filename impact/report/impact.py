@@ -1,0 +1,249 @@
+"""What a change reaches, as text, JSON and Markdown."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
+from typing import Any, NamedTuple
+
+import msgspec
+
+from ...edges.console import counted, json_text
+from ..analysis.downstream import KINDS, Effect, Hop, Impact
+from .columns import Piece, laid_out
+from .graph.text import WIDE, coverage_lines
+from .markdown_text import code, escaped
+from .style import Style, painted
+
+SCHEMA = 1
+SHOWN = 8
+"""As many reached nodes as are shown of a change, the nearest ones."""
+_MOST_NODES = 3
+_MOST_EFFECTS = 6
+_ROLES = {"tightened": "error", "gone": "error", "removed": "error", "new": "good", "added": "good"}
+_HEADS = {
+    "message": "messages", "topic": "topics", "condition": "publish conditions", "trigger": "triggers",
+    "callback": "callbacks",
+}  # fmt: skip
+
+
+class Told(NamedTuple):
+    """What is compared: how the workspace, its revision and the base are called, and the tool's version."""
+
+    version: str
+    root: str = ""
+    rev: str = ""
+    base: str = ""
+
+
+def text(impact: Impact, everything: bool = False, style: Style = WIDE) -> str:
+    """The changes by kind, each with what it reaches as a tree, nearest first. everything: nothing is cut."""
+    lines: list[str] = []
+    names = names_of(impact)
+    for kind, same in groupby(grouped(impact.effects), key=lambda group: group[0].kind):
+        lines += [*([""] if lines else []), painted(style, "bold", _HEADS[kind])]
+        for group in same:
+            for one in group:
+                lines += _head(one, names, style)
+            lines += _tree(group[0], names, everything, style)
+    lines += [*([""] if lines else []), *_line([Piece(summary(impact))], style, 0, 2)]
+    if impact.of:
+        paths = {effect.path for effect in impact.effects}
+        paths |= {hop.path for effect in impact.effects for hop in effect.reaches}
+        near = [one for one in impact.coverage.unresolved if everything or one.path in paths]
+        lines += coverage_lines(impact.coverage, near, everything, style)
+    return "\n".join(lines) + "\n"
+
+
+def summary(impact: Impact) -> str:
+    """What was found, on one line."""
+    silent = f"; nothing known to be sent because of {counted(impact.silent, 'changed function')}"
+    silent = silent if impact.silent else ""
+    if not impact.effects:
+        return f"no change that message flow knows of{silent}"
+    counts = Counter(effect.kind for effect in impact.effects)
+    told = ", ".join(counted(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
+    reached = {hop.node for effect in impact.effects for hop in effect.reaches}
+    return f"{told} changed; {counted(len(reached), 'node')} of {impact.of:,} reached{silent}"
+
+
+def names_of(impact: Impact) -> dict[str, str]:
+    """How nodes are called for people, by id: the name in the system where one node alone has it."""
+    count = Counter(node.name for node in impact.nodes)
+    return {node.id: node.name if node.name and count[node.name] == 1 else node.id for node in impact.nodes}
+
+
+def grouped(effects: Iterable[Effect]) -> list[list[Effect]]:
+    """Changes that stand one after the other, of one kind and package, and reach the same."""
+    found: list[list[Effect]] = []
+    for effect in effects:
+        last = found[-1][0] if found else None
+        if last is not None and _alike(last) == _alike(effect):
+            found[-1].append(effect)
+        else:
+            found.append([effect])
+    return found
+
+
+def _alike(effect: Effect) -> tuple:
+    return effect.kind, effect.package, effect.reaches, bool(effect.topics)
+
+
+def _line(pieces: Sequence[Piece], style: Style, indent: int, hang: int) -> Iterator[str]:
+    return laid_out([one for one in pieces if one.text or one.path], style, indent, hang)
+
+
+def _head(effect: Effect, names: dict[str, str], style: Style) -> Iterator[str]:
+    nodes = _some([names.get(node, node) for node in effect.nodes])
+    line = [
+        Piece(effect.change, _ROLES.get(effect.change, "warning")), Piece(effect.subject, "bold"),
+        Piece(f"({nodes})" if nodes else ""), Piece("", path=f"{effect.path}:{effect.line}"),
+    ]  # fmt: skip
+    yield from _line(line, style, 2, 6)
+    if effect.why:
+        yield from _line([Piece(effect.why)], style, 6, 8)
+
+
+def _some(names: Sequence[str]) -> str:
+    more = f" and {len(names) - _MOST_NODES} more" if len(names) > _MOST_NODES else ""
+    return ", ".join(names[:_MOST_NODES]) + more
+
+
+def _tree(effect: Effect, names: dict[str, str], everything: bool, style: Style) -> Iterator[str]:
+    """The nearest nodes, each below the one it is reached from; those on one line that are one place of the code."""
+    hops = effect.reaches
+    kept = hops if everything else hops[:SHOWN]
+    if not kept:
+        yield f"      {_nowhere(effect)}"
+        return
+    present = {hop.node for hop in kept}
+    below: dict[str, dict[tuple[str, str, int], list[Hop]]] = {}
+    for hop in kept:
+        came = hop.came if hop.came in present else ""
+        below.setdefault(came, {}).setdefault((hop.name, hop.path, hop.line), []).append(hop)
+    done: set[str] = set()
+
+    def walk(came: str, depth: int) -> Iterator[str]:
+        for same in below.get(came, {}).values():
+            fresh = [hop for hop in same if hop.node not in done]
+            if not fresh:
+                continue
+            done.update(hop.node for hop in fresh)
+            kind = "" if fresh[0].kind == "topic" else f" ({fresh[0].kind})"
+            told = _some([names.get(hop.node, hop.node) for hop in fresh])
+            place = Piece("", path=f"{fresh[0].path}:{fresh[0].line}")
+            indent = 6 + 2 * min(depth, 8)
+            line = [Piece(f"{style.symbols[3]} {told}"), Piece(f"{fresh[0].name}{kind}"), place]
+            yield from _line(line, style, indent, indent + 4)
+            for hop in fresh:
+                yield from walk(hop.node, depth + 1)
+
+    yield from walk("", 0)
+    if len(kept) < len(hops):
+        yield f"      and {counted(len(hops) - len(kept), 'node')} further downstream"
+
+
+def short(impact: Impact, style: Style, base: str = "", most: int = _MOST_EFFECTS) -> list[str]:
+    """Lines for the end of another report: each change with the nearest nodes that it reaches. most: as many changes;
+    base: what it is compared with."""
+    names = names_of(impact)
+    lines: list[str] = []
+    for group in grouped(impact.effects)[:most]:
+        for effect in group[:_MOST_NODES]:
+            told = effect if len(group) == 1 else msgspec.structs.replace(effect, why="")
+            lines += _head(told, names, style)
+        if len(group) > _MOST_NODES:
+            lines.append(f"  and {len(group) - _MOST_NODES} more")
+        near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in group[0].reaches))
+        lines += _line([Piece(f"reaches {_some(near)}" if near else _nowhere(group[0]))], style, 6, 8)
+    left = sum(map(len, grouped(impact.effects)[most:]))
+    if left:
+        said = f"and {counted(left, 'further change')}; `rosimpact impact --base {base}` shows all"
+        lines += _line([Piece(said)], style, 2, 4)
+    return [*lines, *_line([Piece(summary(impact))], style, 2, 4)]
+
+
+def compact(impact: Impact, most: int = 20) -> dict[str, Any]:
+    """The same as data, with as many of the nodes that each change reaches, the nearest ones."""
+    rows = []
+    for effect in impact.effects:
+        row = msgspec.to_builtins(effect)
+        row["reaches"] = [hop.node for hop in effect.reaches[:most]]
+        row["reached"] = len(effect.reaches)
+        rows.append(row)
+    reached = {hop.node for effect in impact.effects for hop in effect.reaches}
+    return {"changes": rows, "reached": len(reached), "nodes": impact.of, "silent": impact.silent}
+
+
+def _nowhere(effect: Effect) -> str:
+    """What is said of a change that reaches no node."""
+    return "reaches nothing in the workspace" if effect.topics else "no topic of it is known"
+
+
+def markdown(impact: Impact, most: int = _MOST_EFFECTS, told: bool = True) -> str:
+    """The same in short, for a comment: a line for each change. most: as many; told: with the last line."""
+    names = names_of(impact)
+    rows = []
+    for effect in impact.effects[:most]:
+        near = [names.get(hop.node, hop.node) for hop in effect.reaches]
+        reaches = f"reaches {escaped(_some(near))}" if near else _nowhere(effect)
+        place = code(f"{effect.path}:{effect.line}")
+        rows.append(f"- {effect.kind} {escaped(effect.change)} {code(effect.subject)} {place}: {reaches}")
+    if len(impact.effects) > most:
+        rows.append(f"- and {len(impact.effects) - most} more")
+    last = ["", f"<sub>{escaped(summary(impact))}</sub>"] if told else []
+    return "\n".join([*rows, *last]) + "\n"
+
+
+def as_json(impact: Impact, told: Told) -> str:
+    """All of it as JSON; docs/impact.schema.json describes it."""
+    document: dict[str, Any] = {
+        "schema": SCHEMA,
+        "tool": {"name": "rosimpact", "version": told.version},
+        "workspace": told.root,
+        "rev": told.rev,
+        "base": told.base,
+        "changes": msgspec.to_builtins(impact.effects),
+        "nodes": msgspec.to_builtins(impact.nodes),
+        "silent": impact.silent,
+        "coverage": msgspec.to_builtins(impact.coverage),
+    }
+    return json_text(document) + "\n"
+
+
+def schema() -> str:
+    """The JSON schema (draft 2020-12) of what as_json() gives; docs/impact.schema.json holds it."""
+    from ..model.flow.graph import Coverage, Node
+
+    (effect, node, coverage), parts = msgspec.json.schema_components(
+        [Effect, Node, Coverage], ref_template="#/$defs/{name}"
+    )
+    for part in parts.values():
+        part["description"] = " ".join(part.get("description", "").split())
+        # Fields may come in, none is taken away: whoever reads must not trip over a new one.
+        part.pop("additionalProperties", None)
+    string = {"type": "string"}
+    properties: dict[str, Any] = {
+        "schema": {"const": SCHEMA},
+        "tool": {"type": "object", "required": ["name", "version"], "properties": {"name": string, "version": string}},
+        "workspace": string,
+        "rev": string,
+        "base": string,
+        "changes": {"type": "array", "items": effect},
+        "nodes": {"type": "array", "items": node},
+        "silent": {"type": "integer"},
+        "coverage": coverage,
+    }
+    whole = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": f"rosimpact impact, schema {SCHEMA}",
+        "description": "What `rosimpact impact --format json` prints. Fields may be added without a new schema number; "
+        "none is removed, renamed or given another meaning.",
+        "type": "object",
+        "required": list(properties),
+        "properties": properties,
+        "$defs": dict(sorted(parts.items())),
+    }
+    return json.dumps(whole, indent=1) + "\n"

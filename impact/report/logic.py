@@ -1,0 +1,172 @@
+"""Changes of the logic of publishing as text for a person, and as JSON."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import Any
+
+from ...edges.console import counted, json_text, visible
+from ..logic.changes import KINDS, Change
+from ..logic.history import Commit
+from ..logic.repository import Logic
+from .columns import UNBROKEN, Piece, laid_out
+from .style import PLAIN, Style
+
+SCHEMA = 1
+_ROLES = {"tightened": "error", "gone": "error", "trigger changed": "warning", "changed": "warning", "widened": "note",
+          "new": "good", "equivalent": "dim"}  # fmt: skip
+_MOST_READERS = 6
+_MOST_NAMES = 8
+_TITLE, _TOPIC = 24, 19
+_LONG = 200
+_PARTS = re.compile(r"(?<= && )|(?<= \|\| )|(?<= and )|(?<= or )|(?<=[:;] )")
+_WIDE = PLAIN._replace(width=UNBROKEN)
+
+
+def text(logic: Logic, style: Style = _WIDE) -> str:
+    """The changes by commit, newest first, and what was looked at."""
+    lines: list[str] = []
+    for commit, changes in groupby(logic.changes, key=lambda pair: pair[0]):
+        title = Piece(visible(commit.summary), "bold", hang=_TITLE)
+        lines += laid_out([Piece(f"{commit.id[:10]}  {commit.date[:10]}", "bold"), title], style, 0, _TITLE)
+        for _, change in changes:
+            lines += _lines(change, style)
+        lines.append("")
+    lines += laid_out([Piece(summary(logic))], style, 0, 2)
+    return "\n".join(lines)
+
+
+def _lines(change: Change, style: Style) -> Iterator[str]:
+    node = f" ({visible(change.node)})" if change.node else ""
+    head = [
+        Piece(f"{change.kind:15s}", _ROLES[change.kind]),
+        Piece((visible(change.topic) or "?") + node, hang=_TOPIC),
+        Piece("", path=f"{visible(change.path)}:{change.line}"),
+    ]
+    yield from laid_out(head, style, 2, 6)
+    if change.why:
+        yield from laid_out([Piece(visible(change.why))], style, 6, 8)
+    if change.old is not None and change.new is not None:
+        old, new = apart(change.old, change.new)
+        said = [f"- {old or 'always'}", f"+ {new or 'always'}"]
+    else:
+        said = [f"{sign} {text}" for sign, text in (("-", change.old), ("+", change.new)) if text]
+    for line in said:
+        yield from laid_out([Piece(visible(line), "dim")], style, 6, 8)
+    for number, reached in enumerate(change.reaches):
+        if number == _MOST_READERS:
+            yield f"      and {counted(len(change.reaches) - number, 'further subscriber')}"
+            break
+        callback = f", {reached.callback}" if reached.callback else ""
+        who = Piece(f"reaches {visible((reached.node or reached.package) + callback)}")
+        yield from laid_out([who, Piece("", path=f"{visible(reached.path)}:{reached.line}")], style, 6, 8)
+
+
+def apart(old: str, new: str) -> tuple[str, str]:
+    """Two long conditions without most of what they begin and end with alike, for people to see where they differ."""
+    if max(len(old), len(new)) <= _LONG:
+        return old, new
+    before, after = _PARTS.split(old), _PARTS.split(new)
+    least = min(len(before), len(after))
+    first = next((n for n in range(least) if before[n] != after[n]), least)
+    last = next((n for n in range(least - first) if before[-1 - n] != after[-1 - n]), least - first)
+    first, last = max(0, first - 1), max(0, last - 1)
+
+    def middle(parts: list[str]) -> str:
+        return "… " * (first > 0) + "".join(parts[first : len(parts) - last]) + "…" * (last > 0)
+
+    return middle(before), middle(after)
+
+
+def missed(logic: Logic, chosen: Logic, packages: Sequence[str], topics: Sequence[str]) -> str:
+    """Where nothing of what was asked for changed, and something else did: what that is of, for a name written wrongly
+    to be seen. Empty otherwise."""
+    if chosen.changes or not logic.changes:
+        return ""
+    asked = [(f"--package {', '.join(packages)}", lambda change: change.package)] if packages else []
+    asked += [(f"--topic {', '.join(topics)}", lambda change: change.topic)] if topics else []
+    clauses = []
+    for option, name_of in asked:
+        names = sorted({name_of(change) or "?" for _, change in logic.changes})
+        rest = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+        clauses.append(f"{option}: nothing of it changed; what did is of {', '.join(names[:_MOST_NAMES])}{rest}")
+    return "; ".join(map(visible, clauses))
+
+
+def summary(logic: Logic) -> str:
+    """What was found and what was looked at, on one line."""
+    counts = Counter(change.kind for _, change in logic.changes)
+    told = [f"{counts[kind]} {kind}" for kind in KINDS if counts[kind]]
+    found = ", ".join(told) or "no change of the logic of publishing"
+    coverage = logic.coverage
+    parts = [
+        f"{counted(coverage.commits, 'commit')} of {visible(logic.repository)} ({visible(logic.range)})",
+        f"{coverage.compared:,} compared",
+    ]
+    if coverage.cut_off:
+        parts.append(f"{coverage.cut_off:,} without their parent (fetch more of the history)")
+    if coverage.packages:
+        known = coverage.statements - coverage.unresolved
+        parts.append(
+            f"at the newest {counted(coverage.packages, 'package')} with "
+            f"{counted(coverage.statements, 'publish statement')}, topics of {known:,} known"
+        )
+    return f"{found}; {'; '.join(parts)}"
+
+
+def as_json(logic: Logic, version: str) -> str:
+    """The changes as JSON; docs/logic.md describes it."""
+    coverage = logic.coverage
+    document: dict[str, Any] = {
+        "schema": SCHEMA,
+        "tool": {"name": "rosimpact", "version": version},
+        "repository": logic.repository,
+        "range": logic.range,
+        "commits": coverage.commits,
+        "changes": [_entry(commit, change) for commit, change in logic.changes],
+        "coverage": {
+            "commits": coverage.commits,
+            "compared": coverage.compared,
+            "cut_off": coverage.cut_off,
+            "packages": coverage.packages,
+            "statements": coverage.statements,
+            "unresolved": coverage.unresolved,
+            "unread": list(coverage.unread),
+        },
+    }
+    return json_text(document)
+
+
+def _entry(commit: Commit, change: Change) -> dict[str, Any]:
+    return {
+        "commit": commit.id,
+        "date": commit.date,
+        "summary": commit.summary,
+        "kind": change.kind,
+        "package": change.package,
+        "path": change.path,
+        "line": change.line,
+        "function": change.function,
+        "node": change.node,
+        "topic": change.topic,
+        "topics": list(change.topics),
+        "type": change.type,
+        "old": change.old,
+        "new": change.new,
+        "why": change.why,
+        "unreachable": change.unreachable,
+        "reaches": [
+            {
+                "package": reached.package,
+                "node": reached.node,
+                "topic": reached.topic,
+                "callback": reached.callback,
+                "path": reached.path,
+                "line": reached.line,
+            }
+            for reached in change.reaches
+        ],
+    }

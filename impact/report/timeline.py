@@ -1,0 +1,44 @@
+"""Changes of the logic of publishing as one self-contained page: a timeline that can be searched and filtered."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ..logic.changes import KINDS
+from ..logic.repository import Logic
+from .logic import apart, summary
+from .page import page
+
+
+def render(logic: Logic, version: str) -> str:
+    """The page as text."""
+    return page(
+        Path(__file__).with_name("timeline.html"), f"rosimpact logic: {logic.repository}", _data(logic, version)
+    )
+
+
+def _data(logic: Logic, version: str) -> dict[str, Any]:
+    commits: dict[str, int] = {}
+    heads: list[list[str]] = []
+    rows: list[list] = []
+    for commit, change in logic.changes:
+        if commit.id not in commits:
+            commits[commit.id] = len(heads)
+            heads.append([commit.id, commit.date, commit.summary])
+        reached = [[one.package, one.node, one.callback, one.path, one.line] for one in change.reaches]
+        old, new = change.old, change.new
+        if old is not None and new is not None:
+            old, new = apart(old, new)
+        rows.append(
+            [commits[commit.id], change.kind, change.package, change.path, change.line, change.node, change.topic,
+             old, new, change.why, reached]
+        )  # fmt: skip
+    return {
+        "version": version,
+        "repository": logic.repository,
+        "summary": summary(logic),
+        "kinds": list(KINDS),
+        "commits": heads,
+        "changes": rows,
+    }

@@ -1,0 +1,1 @@
+"""A ROS distro over time: releases, dependencies, rosdep keys."""

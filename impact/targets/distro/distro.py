@@ -1,0 +1,822 @@
+"""A distro as of a day: released packages, declared dependencies, rosdep keys and platform libraries.
+
+Availability follows syncs: a package counts from the day on which a sync brought it to apt, in the version that the
+synced commit of rosdistro had. Before a distro's first known sync (tags exist from 2020-08 on) the commit's date stands
+and the target is approximate.
+"""
+
+from __future__ import annotations
+
+import datetime
+import functools
+import operator
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+import msgspec
+
+from ....edges.console import UserError
+from .. import snapshot as snapshots
+from ..platform import library_name, normal_platform, python_minor
+from ..snapshot import KINDS, Snapshot
+from ..target import Change, ReleasedDependency, Resolution, Target
+from ..version import number_of
+from .rosdep import decode_rule, resolve_rule, split_platform
+
+
+class TargetError(UserError):
+    """A target that cannot be made; the message says what is known instead."""
+
+
+class DistroFacts(msgspec.Struct, frozen=True):
+    """What data/distros.yaml says of a distro. Days are ISO; end_of_life None means none is set."""
+
+    released: str
+    end_of_life: str | None
+    lts: bool
+    platform: str
+    libraries_from: dict[str, str] = {}
+    libraries: dict[str, str] = {}
+
+
+class Known(NamedTuple):
+    """One distro of the snapshot in brief: first_day and last_day bound the releases known."""
+
+    name: str
+    ros: int
+    python: int
+    status: str
+    released: str
+    end_of_life: str
+    lts: bool
+    first_day: str
+    last_day: str
+
+
+class Library(NamedTuple):
+    """A platform library's version and the id of the source that states it."""
+
+    version: str
+    source: str
+
+
+class _Released(NamedTuple):
+    version: str
+    repository: int
+    ts: int
+
+
+_WITH_KINDS = ("build_export", "buildtool_export", "exec")
+
+
+def known_distros(data: Snapshot | None = None) -> tuple[Known, ...]:
+    """All distros of the snapshot, oldest first."""
+    return _known_distros(data or snapshots.default())
+
+
+@functools.lru_cache(maxsize=4)
+def _known_distros(data: Snapshot) -> tuple[Known, ...]:
+    facts = dict(data.rows("SELECT name, facts FROM distro_fact"))
+    found = []
+    for name, ros, python, status, first, last in data.rows(
+        "SELECT name, ros, python, status, first, last FROM distro LEFT JOIN"
+        " (SELECT distro, min(ts) AS first, max(ts) AS last FROM release GROUP BY distro) ON distro = id ORDER BY id"
+    ):
+        fact = msgspec.json.decode(facts[name], type=DistroFacts) if name in facts else None
+        found.append(
+            Known(
+                name,
+                ros,
+                python,
+                status,
+                fact.released if fact else day_of(first) if first else "",
+                (fact.end_of_life or "") if fact else "",
+                fact.lts if fact else False,
+                day_of(first) if first else "",
+                day_of(last) if last else "",
+            )
+        )
+    return tuple(sorted(found, key=lambda known: known.released))
+
+
+def releases(package: str, data: Snapshot | None = None) -> frozenset[tuple[int, str]]:
+    """(ROS generation, version) of every release of a package in any distro."""
+    rows = (data or snapshots.default()).rows(
+        "SELECT DISTINCT d.ros, r.version, n.names FROM home h JOIN package p ON p.id = h.package"
+        " JOIN distro d ON d.id = h.distro JOIN release r ON r.repository = h.repository AND r.distro = h.distro"
+        " JOIN packages n ON n.id = r.packages WHERE p.name = ? AND r.version IS NOT NULL",
+        (package,),
+    )
+    return frozenset((ros, _upstream(version)) for ros, version, names in rows if package in names.split(" "))
+
+
+def day_of(ts: int) -> str:
+    """The ISO day (UTC) of a moment, in seconds since 1970."""
+    return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
+
+
+def end_of_day(day: str) -> int:
+    """The last second (UTC) of an ISO day, in seconds since 1970."""
+    start = datetime.datetime.combine(datetime.date.fromisoformat(day), datetime.time(), datetime.timezone.utc)
+    return int(start.timestamp()) + 86_399
+
+
+def version_key(version: str) -> list[int]:
+    """Numbers of a version, for ordering: `2.10.1-1` → [2, 10, 1, 1]."""
+    return [number_of(part) for part in re.findall(r"\d+", version)]
+
+
+# Letters of KINDS for what is installed along with a package.
+_COMES_ALONG = frozenset("eox")
+
+
+class DistroTarget(Target):
+    """A distro at a date, with overrides.
+
+    distro: its name. date: ISO day, None for the newest day of the data. platform: `ubuntu jammy`, None for the
+    distro's main one at that date. versions: versions that differ on this machine, by ROS package or platform library;
+    an empty text means "not installed". name: what to call the target, by default as it was asked for. rules: rosdep
+    rules of one's own by key, as in a rosdep file; they go over the public ones.
+
+    Raises TargetError for an unknown distro or a malformed date. Further attributes: end_of_life (ISO day, empty when
+    none is set), lts, python_major, data_date.
+    """
+
+    def __init__(
+        self,
+        distro: str,
+        date: str | None = None,
+        platform: str | None = None,
+        versions: Mapping[str, str] | None = None,
+        name: str | None = None,
+        data: Snapshot | None = None,
+        rules: Mapping[str, Any] | None = None,
+    ):
+        self._data = data or snapshots.default()
+        self._neighbours: dict[str, DistroTarget] = {}
+        self._asked = (distro, date, platform, dict(versions or {}), name)
+        self._rules = dict(rules or {})
+        row = self._data.row("SELECT id, ros, python FROM distro WHERE name = ?", (distro,))
+        if row is None:
+            raise TargetError(_unknown_distro(distro, self._data))
+        self._id, self.ros, self.python_major = row
+        self.distro = distro
+        self.data_date = self._data.date
+        self._overrides = {key: str(value) for key, value in (versions or {}).items()}
+        self._own_libraries = {library_name(key): value for key, value in self._overrides.items()}
+        self._facts = _facts(distro, self._data)
+        self.end_of_life = (self._facts.end_of_life or "") if self._facts else ""
+        self.lts = bool(self._facts and self._facts.lts)
+        notes: list[str] = []
+        self.date = self._place_date(date, notes)
+        self._cut, self.approximate = self._availability()
+        self._rule_ts = end_of_day(self.date)
+        self.platform = self._choose_platform(platform, notes)
+        self.notes = tuple(notes)
+        self.name = name or (distro if date is None else f"{distro}@{date}")
+        self._library_cells: dict[str, Library] | None = None
+        self._released: dict[str, _Released] | None = None
+        self._versions: dict[str, str | None] = {}
+        self._names: frozenset[str] | None = None
+        self._declared: dict[str, tuple[ReleasedDependency, ...] | None] = {}
+        self._arrivals: dict[str, tuple[tuple[str, str | None], ...]] = {}
+        self._held: dict[str, bool] = {}
+        self._keys: dict[str, Resolution | None] = {}
+        self._all_keys: dict[str, Resolution] | None = None
+        self._by_debian: dict[str, tuple[str, ...]] | None = None
+        self._with_manifests: bool | None = None
+        self._changes: tuple[Change, ...] | None = None
+
+    def __reduce__(self):
+        # A target travels to worker processes as its recipe; each opens the shared cache file itself.
+        distro, date, platform, versions, name = self._asked
+        return DistroTarget, (distro, date, platform, versions, name, None, self._rules)
+
+    def identity(self) -> str:
+        stamp = snapshots.data_stamp()
+        return repr(
+            (self._asked, self.name, self.distro, self.date, self.platform, self._overrides, self._rules, stamp)
+        )
+
+    def changed(
+        self,
+        date: str | None = None,
+        platform: str | None = None,
+        versions: Mapping[str, str] | None = None,
+        name: str | None = None,
+    ) -> DistroTarget:
+        """This target with another date, platform or name, and further versions on top of its own."""
+        distro, old_date, old_platform, old_versions, old_name = self._asked
+        return DistroTarget(
+            distro,
+            date or old_date,
+            platform or old_platform,
+            {**old_versions, **(versions or {})},
+            name or old_name,
+            self._data,
+            self._rules,
+        )
+
+    def surrounded(self, versions: Mapping[str, str], rules: Mapping[str, Any]) -> DistroTarget:
+        """This target with packages and rosdep rules that its machine has besides the public ones. A version that the
+        target itself gives for a package stays."""
+        distro, date, platform, own, name = self._asked
+        return DistroTarget(distro, date, platform, {**versions, **own}, name, self._data, {**rules, **self._rules})
+
+    def _place_date(self, date: str | None, notes: list[str]) -> str:
+        if date is None:
+            return self.data_date
+        try:
+            day = datetime.date.fromisoformat(str(date)).isoformat()
+        except ValueError:
+            raise TargetError(f"`{str(date)[:40]}` is no date: write it as in `{self.distro}@2024-03-01`") from None
+        first = self._data.row("SELECT min(ts) FROM release WHERE distro = ?", (self._id,))
+        if first and first[0] is not None and day < day_of(first[0]):
+            moved = day_of(first[0])
+            notes.append(f"{self.distro} had no release on {day}: moved to its first, {moved}")
+            return moved
+        if day > self.data_date:
+            notes.append(f"the distro data ends on {self.data_date}: {day} is answered as of then")
+        return day
+
+    def _availability(self) -> tuple[int, bool]:
+        """The rosdistro commit time that stands on this day, and whether that is approximate."""
+        sync = self._data.row(
+            "SELECT cut FROM sync WHERE distro = ? AND day <= ? ORDER BY day DESC LIMIT 1", (self._id, self.date)
+        )
+        return (sync[0], False) if sync else (end_of_day(self.date), True)
+
+    def _choose_platform(self, platform: str | None, notes: list[str]) -> str:
+        """The platform asked for, else the main one that the synced packages were built for."""
+        if platform:
+            return normal_platform(platform)
+        built_for, now = self._main_platform(self._cut), self._main_platform(end_of_day(self.date))
+        if built_for != now:
+            notes.append(
+                f"{self.distro} had moved to {now}, not yet synced there: answered as of its last on {built_for}"
+            )
+        return built_for
+
+    def _main_platform(self, ts: int) -> str:
+        row = self._data.row(
+            "SELECT names FROM platforms WHERE distro = ? AND ts <= ? ORDER BY ts DESC LIMIT 1", (self._id, ts)
+        ) or self._data.row("SELECT names FROM platforms WHERE distro = ? ORDER BY ts LIMIT 1", (self._id,))
+        supported = row[0].split(",") if row and row[0] else []
+        if self._facts and (self._facts.platform in supported or not supported):
+            return self._facts.platform
+        return supported[0] if supported else ""
+
+    # Released packages
+
+    def _packages(self) -> dict[str, _Released]:
+        if self._released is None:
+            found: dict[str, _Released] = {}
+            for repository, ts, version, names in self._data.rows(
+                "SELECT r.repository, max(r.ts), r.version, p.names FROM release r"
+                " LEFT JOIN packages p ON p.id = r.packages WHERE r.distro = ? AND r.ts <= ? GROUP BY r.repository",
+                (self._id, self._cut),
+            ):
+                if version is None:
+                    continue
+                for name in names.split(" "):
+                    old = found.get(name)
+                    # Two repositories may name one package for a while; the later release is the one in force.
+                    if old is None or old.ts < ts:
+                        found[name] = _Released(version, repository, ts)
+            self._released = found
+        return self._released
+
+    def version(self, package: str) -> str | None:
+        if package not in self._versions:
+            self._versions[package] = self._version(package)
+        return self._versions[package]
+
+    def _version(self, package: str) -> str | None:
+        if package in self._overrides and self._is_package(package):
+            return self._overrides[package] or None
+        released = self._packages().get(package)
+        return _upstream(released.version) if released else None
+
+    def released_names(self) -> frozenset[str]:
+        """All packages released here, overrides included."""
+        if self._names is None:
+            names = set(self._packages())
+            for name, version in self._overrides.items():
+                if self._is_package(name):
+                    names.add(name) if version else names.discard(name)
+            self._names = frozenset(names)
+        return self._names
+
+    def _is_package(self, name: str) -> bool:
+        """Whether an override means a ROS package: one released ever, or a name of no platform library."""
+        return self.ever_released(name) or library_name(name) not in self._all_libraries()
+
+    def _all_libraries(self) -> frozenset[str]:
+        return self._data.names("library")
+
+    def ever_released(self, package: str) -> bool:
+        return package in self._data.names("package")
+
+    def history(self, package: str) -> tuple[tuple[str, str | None], ...]:
+        """(day, version) of every release of a package in this distro, oldest first; version None: dropped."""
+        return tuple((day_of(ts), version) for ts, version in self._steps(package))
+
+    def arrivals(self, package: str) -> tuple[tuple[str, str | None], ...]:
+        """The same with the days on which the versions could be had: those of the sync that brought each, and before
+        the distro's first known sync of the commit. What no sync has brought yet is left out; of versions that one
+        sync brought, the last counts."""
+        if package not in self._arrivals:
+            syncs = self._data.rows("SELECT day, cut FROM sync WHERE distro = ? ORDER BY day", (self._id,))
+            # Commits up to the day before the first known sync were available on their own day, as far as is known.
+            early = end_of_day(syncs[0][0]) - 86400 if syncs else None
+            days: dict[str, str | None] = {}
+            for ts, version in self._steps(package):
+                if early is None or ts <= early:
+                    days[day_of(ts)] = version
+                elif day := next((day for day, cut in syncs if cut >= ts), ""):
+                    days[day] = version
+            self._arrivals[package] = tuple(days.items())
+        return self._arrivals[package]
+
+    def _steps(self, package: str) -> list[tuple[int, str | None]]:
+        """(moment, version) of every release of a package in this distro."""
+        events = []
+        for repository in self._homes(package):
+            held = False
+            for ts, version, names in self._data.rows(
+                "SELECT r.ts, r.version, p.names FROM release r LEFT JOIN packages p ON p.id = r.packages"
+                " WHERE r.distro = ? AND r.repository = ? ORDER BY r.ts",
+                (self._id, repository),
+            ):
+                here = version is not None and package in names.split(" ")
+                if here or held:
+                    events.append((ts, not here, _upstream(version) if version and here else None))
+                held = here
+        events.sort(key=lambda event: event[:2])
+        steps: list[tuple[int, str | None]] = []
+        last: tuple[int, str | None] | None = None
+        for ts, _, version in events:
+            # A move between repositories in one commit is no drop: its arrival sorts first.
+            if version is None and last and last[0] == ts and last[1] is not None:
+                continue
+            if last is None or last[1] != version:
+                steps.append((ts, version))
+            last = (ts, version)
+        return steps
+
+    def _homes(self, package: str) -> list[int]:
+        return [
+            repository
+            for (repository,) in self._data.rows(
+                "SELECT h.repository FROM home h JOIN package p ON p.id = h.package WHERE p.name = ? AND h.distro = ?",
+                (package, self._id),
+            )
+        ]
+
+    def since(self, package: str) -> str:
+        """ISO day of the package's first release in this distro, empty when it never was; the commit's day."""
+        steps = self.history(package)
+        return steps[0][0] if steps else ""
+
+    def repository(self, package: str) -> tuple[str, str, str] | None:
+        """(name, source URL, branch) of the repository that releases a package here; empty texts where not known."""
+        released = self._packages().get(package)
+        if released is None:
+            return None
+        row = self._data.row(
+            "SELECT n.name, u.text, s.branch FROM repository n"
+            " LEFT JOIN source s ON s.repository = n.id AND s.distro = ? AND s.ts <= ?"
+            " LEFT JOIN url u ON u.id = s.url WHERE n.id = ? ORDER BY s.ts DESC LIMIT 1",
+            (self._id, max(self._cut, released.ts), released.repository),
+        )
+        return (row[0], row[1] or "", row[2] or "") if row else None
+
+    # Declared dependencies
+
+    @property
+    def knows_manifests(self) -> bool:  # type: ignore[override]
+        if self._with_manifests is None:
+            row = self._data.row("SELECT 1 FROM manifest WHERE distro = ? LIMIT 1", (self._id,))
+            self._with_manifests = row is not None
+        return self._with_manifests
+
+    def dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+        """What the released package declares, None when no manifest of it is known in this distro.
+
+        Where this very version's manifest is not known, the nearest earlier one stands, else the nearest later one.
+        """
+        if package not in self._declared:
+            self._declared[package] = self._read_dependencies(package)
+        return self._declared[package]
+
+    def _manifest(self, package: str) -> tuple[str, str] | None:
+        version = self.version(package)
+        if version is None:
+            return None
+        rows = self._data.rows(
+            "SELECT m.version, d.entries, m.build_type FROM manifest m JOIN package p ON p.id = m.package"
+            " LEFT JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND m.distro = ?",
+            (package, self._id),
+        )
+        if not rows:
+            return None
+        wanted = version_key(version)
+        keyed = [(version_key(known), entries, build) for known, entries, build in rows]
+        keyed.sort(key=lambda row: row[0])
+        chosen = next((row for row in reversed(keyed) if row[0] <= wanted), keyed[0])
+        return chosen[1] or "", chosen[2] or ""
+
+    def _read_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+        manifest = self._manifest(package)
+        if manifest is None:
+            return None
+        found = []
+        for line in manifest[0].splitlines():
+            name, letters, condition, bounds = (*line.split("\t"), "", "")[:4]
+            if condition and not self.holds(condition):
+                continue
+            pairs = tuple((bound, value) for bound, _, value in (item.partition("=") for item in bounds.split()))
+            found.extend(ReleasedDependency(name, KINDS[letter], pairs) for letter in letters)
+        return tuple(found)
+
+    def build_type(self, package: str) -> str:
+        """`ament_cmake`, `ament_python`, `catkin`, `cmake` ...; empty when not known or not said."""
+        manifest = self._manifest(package)
+        return manifest[1] if manifest else ""
+
+    def newest(self) -> DistroTarget | None:
+        """The newest long-term distro of this generation, None when this distro is it or newer."""
+        return _newest(self.distro, self.date if self.distro == "rolling" else "", self._data)
+
+    def in_testing(self) -> DistroTarget | None:
+        """The same distro with what has been released on its day and waits for the next sync, which its build farm
+        builds against already; None when nothing waits, or syncs are not known."""
+        if self.approximate or self._cut >= end_of_day(self.date):
+            return None
+        found = self.changed()
+        found._cut = end_of_day(self.date)
+        return found
+
+    def updated(self) -> DistroTarget | None:
+        """The same distro as of the data's newest day, None when this is it."""
+        if self.date >= self.data_date and not self._overrides:
+            return None
+        return DistroTarget(self.distro, data=self._data)
+
+    def similar_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+        """What the package declares in the nearest distro of the same generation whose manifest of it is known.
+
+        For distros whose own manifests are not: what rests on it is likely, not sure.
+        """
+        for neighbour in self._near(package):
+            if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
+                return found
+        return None
+
+    def possible_dependencies(self, package: str) -> frozenset[str]:
+        """Names that come along with a package in some version of some distro of this generation.
+
+        Conditions count as held: this is what the package may bring where its own manifest is not known.
+        """
+        rows = self._data.rows(
+            "SELECT DISTINCT d.entries FROM manifest m JOIN package p ON p.id = m.package JOIN distro o ON"
+            " o.id = m.distro JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND o.ros = ?",
+            (package, self.ros),
+        )
+        lines = (line.split("\t") for (entries,) in rows for line in entries.splitlines())
+        return frozenset(fields[0] for fields in lines if not _COMES_ALONG.isdisjoint(fields[1]))
+
+    def known_build_types(self, package: str) -> frozenset[str]:
+        """Every build type that a package is known to have had in a distro of this generation."""
+        rows = self._data.rows(
+            "SELECT DISTINCT m.build_type FROM manifest m JOIN package p ON p.id = m.package JOIN distro o ON"
+            " o.id = m.distro WHERE p.name = ? AND o.ros = ?",
+            (package, self.ros),
+        )
+        return frozenset(build or "" for (build,) in rows)
+
+    def other_generation(self, package: str) -> bool:
+        """True when distros have released a package of this name, and all of them are of the other ROS."""
+        return self.ever_released(package) and not self._distros_with(package)
+
+    def similar_build_type(self, package: str) -> str:
+        """The build type of the package in the nearest distro of the same generation that says it; likely, not sure."""
+        near = self._near(package)
+        return next((found for one in near if one.knows_manifests and (found := one.build_type(package))), "")
+
+    def _near(self, package: str) -> Iterator[DistroTarget]:
+        """Other distros of this generation that have released a package, the nearest first."""
+        homes = self._distros_with(package)
+        for name in self._nearest if homes else ():
+            if name in homes:
+                if name not in self._neighbours:
+                    self._neighbours[name] = DistroTarget(name, data=self._data)
+                yield self._neighbours[name]
+
+    @functools.cached_property
+    def _nearest(self) -> list[str]:
+        """The other distros of this generation, the nearest first."""
+        names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
+        here = names.index(self.distro) if self.distro in names else 0
+        near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
+        return [name for name in near if name != self.distro]
+
+    def _distros_with(self, package: str) -> frozenset[str]:
+        """Distros of this generation that have ever released a package."""
+        if not self.ever_released(package):
+            return frozenset()
+        rows = self._data.rows(
+            "SELECT d.name FROM home h JOIN package p ON p.id = h.package JOIN distro d ON d.id = h.distro"
+            " WHERE p.name = ? AND d.ros = ?",
+            (package, self.ros),
+        )
+        return frozenset(name for (name,) in rows)
+
+    def holds(self, condition: str) -> bool:
+        """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
+        if condition not in self._held:
+            self._held[condition] = condition_holds(condition, self._variables)
+        return self._held[condition]
+
+    @property
+    def _variables(self) -> dict[str, str]:
+        return {
+            "ROS_VERSION": str(self.ros),
+            "ROS_DISTRO": self.distro,
+            "ROS_PYTHON_VERSION": str(self.python_major),
+        }
+
+    def closure(self, package: str, kinds: Iterable[str] = _WITH_KINDS) -> frozenset[str]:
+        """Names that come along with a released package: its dependencies of these kinds, and theirs of these kinds.
+
+        The package itself is not in it. Names that are no released package (rosdep keys) are, and end there.
+        """
+        wanted = frozenset(kinds)
+        seen: set[str] = set()
+        waiting = [package]
+        while waiting:
+            for dependency in self.dependencies(waiting.pop()) or ():
+                if dependency.kind in wanted and dependency.name not in seen:
+                    seen.add(dependency.name)
+                    waiting.append(dependency.name)
+        seen.discard(package)
+        return frozenset(seen)
+
+    # rosdep keys
+
+    def resolve(self, key: str) -> Resolution | None:
+        if key not in self._keys:
+            os_name, release = split_platform(self.platform)
+            found = self._resolve(key, os_name, release, self._rule_ts)
+            if found is None and self.end_of_life and self.end_of_life < self.date:
+                # rosdistro drops the rules of old releases; machines of an ended distro were set up when they stood.
+                found = self._resolve(key, os_name, release, end_of_day(self.end_of_life))
+            self._keys[key] = found
+        return self._keys[key]
+
+    def _resolve(self, key: str, os_name: str, release: str, ts: int) -> Resolution | None:
+        for system in (os_name, "*"):
+            if system in self._rules.get(key, ()):
+                return resolve_rule(self._rules[key][system], os_name, release)
+        # Some keys stand for every operating system under the name `*`.
+        for system in (os_name, "*"):
+            row = self._data.row(
+                "SELECT rule FROM rule WHERE key = ? AND os = ? AND ts <= ? ORDER BY ts DESC LIMIT 1",
+                (key, system, ts),
+            )
+            if row and row[0] is not None:
+                return resolve_rule(decode_rule(row[0]), os_name, release)
+        return None
+
+    def known_key(self, key: str) -> bool:
+        return key in self._rules or key in self._data.names("rule", "key")
+
+    def key_names(self) -> frozenset[str]:
+        """Every rosdep key that any platform has, or had."""
+        return self._data.names("rule", "key") | self._rules.keys()
+
+    def last_distro(self, package: str) -> str:
+        """The newest distro of the same generation that has released a package, empty when none has."""
+        names = sorted(self._distros_with(package))
+        order = {known.name: place for place, known in enumerate(known_distros(self._data))}
+        return max(names, key=lambda name: order.get(name, -1), default="")
+
+    def keys_of(self, debian_package: str) -> tuple[str, ...]:
+        """rosdep keys that install this system package on the platform, sorted; shortest names first."""
+        if self._by_debian is None:
+            found: dict[str, list[str]] = {}
+            for key, resolution in self._resolved_keys().items():
+                if resolution.manager in ("apt", "dnf", "yum"):
+                    for name in resolution.packages:
+                        found.setdefault(name, []).append(key)
+            self._by_debian = {name: tuple(sorted(keys, key=lambda k: (len(k), k))) for name, keys in found.items()}
+        return self._by_debian.get(debian_package, ())
+
+    def _resolved_keys(self) -> dict[str, Resolution]:
+        """Every key that resolves here with its resolution, read at once."""
+        if self._all_keys is None:
+            os_name, release = split_platform(self.platform)
+            moments = [self._rule_ts]
+            if self.end_of_life and self.end_of_life < self.date:
+                moments.append(end_of_day(self.end_of_life))
+            found: dict[str, Resolution] = {}
+            for ts in moments:
+                seen: set[str] = set()
+                for system in (os_name, "*"):
+                    for key, rule, _ in self._data.rows(
+                        "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key", (system, ts)
+                    ):
+                        if rule is None or key in seen:
+                            continue
+                        seen.add(key)
+                        resolution = resolve_rule(decode_rule(rule), os_name, release)
+                        if resolution and key not in found:
+                            found[key] = resolution
+            self._all_keys = found
+        return self._all_keys
+
+    def declared_ok(self, name: str) -> str:
+        """How a name in a manifest stands here.
+
+        `released` (a package of this target), `key` (rosdep resolves it here), `known-elsewhere` (a package or key of
+        another distro, day or platform), `unknown` (never seen in public).
+        """
+        if name in self.released_names():
+            return "released"
+        if self.resolve(name) is not None:
+            return "key"
+        if self.ever_released(name) or self.known_key(name):
+            return "known-elsewhere"
+        return "unknown"
+
+    # Platform libraries
+
+    def _libraries(self) -> dict[str, Library]:
+        if self._library_cells is None:
+            self._library_cells = {
+                name: Library(version, source)
+                for name, version, source in self._data.rows(
+                    "SELECT name, version, source FROM library WHERE platform = ?", (self.platform,)
+                )
+            }
+        return self._library_cells
+
+    @property
+    def python(self) -> int:  # type: ignore[override]
+        """Minor version of the Python 3 that ROS code runs on; 0 on Python 2 (python_major 2) and where not known."""
+        if self.python_major == 2:
+            return 0
+        return python_minor(self.library("python")) or 0
+
+    def library(self, name: str) -> str | None:
+        wanted = library_name(name)
+        if wanted in self._own_libraries:
+            return self._own_libraries[wanted] or None
+        instead = self._facts.libraries_from.get(wanted) if self._facts else None
+        if instead and (version := self.version(instead)):
+            return version
+        if self._facts and wanted in self._facts.libraries:
+            return self._facts.libraries[wanted]
+        cell = self._libraries().get(wanted)
+        return cell.version if cell else None
+
+    def came_with_release(self, name: str) -> bool:
+        """True for platform libraries that everybody has in this version since the distro's release: it stays on one
+        platform, this one, and nothing else brings the library."""
+        wanted = library_name(name)
+        if self._facts is None or self.distro == "rolling" or self.platform != self._facts.platform:
+            return False
+        return wanted not in self._own_libraries and wanted not in self._facts.libraries_from
+
+    def overridden(self, package: str) -> bool:
+        """True for ROS packages whose version was given for this machine, and is not the distro's."""
+        return package in self._overrides
+
+    def library_source(self, name: str) -> str:
+        """Where a platform library's version is from, in words; empty when the version is not known."""
+        cell = self._libraries().get(library_name(name))
+        if cell is None:
+            return ""
+        row = self._data.row("SELECT text FROM source_note WHERE id = ?", (cell.source,))
+        return row[0] if row else cell.source
+
+    def library_names(self) -> frozenset[str]:
+        """Platform libraries whose version is known here."""
+        own = {name for name, value in self._own_libraries.items() if value and name in self._all_libraries()}
+        return frozenset(self._libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
+
+    def library_since(self, name: str) -> tuple[str, str] | None:
+        """(platform, version) of the oldest platform of the same system that has this library in the same version."""
+        wanted, version = library_name(name), self.library(name)
+        if version is None:
+            return None
+        order = _platform_order()
+        system = split_platform(self.platform)[0]
+        rows = self._data.rows("SELECT platform FROM library WHERE name = ? AND version = ?", (wanted, version))
+        same = sorted((p for (p,) in rows if p.startswith(system + " ")), key=lambda p: order.get(p, len(order)))
+        return (same[0], version) if same else (self.platform, version)
+
+    # Known upstream changes
+
+    def has_changes(self) -> bool:
+        """True when changes() answers without working them out."""
+        return self._changes is not None
+
+    def set_changes(self, changes: tuple[Change, ...]) -> None:
+        """What changes() is to answer, worked out by an earlier run on the same data."""
+        self._changes = changes
+
+    def changes(self) -> tuple[Change, ...]:
+        if self._changes is None:
+            from ..changes import changes_in_force
+            from ..uses import uses_in_force
+
+            found: tuple[Change, ...] = (*changes_in_force(self), *uses_in_force(self))
+            self._changes = found
+            return found
+        return self._changes
+
+
+_COMPARISON = re.compile(r"""\s*\$(\w+)\s*(==|!=|<=|>=|<|>)\s*(?:([\w-]+)|"([^"]*)"|'([^']*)')\s*$""")
+_COMPARE = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+
+
+_TURNED = re.compile(r"""["']?(\w+)["']?\s*(==|!=|<=|>=|<|>)\s*\$(\w+)\Z""")
+
+
+def _compared(term: str, variables: Mapping[str, str]) -> bool | None:
+    """One comparison, None when it is none of a variable with a text."""
+    term = term.strip()
+    simple = _COMPARISON.match(term)
+    if simple is None:
+        turned = _TURNED.match(term)
+        if turned is None:
+            return None
+        return bool(_COMPARE[turned[2]](turned[1], variables.get(turned[3], "")))
+    name, compare, *values = simple.groups()
+    return bool(_COMPARE[compare](variables.get(name, ""), next(value for value in values if value is not None)))
+
+
+def condition_holds(condition: str, variables: Mapping[str, str]) -> bool:
+    """A manifest condition by REP 149: texts are compared, an unset variable is empty.
+
+    Comparisons in a row, as most conditions are, are done here: catkin_pkg's parser costs 60 ms to load.
+    """
+    if "(" not in condition:
+        # `and` binds closer than `or`.
+        terms = [
+            [_compared(term, variables) for term in re.split(r"\band\b", part)]
+            for part in re.split(r"\bor\b", condition)
+        ]
+        if not any(term is None for part in terms for term in part):
+            return any(all(part) for part in terms)
+    from catkin_pkg.condition import evaluate_condition
+
+    try:
+        return bool(evaluate_condition(condition, variables))
+    except Exception:
+        return False
+
+
+@functools.cache
+def _newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
+    known = known_distros(data)
+    here = next((k for k in known if k.name == distro), None)
+    if here is None:
+        return None
+    lasting = [k for k in known if k.ros == here.ros and k.lts]
+    last = lasting[-1] if lasting else None
+    return DistroTarget(last.name, data=data) if last and last.released > (day or here.released) else None
+
+
+def _platform_order() -> dict[str, int]:
+    from ..platform import CODENAMES
+
+    return {name: place for place, name in enumerate(CODENAMES.values())}
+
+
+def _facts(distro: str, data: Snapshot) -> DistroFacts | None:
+    row = data.row("SELECT facts FROM distro_fact WHERE name = ?", (distro,))
+    return msgspec.json.decode(row[0], type=DistroFacts) if row else None
+
+
+def _upstream(version: str) -> str:
+    """`1.2.3-0` → `1.2.3`: the part after the dash counts the packaging."""
+    return version.partition("-")[0]
+
+
+def _unknown_distro(name: str, data: Snapshot) -> str:
+    import difflib
+
+    names = [known.name for known in known_distros(data)]
+    close = difflib.get_close_matches(name, names, 1)
+    hint = f"; did you mean `{close[0]}`?" if close else "."
+    return f"unknown distro `{name}`{hint} Known: {', '.join(names)}"

@@ -1,0 +1,230 @@
+"""Which shared libraries are there when a built file starts: on this machine, or on a machine that is described.
+
+Both answer alike: yes, no, or not known. A no is said where it is sure.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Container, Mapping
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+from ...facts import elf
+from ...facts.elf import Asked, Elf, stem_and_version
+from ..target import Target
+from ..version import compare
+from .loader import Loader
+from .sonames import Sonames
+
+# A name this short is the beginning of too many others.
+_LONG_ENOUGH = 3
+
+
+class Lack(NamedTuple):
+    """A version of symbols that is not there, and what is, in words (empty when it is not known)."""
+
+    version: str
+    there: str
+
+
+class Lost(NamedTuple):
+    """A C++ symbol without a version that none of the libraries which are loaded with a file has. name: as code writes
+    it; library: which of them has others of the same class, empty where none has; more: how many others
+    of it are lost."""
+
+    name: str
+    library: str
+    more: int
+
+
+class Shelf(Protocol):
+    """Attributes: target (its name), name (`this machine`, `ubuntu jammy`), gone (what is not there was there once,
+    since it was built with), nothing (says that there is no such library at all), machine (`EM_X86_64`,
+    empty where any may be), platform (`ubuntu jammy`)."""
+
+    target: str
+    name: str
+    gone: bool
+    nothing: str
+    machine: str
+    platform: str
+
+    def has(self, soname: str, asker: Elf, folder: str) -> bool | None:
+        """Whether a library is there for a file that lies in a folder, None when it is not known."""
+        ...
+
+    def instead(self, soname: str) -> str:
+        """What is there of the library in other versions, in words; empty when nothing is."""
+        ...
+
+    def package(self, soname: str) -> str:
+        """The Debian package of a library that is not installed and can be; empty where none is known."""
+        ...
+
+    def lacks(self, asked: Asked, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
+        """The versions of symbols that are asked of a library and not there; None when it is not known."""
+        ...
+
+    def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+        """Symbols without a version that a file asks for and that are not there, one for each library; None when it is
+        not known. own: the files that are installed with it, by name."""
+        ...
+
+
+# How symbols begin that only the library of a class has: constructors, destructors, its table of virtual functions.
+_OF_CLASSES = ("_ZN{}C", "_ZN{}D", "_ZTVN{}", "_ZTIN{}")
+
+
+class MachineShelf:
+    """This machine."""
+
+    name, gone, nothing = "this machine", True, "this machine has no such file"
+
+    def __init__(self, target: str, loader: Loader, machine: str, platform: str, sonames: Sonames):
+        self.target, self.machine, self.platform = target, machine, platform
+        self._loader, self._sonames = loader, sonames
+
+    def has(self, soname: str, asker: Elf, folder: str) -> bool | None:
+        if self._loader.find(soname, asker, folder):
+            return True
+        # A library without a version is of ROS or of one's own, and may be in a prefix that nobody named.
+        if not stem_and_version(soname)[1] and not self._loader.knows_prefixes:
+            return None
+        return None if self._loader.lies_about(soname) else False
+
+    def instead(self, soname: str) -> str:
+        return _listed(self._loader.others(soname))
+
+    def package(self, soname: str) -> str:
+        return self._sonames.package(soname) if self._sonames.has(self.platform, soname) else ""
+
+    def lacks(self, asked: Asked, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
+        path = self._loader.find(asked.library, asker, folder)
+        offers = self._loader.offers(path) if path else frozenset()
+        if not offers:
+            return None  # the loader only warns of a library without versions
+        return tuple(Lack(version, _highest(offers, version)) for version in asked.versions if version not in offers)
+
+    def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+        wanted = {u.name for u in asker.undefined if not u.version and not u.weak and u.name.startswith("_Z")}
+        paths = self._loader.loaded(asker, folder, own) if wanted else ()
+        if paths is None:
+            return None
+        known = {path: self._loader.defined(path) for path in paths}
+        if None in known.values():
+            return None
+        absent = wanted.difference(*filter(None, known.values()))
+        found: dict[str, list[str]] = {}
+        for member in sorted(filter(None, map(elf.member, absent))):
+            marks = tuple(mark.format(member.scope) for mark in _OF_CLASSES)
+            owners = (path for path, names in known.items() if any(n.startswith(marks) for n in names or ()))
+            owner = os.path.basename(next(owners, "")) if member.scope else ""
+            # What is loaded as a plugin may find in its host what its own libraries never had.
+            if owner or asker.program:
+                found.setdefault(owner, []).append(member.name)
+        return tuple(Lost(names[0], owner, len(names) - 1) for owner, names in found.items())
+
+
+class DescribedShelf:
+    """A machine that is described: the packages of its platform, and those of its ROS distro."""
+
+    machine, gone = "", False
+
+    def __init__(
+        self, target: Target, sonames: Sonames, own: Container[str] = frozenset(), near: Container[str] = frozenset()
+    ):
+        """own: libraries of underlays that go with the workspace. near: libraries of prefixes on this machine, which
+        tell that ROS packages bring them, and not in which version they are elsewhere."""
+        self.target, self.name, self.platform = target.name, target.platform, target.platform
+        self.nothing = f"no package of {target.platform} has it"
+        self._described, self._sonames, self._own, self._near = target, sonames, own, near
+
+    def has(self, soname: str, asker: Elf, folder: str) -> bool | None:
+        if soname in self._own or soname in self._sonames.reviewed.everywhere:
+            return True
+        stem, version = stem_and_version(soname)
+        platform = self._described.platform
+        known = self._sonames.has(platform, soname)
+        library = self._sonames.family(soname)
+        there = self._described.library(library) if library else None
+        fits = self._sonames.fits(soname, there) if there else None
+        # A version that a person or a capture gives goes over that of the platform.
+        if known or fits or (not version and self._is_of_ros(stem)):
+            return True
+        if not version or soname in self._near or soname.startswith(self._sonames.reviewed.elsewhere):
+            return None
+        if self._may_be_of_ros(soname):
+            return None
+        return False if known is False else fits
+
+    def instead(self, soname: str) -> str:
+        others = _listed(self._sonames.others(self._described.platform, soname))
+        library = self._sonames.family(soname)
+        there = self._described.library(library) if library else None
+        return others or (f"{library} {there}" if there else "")
+
+    def package(self, soname: str) -> str:
+        return ""
+
+    def lacks(self, asked: Asked, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
+        found = []
+        for name in asked.versions:
+            kind, _, version = name.partition("_")
+            limit = self._reach.get(kind)
+            if limit and re.fullmatch(r"[\d.]+", version) and compare(version, limit) > 0:
+                found.append(Lack(name, f"{kind}_{limit}"))
+        return tuple(found)
+
+    def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+        return None
+
+    @cached_property
+    def _reach(self) -> dict[str, str]:
+        """How far the versions of symbols reach, by their kind; empty where it is not known."""
+        glibc, glibcxx = (self._sonames.reach(self.platform, kind) for kind in ("GLIBC", "GLIBCXX"))
+        return {"GLIBC": glibc or self._described.library("glibc") or "", "GLIBCXX": glibcxx}
+
+    @cached_property
+    def _released(self) -> frozenset[str]:
+        """Names of ROS packages without what spelling may change, and without `vendor` and `lib`."""
+        names = (_plain(name) for name in self._described.released_names())
+        return frozenset(name.removesuffix("vendor").removeprefix("lib") for name in names)
+
+    def _is_of_ros(self, stem: str) -> bool:
+        """Whether a library is called after a released package: `librclcpp.so`, `libstd_msgs__rosidl_cpp.so`."""
+        name = stem.removeprefix("lib").removesuffix(".so")
+        return self._described.version(name.partition("__")[0]) is not None
+
+    def _may_be_of_ros(self, soname: str) -> bool:
+        """Whether a released package may bring the library in: it is called like the library, or its beginning, or like
+        the Debian package that has it."""
+        stem = _plain(stem_and_version(soname)[0].removesuffix(".so").removeprefix("lib"))
+        package = _plain(re.sub(r"[\d.]+[a-z]?\d*$", "", self._sonames.package(soname)).removeprefix("lib"))
+        library = _plain(self._sonames.family(soname))
+        return any(
+            name[:length] in self._released
+            for name in (stem, package, library)
+            for length in range(_LONG_ENOUGH, len(name) + 1)
+        )
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+def _listed(names: list[str]) -> str:
+    """The first name, in code quotes."""
+    return f"`{names[0]}`" if names else ""
+
+
+def _highest(offers: frozenset[str], version: str) -> str:
+    """The highest version that is offered of the same kind: of `GLIBC_2.38` in an older libc, `GLIBC_2.36`."""
+    kind = version.rpartition("_")[0]
+    same = [offer for offer in offers if offer.rpartition("_")[0] == kind and re.search(r"_[\d.]+$", offer)]
+    highest = ""
+    for offer in same:
+        if not highest or compare(offer.rpartition("_")[2], highest.rpartition("_")[2]) > 0:
+            highest = offer
+    return highest

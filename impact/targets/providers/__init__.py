@@ -1,0 +1,1 @@
+"""Who provides a header, module, CMake name or key."""

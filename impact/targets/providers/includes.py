@@ -1,0 +1,484 @@
+"""Which headers each header of a library or ROS package brings along on a machine, over any number of steps.
+
+Headers of ROS packages are looked up in the stored surfaces; those of platform libraries, of generators, and of
+versions older than all that are stored, in `data/includes.json.zst`, which build/includes.py makes from the
+repositories' release tags. An include under a condition counts, unless the condition surely does not hold there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import msgspec
+
+from ..snapshot import DATA, SnapshotError
+from ..version import at_least, parts
+from . import message_headers
+from .standard import DEFINED_IN, bit_of, brought_by, named_by, oldest
+
+if TYPE_CHECKING:
+    from ...conditions import Environment
+    from ...facts.condition import Condition
+    from ...facts.interface import Interface
+    from ..surface.includes import Included
+    from ..surface.store import Surfaces
+    from ..target import Target
+
+
+class Table(msgspec.Struct, frozen=True):
+    """The shipped table. paths: include paths, whose places stand for them. owners: owner to header to its states, as
+    `VERSION PLACE PLACE ...;VERSION -;...`: from that version on, and `-` where there is no such header. libraries:
+    owners that are platform libraries. sparse: owners of which not every version was read, to those that were. names:
+    types to the headers that define them, of types that some header stopped bringing along. announced: types to
+    headers that only announce them. versions: distro to owner to the version that it has in the end, the compiler's
+    as `gcc`."""
+
+    paths: tuple[str, ...]
+    owners: dict[str, dict[str, str]]
+    libraries: frozenset[str]
+    sparse: dict[str, tuple[str, ...]]
+    names: dict[str, tuple[str, ...]] = {}
+    announced: dict[str, tuple[str, ...]] = {}
+    versions: dict[str, dict[str, str]] = {}
+
+
+_State = tuple[tuple[int, ...], tuple[str, ...] | None]
+
+
+class Includes:
+    """A table, asked by header and version."""
+
+    def __init__(self, table: Table):
+        self.table = table
+        self.owners_of: dict[str, tuple[str, ...]] = {}
+        for owner, headers in table.owners.items():
+            for header in headers:
+                self.owners_of[header] = (*self.owners_of.get(header, ()), owner)
+        self._states: dict[tuple[str, str], tuple[_State, ...]] = {}
+        self._read: dict[str, frozenset[tuple[int, ...]]] = {}
+
+    def states(self, owner: str, header: str) -> tuple[_State, ...]:
+        """(first version, what it includes; None: no such header), oldest first."""
+        known = self._states.get((owner, header))
+        if known is None:
+            paths, found = self.table.paths, []
+            for run in self.table.owners[owner][header].split(";"):
+                version, _, text = run.partition(" ")
+                found.append((parts(version), None if text == "-" else tuple(paths[int(n)] for n in text.split())))
+            known = self._states[owner, header] = tuple(found)
+        return known
+
+    def included(self, owner: str, header: str, version: str) -> tuple[str, ...] | None:
+        """What a header includes in a version; None when there is no such header in it, or none is known to be."""
+        wanted, states = parts(version), self.states(owner, header)
+        place = sum(1 for first, _ in states if first[: len(wanted)] <= wanted) - 1
+        if place < 0:
+            return None
+        now = states[place][1]
+        if place + 1 == len(states) or self._was_read(owner, wanted):
+            return now
+        # Between two known versions, a header may include what it does in either.
+        later = states[place + 1][1]
+        return tuple(dict.fromkeys((*(now or ()), *(later or ())))) if now or later else None
+
+    def _was_read(self, owner: str, wanted: tuple[int, ...]) -> bool:
+        """Whether a version, or another of its minor line, was read."""
+        if owner not in self.table.sparse:
+            return True
+        if owner not in self._read:
+            self._read[owner] = frozenset(parts(version)[:2] for version in self.table.sparse[owner])
+        return wanted[:2] in self._read[owner]
+
+
+@cache
+def default() -> Includes:
+    """The shipped table. Raises SnapshotError when it cannot be read."""
+    import zstandard
+
+    path = DATA / "includes.json.zst"
+    try:
+        raw = zstandard.ZstdDecompressor().decompress(path.read_bytes())
+        return Includes(msgspec.json.decode(raw, type=Table))
+    except (OSError, zstandard.ZstdError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+
+
+_INCLUDE_FOLDERS = ("eigen3/Eigen/", "eigen3/unsupported/", "opencv4/opencv2/")
+"""Heads of include paths that name a library's own folder below the system's, as some write them."""
+_GENERATOR = {1: ("gencpp", "<gencpp>"), 2: ("rosidl_generator_cpp", "<rosidl_generator_cpp>")}
+_CONFIG = re.compile(r"\w+/\w+Config\.h\Z")
+_RECONFIGURE = (
+    *("dynamic_reconfigure/config_tools.h", "limits", "ros/node_handle.h", "boost/any.hpp"),
+    *(
+        "dynamic_reconfigure/ConfigDescription.h",
+        "dynamic_reconfigure/ParamDescription.h",
+        "dynamic_reconfigure/Group.h",
+    ),
+    "dynamic_reconfigure/config_init_mutex.h",
+)
+"""What a header made from a .cfg file includes. Source: dynamic_reconfigure's ConfigType.h.template."""
+
+
+_NUMBERS = re.compile(r"\w+/version\.hp?p?")
+"""Headers of ROS 2 packages that define the macros of their version, and include nothing. Source: version.h.in of
+ament_cmake_gen_version_h."""
+_WRITTEN = {
+    "rclcpp/logging.hpp": (
+        *("sstream", "type_traits", "rclcpp/logger.hpp", "rcutils/logging_macros.h", "rclcpp/utilities.hpp"),
+    ),
+    "rcutils/logging_macros.h": ("rcutils/logging.h", "stdio.h", "stdlib.h"),
+}
+"""Headers that their package's build writes in some versions, and what they include. Source: their templates in the
+packages' resource folders, Humble to Rolling."""
+
+
+class Brought(NamedTuple):
+    """What a header brings along, itself included, and of which headers among them nothing is known here: they are of
+    packages that no version is known of, are made while building, or are not there. standard: those of the standard
+    libraries, as far as others than these include them."""
+
+    headers: frozenset[str]
+    outside: frozenset[str]
+    standard: frozenset[str] = frozenset()
+
+
+class _Found(NamedTuple):
+    """A header of a package or library of some version, and what it includes."""
+
+    owner: str
+    version: str
+    includes: tuple[str, ...]
+
+
+class Machine:
+    """The headers of one machine, each answer kept. ros: 1 or 2. version: owner and whether it is a platform library to
+    its version. surfaces: what its ROS packages offer, by default the shipped file."""
+
+    def __init__(
+        self,
+        ros: int,
+        version: Callable[[str, bool], str | None],
+        data: Includes | None = None,
+        surfaces: Surfaces | None = None,
+    ):
+        self.ros, self._version, self._data, self._given = ros, version, data or default(), surfaces
+        self._known: dict[str, _Found | None] = {}
+        self._stored: dict[str, tuple[Included, str, str] | None] = {}
+        self._interfaces: dict[str, dict[str, Interface]] = {}
+        self._holding: dict[tuple[Condition, ...], bool] = {}
+        self._closures: dict[str, Brought] = {}
+        self._outside: dict[frozenset[str], frozenset[str]] = {}
+        self._alone: dict[str, int] = {}
+        self._masks: dict[frozenset[str], int] = {}
+        self._telling: dict[str, bool] = {}
+        self._bits: dict[str, int] = {}
+        self._versions: dict[str, str | None] = {}
+        self._named: dict[tuple[frozenset[str], int], int] = {}
+        self._named_alone: dict[tuple[str, int], int] = {}
+
+    def version(self, owner: str) -> str | None:
+        """The version of an owner here."""
+        if owner not in self._versions:
+            library = owner == "gcc" or owner in self._data.table.libraries
+            self._versions[owner] = self._version(owner, library) or (self._version(owner, False) if library else None)
+        return self._versions[owner]
+
+    @cached_property
+    def gcc(self) -> int:
+        """The major version of the compiler."""
+        return parts(self.version("gcc") or "5")[0]
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """The stored surfaces."""
+        from ..surface.store import shipped
+
+        return self._given or shipped()
+
+    def includes(self, header: str) -> tuple[str, ...] | None:
+        """What one header includes here, as dependants would write it; None when that is not known."""
+        found = self._find(header)
+        return None if found is None else found.includes
+
+    def owner(self, header: str) -> tuple[str, str] | None:
+        """The package or library that has a header here, and its version."""
+        found = self._find(header)
+        return None if found is None else (found.owner, found.version)
+
+    def of_library(self, header: str) -> bool:
+        """True when a platform library, and no ROS package, has a header here."""
+        owner = self.owner(header)
+        return owner is not None and owner[0] in self._data.table.libraries
+
+    def knows(self, header: str) -> bool:
+        """True when some version of a header was read, be it here or not."""
+        if header in self._data.owners_of:
+            return True
+        every = map(self.surfaces.included, self.surfaces.holders(header))
+        return any(header in included.headers for included in every if included is not None)
+
+    def _find(self, header: str) -> _Found | None:
+        if header.startswith(_INCLUDE_FOLDERS):
+            header = header.partition("/")[2]
+        if header not in self._known:
+            libraries = self._data.table.libraries
+            owners = self._data.owners_of.get(header, ())
+            self._known[header] = (
+                self._in_table(header, (owner for owner in owners if owner in libraries))
+                or self._in_surfaces(header)
+                or self._in_table(header, (owner for owner in owners if not self._gone(owner, header)))
+                or self._made(header)
+            )
+        return self._known[header]
+
+    def _in_table(self, header: str, owners: Iterable[str]) -> _Found | None:
+        for owner in owners:
+            version = self.version(owner)
+            found = self._data.included(owner, header, version) if version else None
+            if version and found is not None:
+                return _Found(owner, version, found)
+        return None
+
+    def _in_surfaces(self, header: str) -> _Found | None:
+        for package in self.surfaces.holders(header):
+            stored = self._standing_for(package)
+            if stored is None:
+                continue
+            included, standing, version = stored
+            written = included.written(header, standing)
+            if written is not None:
+                active = (one for one in written if self._may_hold(one.conditions))
+                paths = dict.fromkeys(included.answer(one, header, standing) for one in active)
+                return _Found(package, version, tuple(paths))
+        return None
+
+    def _gone(self, package: str, header: str) -> bool:
+        """Whether the surface that stands for a package here lacks a header that others of its surfaces have."""
+        stored = self._standing_for(package)
+        return stored is not None and header in stored[0].headers
+
+    def _standing_for(self, package: str) -> tuple[Included, str, str] | None:
+        """What a package's headers include, the stored version that stands for the one here, and that one."""
+        if package not in self._stored:
+            version, included = self._version(package, False), self.surfaces.included(package)
+            standing = included.stands_for(version, self.ros) if version and included is not None else None
+            self._stored[package] = (included, standing, version) if included and standing and version else None
+        return self._stored[package]
+
+    def _may_hold(self, conditions: tuple[Condition, ...]) -> bool:
+        if not conditions:
+            return True
+        known = self._holding.get(conditions)
+        if known is None:
+            from ...conditions import all_hold
+
+            known = self._holding[conditions] = all_hold(conditions, self._environment) is not False
+        return known
+
+    @cached_property
+    def _environment(self) -> Environment:
+        from ...conditions import Environment
+
+        def version(name: str) -> str | None:
+            return self._version(name, False) or self._version(name.lower(), True)
+
+        return Environment(ros_version=str(self.ros), versions=version, headers=self._has)
+
+    def _has(self, header: str) -> bool | None:
+        """Whether a package has a header here, None when that is not known."""
+        there: bool | None = None
+        for package in self.surfaces.holders(header):
+            stored = self._standing_for(package)
+            if stored is None or header not in stored[0].headers:
+                continue
+            included, standing, version = stored
+            if included.written(header, standing) is not None:
+                return True
+            there = False if standing == version else there
+        return there
+
+    def _made(self, header: str) -> _Found | None:
+        """A header that is made while its package is built."""
+        written = () if _NUMBERS.fullmatch(header) else _WRITTEN.get(header)
+        if written is not None and self.ros == 2:
+            owner = header.partition("/")[0]
+            version = self._version(owner, False)
+            return _Found(owner, version, written) if version else None
+        if self.ros == 1 and _CONFIG.match(header):
+            owner = "dynamic_reconfigure"
+            return _Found(owner, self.version(owner) or "", _RECONFIGURE)
+        package = message_headers.package_of(header, self.ros)
+        if package is None:
+            package = message_headers.package_for_c(header) if self.ros == 2 else None
+            version = self._version(package, False) if package else None
+            return _Found("rosidl_generator_c", version, message_headers.OF_C) if version else None
+        owner, pattern = _GENERATOR[self.ros]
+        version = self.version(owner)
+        always = self._data.included(owner, pattern, version) if version else None
+        if version is None or always is None:
+            return None
+        apart = at_least(version, "0.9.0")
+        others = message_headers.included_by(header, self.ros, self._interfaces_of(package), apart) or ()
+        return _Found(owner, version, tuple(dict.fromkeys((*always, *others))))
+
+    def _interfaces_of(self, package: str) -> dict[str, Interface]:
+        if package not in self._interfaces:
+            stored = self._standing_for(package)
+            history = self.surfaces.history(package) if stored is not None else None
+            found = history.interfaces(stored[1]) if stored is not None and history is not None else {}
+            self._interfaces[package] = found
+        return self._interfaces[package]
+
+    def brought(self, header: str) -> Brought:
+        """Everything that a header brings along here; of standard ones, by the machine's GCC."""
+        known = self._closures.get(header)
+        if known is None:
+            seen, outside, plain, stack = {header}, set(), set(), [header]
+            while stack:
+                at = stack.pop()
+                if at in self._closures:
+                    seen |= self._closures[at].headers
+                    outside |= self._closures[at].outside
+                    plain |= self._closures[at].standard
+                    continue
+                found = self.includes(at)
+                if found is None:
+                    standard = brought_by(at, self.gcc)
+                    seen |= standard
+                    if named_by(at, self.gcc, 2017) is not None:
+                        plain.add(at)
+                    elif len(standard) == 1:
+                        outside.add(at)
+                    continue
+                for path in found:
+                    if path not in seen:
+                        seen.add(path)
+                        stack.append(path)
+            known = self._closures[header] = Brought(frozenset(seen), frozenset(outside), frozenset(plain))
+        return known
+
+    def mask(self, headers: frozenset[str]) -> int:
+        """Everything that these headers bring along here, as bits() has it."""
+        known = self._masks.get(headers)
+        if known is None:
+            known = 0
+            for header in headers:
+                alone = self._alone.get(header)
+                if alone is None:
+                    alone = self._alone[header] = self.bits(self.brought(header).headers)
+                known |= alone
+            self._masks[headers] = known
+        return known
+
+    def named(self, headers: frozenset[str], standard: int) -> int:
+        """The names of the standard libraries that these headers bring along here, as bits of standard.bit_of().
+
+        standard: year of the C++ standard that they are compiled under."""
+        known = self._named.get((headers, standard))
+        if known is None:
+            known = 0
+            for header in headers:
+                alone = self._named_alone.get((header, standard))
+                if alone is None:
+                    alone = 0
+                    for plain in self.brought(header).standard:
+                        alone |= named_by(plain, self.gcc, standard) or 0
+                    self._named_alone[header, standard] = alone
+                known |= alone
+            self._named[headers, standard] = known
+        return known
+
+    def brings(self, name: str, headers: frozenset[str], standard: int) -> bool:
+        """Whether these headers bring a name of the standard libraries along here, as far as that can be excluded."""
+        if bit_of(name) & self.named(headers, standard):
+            return True
+        if self.names(name):
+            return self.gcc < oldest() and bool(self.bits(DEFINED_IN[name]) & self.mask(headers))
+        return True
+
+    def names(self, name: str) -> bool:
+        """Whether it is known here which headers bring a name of the standard libraries along: of older compilers the
+        headers are, and of some names where they are defined."""
+        return bool(bit_of(name)) and (self.gcc >= oldest() or name in DEFINED_IN)
+
+    def outside(self, headers: frozenset[str]) -> frozenset[str]:
+        """The headers among all that these bring along of which nothing is known here."""
+        known = self._outside.get(headers)
+        if known is None:
+            known = self._outside[headers] = frozenset().union(*(self.brought(header).outside for header in headers))
+        return known
+
+    def tells(self, header: str) -> bool:
+        """False for a header that is made from an interface of which no definition is known here, so that neither its
+        being there nor what it brings along of others' is known."""
+        package = message_headers.package_of(header, self.ros)
+        if package is None or self.includes(header) is None:
+            return True
+        return message_headers.included_by(header, self.ros, self._interfaces_of(package), True) is not None
+
+    def tells_all(self, headers: frozenset[str]) -> bool:
+        """Whether it tells of all generated headers that these bring along."""
+        for header in headers:
+            if header not in self._telling:
+                self._telling[header] = all(map(self.tells, self.brought(header).headers))
+        return all(self._telling[header] for header in headers)
+
+    def bits(self, headers: Iterable[str]) -> int:
+        """One bit for each of these headers, the same in all answers of this machine."""
+        found = 0
+        for header in headers:
+            known = self._bits.get(header)
+            if known is None:
+                known = self._bits[header] = 1 << len(self._bits)
+            found |= known
+        return found
+
+
+def machine(target: Target) -> Machine:
+    """The headers that a target has."""
+    return Machine(target.ros, lambda name, library: target.library(name) if library else target.version(name))
+
+
+@cache
+def machine_of(distro: str, ros: int, data: Includes | None = None) -> Machine:
+    """A distro as it was in the end."""
+    known = data or default()
+    versions = known.table.versions.get(distro, {})
+
+    def version(owner: str, library: bool) -> str | None:
+        return versions.get(owner) or (None if library else _packages_of(distro).version(owner))
+
+    return Machine(ros, version, known)
+
+
+@cache
+def _packages_of(distro: str) -> Target:
+    from ..distro.distro import DistroTarget
+
+    return DistroTarget(distro)
+
+
+class _Offers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """data/offers.json: names that tags do not tell, to the headers that offer them, best first."""
+
+    source: str
+    names: dict[str, tuple[str, ...]]
+
+
+@cache
+def offered() -> dict[str, tuple[str, ...]]:
+    """Names to the headers that offer them: types that some header stopped bringing along, and much used ones."""
+    path = DATA / "offers.json"
+    try:
+        reviewed = msgspec.json.decode(path.read_bytes(), type=_Offers).names
+    except (OSError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+    return {**default().table.names, **reviewed}
+
+
+def announced(name: str) -> tuple[str, ...]:
+    """Headers that announce a type without defining it."""
+    return default().table.announced.get(name, ())

@@ -1,0 +1,138 @@
+"""Which other generated headers a header includes that is made from a message, service or action.
+
+Sources: gencpp's templates; rosidl_generator_cpp's, whose parts of a header lie in `detail/` since 0.9 (Foxy).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import NamedTuple
+
+from ...facts.interface import PRIMITIVES, TIMES, Interface, full_name
+from ..surface.fields import ROS1_SUFFIXES, snake
+
+_ROS1 = re.compile(r"(?P<package>\w+)/(?P<name>[A-Z]\w*)\.h\Z")
+_ROS2 = re.compile(
+    r"(?P<folder>(?P<package>\w+)/(?P<kind>msg|srv|action)/)(?:detail/)?(?P<stem>[a-z0-9_]+?)(?P<part>__\w+)?\.hpp\Z"
+)
+_TYPE1 = re.compile(r"(?P<package>\w+_(?:msgs|srvs|actions))::[A-Z][A-Za-z0-9]*?(?=(?:Const)?Ptr\b|\b)")
+_TYPE2 = re.compile(
+    r"(?P<package>\w+)::"
+    r"(?:msg::[A-Z][A-Za-z0-9]*\b|(?:srv|action)::[A-Z][A-Za-z0-9]*(?=_(?:Re|Goal|Send|Get|Feed)|\b))"
+)
+_ROS2_C = re.compile(r"(?P<package>\w+)/(?:msg|srv|action)/(?:detail/)?[a-z0-9_]+\.h\Z")
+OF_C = (
+    *("stdbool.h", "stddef.h", "stdint.h", "stdlib.h", "rosidl_typesupport_interface/macros.h"),
+    *("rosidl_runtime_c/primitives_sequence.h", "rosidl_runtime_c/string.h", "rosidl_runtime_c/u16string.h"),
+    *("rosidl_runtime_c/visibility_control.h", "rosidl_runtime_c/message_type_support_struct.h"),
+)
+"""What the headers for C include, those of nested messages aside, which include the same. Source: the templates of
+rosidl_generator_c, 3.1 (Humble) to 4.6 (Jazzy)."""
+_OF_ACTIONS = ("actionlib_msgs/GoalID.h", "actionlib_msgs/GoalStatus.h", "std_msgs/Header.h")
+
+
+def package_of(header: str, ros: int) -> str | None:
+    """The package of a header that is made from an interface in this ROS generation, by its path; None for others."""
+    found = (_ROS1 if ros == 1 else _ROS2).match(header)
+    return None if found is None else found["package"]
+
+
+class InterfaceType(NamedTuple):
+    """A type of C++ that is made from an interface. name: as code writes it. headers: that define it, first the one to
+    include, then parts of it that other headers include."""
+
+    name: str
+    package: str
+    ros: int
+    headers: tuple[str, ...]
+
+
+@lru_cache(maxsize=20000)
+def type_in(name: str) -> InterfaceType | None:
+    """The type that a qualified name of C++ begins with; None where it looks like none. Of ROS 1, types in packages
+    whose names say that they hold messages, without what only some of them have (`Ptr`)."""
+    found, ros = _TYPE2.match(name), 2
+    if found is None:
+        found, ros = _TYPE1.match(name), 1
+    return None if found is None else InterfaceType(found[0], found["package"], ros, _defining(found[0].split("::")))
+
+
+def _defining(parts: list[str]) -> tuple[str, ...]:
+    if len(parts) == 2:
+        return (f"{parts[0]}/{parts[1]}.h",)
+    folder, stem = f"{parts[0]}/{parts[1]}/", snake(parts[2])
+    return f"{folder}{stem}.hpp", f"{folder}detail/{stem}__struct.hpp", f"{folder}{stem}__struct.hpp"
+
+
+def package_for_c(header: str) -> str | None:
+    """The package of a header for C that ROS 2 makes from an interface, by its path; None for others."""
+    found = _ROS2_C.match(header)
+    return None if found is None else found["package"]
+
+
+def included_by(header: str, ros: int, interfaces: Mapping[str, Interface], apart: bool) -> tuple[str, ...] | None:
+    """The generated headers that such a header includes; None when its package has no such interface. interfaces: those
+    of its package, by `msg/Name`. apart: the parts of a header lie in a folder of their own."""
+    return _of_ros1(header, interfaces) if ros == 1 else _of_ros2(header, interfaces, "detail/" if apart else "")
+
+
+def _of_ros1(header: str, interfaces: Mapping[str, Interface]) -> tuple[str, ...] | None:
+    found = _ROS1.match(header)
+    if found is None:
+        return None
+    package, name = found.groups()
+    for kind, stem in (("msg", name), ("srv", name), *_stems(name)):
+        definition = interfaces.get(f"{kind}/{stem}")
+        if definition is None:
+            continue
+        own = [f"{package}/{stem}{ending}.h" for ending in ROS1_SUFFIXES[kind] if stem + ending != name]
+        nested = [f"{other}/{type_}.h" for other, type_ in _nested(definition, package)]
+        return tuple(dict.fromkeys((*own, *nested, *(_OF_ACTIONS if kind == "action" else ()))))
+    return None
+
+
+def _stems(name: str) -> Iterator[tuple[str, str]]:
+    """Services and actions that a header may be one of several of."""
+    for kind, endings in ROS1_SUFFIXES.items():
+        for ending in endings:
+            if ending and name.endswith(ending):
+                yield kind, name.removesuffix(ending)
+
+
+def _of_ros2(header: str, interfaces: Mapping[str, Interface], detail: str) -> tuple[str, ...] | None:
+    found = _ROS2.match(header)
+    if found is None:
+        return None
+    wanted = found["kind"], found["stem"]
+    definition = next((one for name, one in interfaces.items() if _as_in_headers(name) == wanted), None)
+    if definition is None:
+        return None
+    own = f"{found['folder']}{detail}{found['stem']}"
+    if found["part"] is None:
+        return tuple(f"{own}{part}.hpp" for part in ("__builder", "__struct", "__traits"))
+    if found["part"] == "__builder":
+        return (f"{own}__struct.hpp",)
+    return tuple(
+        dict.fromkeys(
+            f"{other}/msg/{detail}{snake(type_)}{found['part']}.hpp"
+            for other, type_ in _nested(definition, found["package"])
+        )
+    )
+
+
+def _as_in_headers(name: str) -> tuple[str, str]:
+    kind, _, name = name.partition("/")
+    return kind, snake(name)
+
+
+def _nested(definition: Interface, package: str) -> Iterator[tuple[str, str]]:
+    """Package and name of each interface that a field has as its type."""
+    for section in definition.sections:
+        for field in section.fields:
+            type_ = field.type.partition("<")[0]
+            if type_ in PRIMITIVES or type_ in TIMES:
+                continue
+            other, _, name = full_name(type_, package).partition("/")
+            yield other, name

@@ -1,0 +1,417 @@
+"""Who provides a header, CMake package, pkg-config file, Python module or program: looked up in the shipped table.
+
+The table (`data/providers.sqlite.zst`, made by build_providers.py) is unpacked once into the user's cache and read as
+SQLite, together with the reviewed facts of `data/providers.yaml` that no index gives. A lookup reads one row and
+remembers it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sqlite3
+import threading
+from collections.abc import Iterable
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from ...cache import cache_folder
+from ...facts.store import FAULTS
+from .. import unpacked
+from ..snapshot import DATA, SnapshotError
+from ..target import Provider
+from ..version import parts
+
+__all__ = ["HeaderSpan", "Providers", "default_providers"]
+
+SCHEMA = """
+CREATE TABLE platform(bit INTEGER PRIMARY KEY, name TEXT);
+CREATE TABLE provider(id INTEGER PRIMARY KEY, entries TEXT);
+CREATE TABLE header(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE cmake(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE pkgconfig(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE module(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE program(name TEXT PRIMARY KEY, provider INTEGER, platforms INTEGER) WITHOUT ROWID;
+CREATE TABLE pattern(id INTEGER PRIMARY KEY, spans TEXT);
+CREATE TABLE ros_header(path TEXT, package TEXT, pattern INTEGER, PRIMARY KEY(path, package)) WITHOUT ROWID;
+CREATE TABLE ros_package(name TEXT PRIMARY KEY, pattern INTEGER) WITHOUT ROWID;
+CREATE TABLE ros_module(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
+CREATE TABLE ros_cmake(name TEXT PRIMARY KEY, packages TEXT) WITHOUT ROWID;
+"""
+"""Tables of the shipped database.
+
+provider.entries: one line for each provider, best first: a rosdep key and, where it differs, the Debian package that it
+installs; an empty line stands for the C library and compiler. platforms: bits of the platforms that have the name.
+pattern.spans: one line for each unbroken run of releases: distro, first version, last version (`-` when the newest
+release known still counts). ros_header: where a package's header is. ros_package: the releases whose trees were read.
+ros_module, ros_cmake: packages, space separated.
+"""
+
+FACT_SCHEMA = """
+CREATE TABLE fact(kind TEXT, name TEXT, entries TEXT, PRIMARY KEY(kind, name)) WITHOUT ROWID;
+CREATE INDEX ros_header_of ON ros_header(package, pattern);
+"""
+"""Made while unpacking. fact is filled from data/providers.yaml: kind is a table's name, entries are as in provider,
+`ros:NAME` for a released package. The index is quicker made than shipped."""
+
+BY_FOLDER = 1 << 30
+"""Bit in header.platforms: a bare file name that is found only where a package's own folder is on the include path."""
+
+_FORMAT = 2
+_LIBC = Provider("system", "", "")
+
+
+class HeaderSpan(NamedTuple):
+    """An unbroken run of a distro's releases that have a header; last is None when it is there to the end."""
+
+    distro: str
+    first: str
+    last: str | None
+
+
+class Providers:
+    """Lookups in the shipped table. data: its folder. cache: where to unpack it, by default the user's cache folder.
+
+    Raises SnapshotError at the first lookup when the table is missing or damaged.
+    """
+
+    def __init__(self, data: Path = DATA, cache: Path | None = None):
+        self._data, self._cache = data, cache
+        self._lock = threading.Lock()
+        self._connection: sqlite3.Connection | None = None
+        self._reader = 0  # the process that opened it
+        self._sets: dict[int, tuple[Provider, ...]] = {}
+        self._spans: dict[int, tuple[HeaderSpan, ...]] = {}
+        self._releases: dict[str, tuple[HeaderSpan, ...]] = {}
+        self._headers: dict[str, tuple[Provider, ...]] = {}
+        self._found: dict[tuple[str, str], tuple[int, int] | None] = {}
+        self._patterns: dict[str, tuple[int, ...]] = {}
+
+    def __reduce__(self):
+        return Providers, (self._data, self._cache)
+
+    # Lookups
+
+    def header(self, path: str) -> tuple[Provider, ...]:
+        """Who installs a header that is included as path (`ros/ros.h`, `opencv2/core.hpp`), best first.
+
+        A provider with an empty name is the C library, the kernel's headers or the compiler. That `pkg/x.h` is of the
+        released package `pkg` is a convention which the caller adds; what is here was seen in a file list. Released
+        packages of both ROS generations are listed; the caller knows which its target has.
+        """
+        known = self._headers.get(path)
+        if known is None:
+            known = self._headers[path] = tuple(self._header(path))
+        return known
+
+    def _header(self, path: str) -> list[Provider]:
+        found = self._facts("header", path)
+        system = self._system("header", path)
+        released = [
+            Provider("ros", name)
+            for (name,) in self._rows(
+                "SELECT h.package FROM ros_header h JOIN pattern p ON p.id = h.pattern WHERE h.path = ?"
+                " ORDER BY length(p.spans) DESC, h.package",
+                path,
+            )
+        ]
+        if system:
+            # Some packages carry a copy of a library; the library itself is meant, but where the package is named so.
+            head = path.partition("/")[0]
+            own = [provider for provider in released if head in provider.name]
+            found += [*own, system[0], *self._vendors(system[0].name), *system[1:], *released]
+        else:
+            found += released or self._by_prefix(path)
+        return _once(found)
+
+    def cmake(self, name: str) -> list[Provider]:
+        """Who answers find_package(name), best first. Where only another letter case is known, sure is False.
+
+        An empty provider name: CMake's own find module succeeds on every machine that builds (Threads, PkgConfig).
+        """
+        found = self._facts("cmake", name) + self._ros("ros_cmake", name) + self._system("cmake", name)
+        if not found:
+            # find_package(SDL2) also reads sdl2-config.cmake.
+            found = self._system("cmake", f"{name.lower()}-config")
+        if not found:
+            for other in self._folded_cmake.get(name.lower(), ()):
+                found += self._facts("cmake", other) + self._ros("ros_cmake", other) + self._system("cmake", other)
+            found = [provider._replace(sure=False) for provider in found]
+        return _once(found)
+
+    def spellings(self, name: str) -> tuple[str, ...]:
+        """Every known CMake package whose name differs from this one in letter case at most."""
+        return tuple(self._folded_cmake.get(name.lower(), ()))
+
+    def pkgconfig(self, name: str) -> list[Provider]:
+        """Who installs `name.pc`, best first."""
+        return _once(self._facts("pkgconfig", name) + self._system("pkgconfig", name))
+
+    def module(self, dotted: str) -> list[Provider]:
+        """Who installs a Python module (`yaml`, `google.protobuf.text_format`), best first.
+
+        The standard library is not here, see stdlib.py. The longest known beginning of the dotted name counts.
+        """
+        parts_ = dotted.split(".")
+        for size in range(min(len(parts_), 2), 0, -1):
+            name = ".".join(parts_[:size])
+            found = self._facts("module", name) + self._ros("ros_module", name) + self._system("module", name)
+            if found:
+                return _once(found)
+        return []
+
+    def executable(self, name: str) -> list[Provider]:
+        """Who installs a program on the PATH, best first. An empty provider name: every Debian or Ubuntu has it."""
+        return _once(self._facts("program", name) + self._system("program", name))
+
+    def header_platforms(self, path: str) -> tuple[str, ...]:
+        """Platforms (`ubuntu jammy`) whose system packages have a header; empty for headers of ROS packages alone."""
+        return self._platforms_of("header", path)
+
+    def system_has(self, header: str, platform: str) -> bool | None:
+        """Whether a platform's packages have a header that the system packages of some platform have.
+
+        None when no platform's have it, when the C library or compiler has it, or the platform is not in the table.
+        """
+        if platform not in self.platforms:
+            return None
+        where = self.header_platforms(header)
+        if not where or any(not provider.name for provider in self._system("header", header)):
+            return None
+        return platform in where
+
+    def knows_system(self, packages: Iterable[str]) -> bool:
+        """True when the contents of one of these Debian packages, or rosdep keys, are in the table."""
+        return not self._system_names.isdisjoint(packages)
+
+    @cached_property
+    def _system_names(self) -> frozenset[str]:
+        return frozenset(name for (entries,) in self._rows("SELECT entries FROM provider") for name in entries.split())
+
+    def cmake_platforms(self, name: str) -> tuple[str, ...]:
+        """Platforms whose system packages bring a CMake configuration or find module of this name."""
+        return self._platforms_of("cmake", name)
+
+    @cached_property
+    def platforms(self) -> tuple[str, ...]:
+        """Platforms whose system packages are in the table."""
+        return tuple(name for (name,) in self._rows("SELECT name FROM platform ORDER BY bit"))
+
+    # Headers of released packages over time
+
+    def header_history(self, package: str, header: str) -> tuple[HeaderSpan, ...]:
+        """Releases of a ROS package that have a header (include path), by distro; empty when none is known to.
+
+        Only releases whose source tree was read count; known_releases tells which.
+        """
+        for (number,) in self._rows("SELECT pattern FROM ros_header WHERE path = ? AND package = ?", header, package):
+            return self._pattern(number)
+        return ()
+
+    def known_releases(self, package: str) -> tuple[HeaderSpan, ...]:
+        """Releases of a ROS package whose source trees were read, as spans by distro."""
+        known = self._releases.get(package)
+        if known is None:
+            rows = self._rows("SELECT pattern FROM ros_package WHERE name = ?", package)
+            known = self._releases[package] = self._pattern(rows[0][0]) if rows else ()
+        return known
+
+    def has_header(self, package: str, header: str, distro: str, version: str) -> bool | None:
+        """Whether a package's release in a distro has a header; None when that release's tree is not known."""
+        if not _within(self.known_releases(package), distro, version):
+            return None
+        return _within(self.header_history(package, header), distro, version)
+
+    def has_headers(self, package: str, distro: str, version: str) -> bool | None:
+        """Whether a package's release in a distro has any header; None when that release's tree is not known."""
+        if not _within(self.known_releases(package), distro, version):
+            return None
+        numbers = self._patterns.get(package)
+        if numbers is None:
+            rows = self._rows("SELECT DISTINCT pattern FROM ros_header WHERE package = ?", package)
+            numbers = self._patterns[package] = tuple(number for (number,) in rows)
+        return any(_within(self._pattern(number), distro, version) for number in numbers)
+
+    def _vendors(self, key: str) -> list[Provider]:
+        return self._facts("vendor", key)
+
+    def _by_prefix(self, path: str) -> list[Provider]:
+        """Reviewed owners of whole folders (`gz/math`), longest first; not seen in a file list, so sure is False."""
+        folders = path.split("/")[:-1]
+        for size in range(len(folders), 0, -1):
+            found = self._facts("folder", "/".join(folders[:size]))
+            if found:
+                return [provider._replace(sure=False) for provider in found]
+        return []
+
+    # Rows
+
+    def _facts(self, kind: str, name: str) -> list[Provider]:
+        entries = self._reviewed.get((kind, name))
+        return [] if entries is None else _decode(entries)
+
+    @cached_property
+    def _reviewed(self) -> dict[tuple[str, str], str]:
+        """The facts of data/providers.yaml, a few hundred, by kind and name."""
+        return {(kind, name): entries for kind, name, entries in self._rows("SELECT kind, name, entries FROM fact")}
+
+    def _system(self, table: str, name: str) -> list[Provider]:
+        row = self._row(table, name)
+        if row is None:
+            return []
+        number, platforms = row
+        known = self._sets.get(number)
+        if known is None:
+            ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
+            known = self._sets[number] = tuple(_decode(entries))
+        return [provider._replace(sure=False) for provider in known] if platforms & BY_FOLDER else list(known)
+
+    def _row(self, table: str, name: str) -> tuple[int, int] | None:
+        """(provider, platforms) of a name in one of the tables of the system's packages, None when it is not there."""
+        key = table, name
+        if key not in self._found:
+            rows = self._rows(f"SELECT provider, platforms FROM {table} WHERE name = ?", name)
+            self._found[key] = rows[0] if rows else None
+        return self._found[key]
+
+    def _ros(self, table: str, name: str) -> list[Provider]:
+        for (packages,) in self._rows(f"SELECT packages FROM {table} WHERE name = ?", name):
+            return [Provider("ros", package) for package in packages.split(" ")]
+        return []
+
+    def _platforms_of(self, table: str, name: str) -> tuple[str, ...]:
+        row = self._row(table, name)
+        if row is None:
+            return ()
+        return tuple(platform for place, platform in enumerate(self.platforms) if row[1] >> place & 1)
+
+    def _pattern(self, number: int) -> tuple[HeaderSpan, ...]:
+        known = self._spans.get(number)
+        if known is None:
+            ((text,),) = self._rows("SELECT spans FROM pattern WHERE id = ?", number)
+            spans = (line.split(" ") for line in text.split("\n") if line)
+            known = tuple(HeaderSpan(distro, first, None if last == "-" else last) for distro, first, last in spans)
+            self._spans[number] = known
+        return known
+
+    @cached_property
+    def _folded_cmake(self) -> dict[str, list[str]]:
+        found: dict[str, list[str]] = {}
+        for (name,) in self._rows(
+            "SELECT name FROM cmake UNION SELECT name FROM ros_cmake UNION SELECT name FROM fact WHERE kind = 'cmake'"
+        ):
+            found.setdefault(name.lower(), []).append(name)
+        return found
+
+    def _open(self) -> sqlite3.Connection:
+        return _open(self._data, self._cache or cache_folder())
+
+    def _open_again(self) -> sqlite3.Connection:
+        return _open_again(self._data, self._cache or cache_folder())
+
+    def _rows(self, sql: str, *arguments: object) -> list[tuple]:
+        with self._lock:
+            self._connection, self._reader = unpacked.of_this_process(self._connection, self._reader, self._open)
+            try:
+                return self._connection.execute(sql, arguments).fetchall()
+            except FAULTS:
+                self._connection.close()
+                self._connection = self._open_again()
+                return self._connection.execute(sql, arguments).fetchall()
+
+
+def _once(providers: list[Provider]) -> list[Provider]:
+    """Each provider once, first mention first; the machine itself (no name) makes all others pointless."""
+    if any(not provider.name for provider in providers):
+        return [_LIBC]
+    found: dict[tuple[str, str], Provider] = {}
+    for provider in providers:
+        found.setdefault((provider.kind, provider.name), provider)
+    return list(found.values())
+
+
+def _decode(entries: str) -> list[Provider]:
+    found = []
+    for line in entries.split("\n"):
+        name, _, package = line.partition(" ")
+        if name.startswith("ros:"):
+            found.append(Provider("ros", name[len("ros:") :]))
+        else:
+            found.append(Provider("system", name, package or name))
+    return found
+
+
+def _within(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
+    wanted = parts(version)
+    return any(
+        span.distro == distro and parts(span.first) <= wanted and (span.last is None or wanted <= parts(span.last))
+        for span in spans
+    )
+
+
+# The file
+
+
+class _Info(msgspec.Struct, frozen=True):
+    sha256: str
+
+
+def _open(data: Path, cache: Path) -> sqlite3.Connection:
+    path, sha, facts = _place(data, cache)
+    connection = unpacked.connect(path, "fact")
+    if connection is not None:
+        return connection
+    return unpacked.unpack(_raw(data, sha), lambda connection: add_facts(connection, facts), path, "fact")
+
+
+def _open_again(data: Path, cache: Path) -> sqlite3.Connection:
+    """The same in memory, when the file turns out broken while it is read."""
+    path, sha, facts = _place(data, cache)
+    unpacked.distrust(path)
+    return unpacked.in_memory(_raw(data, sha), lambda connection: add_facts(connection, facts))
+
+
+def _place(data: Path, cache: Path) -> tuple[Path, str, bytes]:
+    """Where the unpacked file belongs, the hash of what is shipped, and the reviewed facts. Raises SnapshotError."""
+    info = data / "providers.json"
+    try:
+        facts = (data / "providers.yaml").read_bytes()
+        sha = msgspec.json.decode(info.read_bytes(), type=_Info).sha256
+    except (OSError, msgspec.MsgspecError) as error:
+        raise SnapshotError(f"{info}: {error}; install rosimpact again") from None
+    return cache / f"providers-{_FORMAT}-{sha[:16]}-{hashlib.sha256(facts).hexdigest()[:16]}.sqlite", sha, facts
+
+
+def _raw(data: Path, sha: str) -> bytes:
+    return unpacked.decompress(data / "providers.sqlite.zst", sha, "providers.json")
+
+
+def add_facts(connection: sqlite3.Connection, facts: bytes) -> None:
+    """Loads data/providers.yaml: kind, name, then providers (`key`, `key debian-package`, `ros:package`, empty)."""
+    import yaml
+
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    tables = yaml.load(facts, Loader=loader) or {}
+    connection.executescript(FACT_SCHEMA)
+    connection.executemany(
+        "INSERT INTO fact VALUES(?, ?, ?)",
+        (
+            (kind, str(name), "\n".join([providers] if isinstance(providers, str) else providers))
+            for kind, names in tables.items()
+            for name, providers in names.items()
+        ),
+    )
+    connection.commit()
+
+
+_default: Providers | None = None
+
+
+def default_providers() -> Providers:
+    """The shipped table, one for each process."""
+    global _default
+    if _default is None:
+        _default = Providers()
+    return _default

@@ -1,0 +1,1 @@
+"""What released versions of packages offer, as it is stored."""

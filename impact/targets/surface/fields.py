@@ -1,0 +1,227 @@
+"""Which version of an interface package has which interface, with which fields and constants.
+
+The facts are in `data/fields.json.zst`, made by build_fields.py from release tags. It holds a text for each package and
+ROS generation:
+
+    0.1.0 2.11.0 5.0.0                      versions at which anything changed: the states 0, 1, 2
+    0.11.0 2.54.0 5.16.0                    the newest version that was read of each major one
+    msg/ControllerState@1-                  an interface, and the states that have it (none told: all)
+     message name state other:p/Type*@2-    a section and its members: `:` nested type, `*` array, `!` constant,
+                                            `@` the states (none told: whenever the interface is there), `>` successor
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable
+from functools import cache, cached_property, lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from ..snapshot import DATA, SnapshotError
+from ..version import at_least, parts
+
+
+class Member(NamedTuple):
+    """A field or constant of one section. nested: `package/Type` where it is an interface; array: it holds several of
+    them. spans: the first and last states that have it (-1: to the end). successor: what stands for it since."""
+
+    name: str
+    nested: str
+    array: bool
+    constant: bool
+    spans: tuple[tuple[int, int], ...]
+    successor: str
+
+
+class Definition:
+    """All that an interface ever was. sections: section to member name to what it was in some states each."""
+
+    def __init__(self, spans: tuple[tuple[int, int], ...], sections: dict[str, dict[str, list[Member]]]):
+        self.spans, self.sections = spans, sections
+
+    def members(self, section: str, name: str) -> list[Member]:
+        return self.sections.get(section, {}).get(name, [])
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """Every member of every section."""
+        return frozenset(name for members in self.sections.values() for name in members)
+
+    @cached_property
+    def changing(self) -> frozenset[str]:
+        """Members that some state of the interface lacks, in some section."""
+        return frozenset(
+            name
+            for members in self.sections.values()
+            for name, rows in members.items()
+            if not set(self.spans) <= {span for row in rows for span in row.spans}
+        )
+
+
+_MEMBER = re.compile(r"(\w+)(!)?(?::([\w/]+))?(\*)?(?:@([\d,-]+))?(?:>(\w+))?")
+
+
+class History:
+    """All versions of one package in one ROS generation that were read."""
+
+    def __init__(self, text: str):
+        first, last, *lines = text.split("\n")
+        self.starts, self._last = first.split(" "), last.split(" ")
+        self._lines: dict[str, tuple[tuple[tuple[int, int], ...], list[str]]] = {}
+        sections: list[str] = []
+        for line in lines:
+            if line[0] == " ":
+                sections.append(line)
+                continue
+            name, _, spans = line.partition("@")
+            sections = []
+            self._lines[name] = _spans(spans, len(self.starts)), sections
+        self._definitions: dict[str, Definition] = {}
+
+    def state(self, version: str) -> int | None:
+        """The state that holds for a version; None before the first that was read."""
+        at = None
+        for place, start in enumerate(self.starts):
+            if at_least(version, start):
+                at = place
+        return at
+
+    def read_up_to(self, version: str) -> bool:
+        """False when newer releases of the version's line were not read: something may have come since."""
+        major = parts(version)[:1]
+        return any(parts(last)[:1] == major and at_least(last, version) for last in self._last)
+
+    def may_be_back(self, spans: Iterable[tuple[int, int]], version: str) -> bool:
+        """Whether what earlier states had and this one lacks may be in a version all the same: newer releases of its
+        line were not read, and a later state has it again, so that it was brought to an older line and goes on there.
+        """
+        state = self.state(version)
+        return state is not None and any(first > state for first, _ in spans) and not self.read_up_to(version)
+
+    @property
+    def interfaces(self) -> list[str]:
+        """Every interface it ever had, as `kind/Name`."""
+        return list(self._lines)
+
+    def spans(self, interface: str) -> tuple[tuple[int, int], ...] | None:
+        """The states that have an interface; None when it never was."""
+        known = self._lines.get(interface)
+        return known and known[0]
+
+    def definition(self, interface: str) -> Definition | None:
+        known = self._definitions.get(interface)
+        if known is None and interface in self._lines:
+            spans, lines = self._lines[interface]
+            sections: dict[str, dict[str, list[Member]]] = {}
+            for line in lines:
+                section, *members = line[1:].split(" ")
+                rows = sections.setdefault(section, {})
+                for text in members:
+                    match = _MEMBER.fullmatch(text)
+                    if match:
+                        name, constant, nested, array, there, successor = match.groups()
+                        rows.setdefault(name, []).append(
+                            Member(name, nested or "", bool(array), bool(constant),
+                                   _spans(there, len(self.starts)) if there else spans, successor or "")
+                        )  # fmt: skip
+            known = self._definitions[interface] = Definition(spans, sections)
+        return known
+
+    @cached_property
+    def by_header(self) -> dict[str, str]:
+        """Stems of generated headers in both generations' spelling to interfaces: `srv/set_bool`, `SetBoolRequest`."""
+        found: dict[str, str] = {}
+        for interface in self._lines:
+            kind, _, name = interface.partition("/")
+            found[f"{kind}/{snake(name)}"] = interface
+            for suffix in ROS1_SUFFIXES[kind]:
+                found.setdefault(name + suffix, interface)
+        return found
+
+
+ROS1_SUFFIXES = {
+    "msg": ("",),
+    "srv": ("", "Request", "Response"),
+    "action": ("Action", "ActionGoal", "ActionResult", "ActionFeedback", "Goal", "Result", "Feedback"),
+}
+"""What ROS 1 appends to an interface's name in the names of its headers and types."""
+
+
+@lru_cache(maxsize=20000)
+def snake(name: str) -> str:
+    """An interface's name as rosidl spells it in header names (`SetBool` gives `set_bool`).
+
+    Source: rosidl_cmake's string_camel_case_to_lower_case_underscore."""
+    name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
+
+
+def _spans(text: str, states: int) -> tuple[tuple[int, int], ...]:
+    if not text:
+        return ((0, -1),)
+    found = []
+    for run in text.split(","):
+        first, _, last = run.partition("-")
+        found.append((int(first), int(last) if last else -1))
+    return tuple(found)
+
+
+def there(spans: tuple[tuple[int, int], ...], state: int) -> bool:
+    """Whether a state is in the spans."""
+    return any(first <= state and (last < 0 or state <= last) for first, last in spans)
+
+
+def before(spans: tuple[tuple[int, int], ...], state: int) -> bool:
+    """Whether an earlier state is in the spans."""
+    return any(first < state for first, _ in spans)
+
+
+class Fields:
+    """The whole table, read when first asked. version differs whenever the file does."""
+
+    def __init__(self, path: Path):
+        self._path = path
+        self._histories: dict[tuple[str, int], History | None] = {}
+
+    @cached_property
+    def _packed(self) -> bytes:
+        try:
+            return self._path.read_bytes()
+        except OSError as error:
+            raise SnapshotError(f"{error}; install rosimpact again") from None
+
+    @cached_property
+    def version(self) -> str:
+        return hashlib.sha1(self._packed).hexdigest()
+
+    @cached_property
+    def _texts(self) -> dict[str, str]:
+        import zstandard
+
+        try:
+            raw = zstandard.ZstdDecompressor().decompress(self._packed, max_output_size=1 << 26)
+            return msgspec.json.decode(raw, type=dict[str, str])
+        except (zstandard.ZstdError, msgspec.MsgspecError) as error:
+            raise SnapshotError(f"{self._path}: {error}; install rosimpact again") from None
+
+    def packages(self) -> list[str]:
+        """Every package of every generation, as `package generation`."""
+        return list(self._texts)
+
+    def history(self, package: str, ros: int) -> History | None:
+        """A package's versions; None when it was not read."""
+        key = (package, ros)
+        if key not in self._histories:
+            text = self._texts.get(f"{package} {ros}")
+            self._histories[key] = History(text) if text else None
+        return self._histories[key]
+
+
+@cache
+def default_fields() -> Fields:
+    """The shipped table."""
+    return Fields(DATA / "fields.json.zst")

@@ -1,0 +1,168 @@
+"""What the headers of each stored version of a package include, packed by itself, so that following includes through
+many packages reads little."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterable, Iterator, Sequence
+
+import msgspec
+import zstandard
+
+from ...conditions import Environment, all_hold
+from ...facts.cpp import Include
+from ...facts.surface import HeaderSurface, plain
+from ..version import newest_up_to
+
+_NOTHING_KNOWN = Environment()
+
+
+def compiled(header: HeaderSurface) -> HeaderSurface:
+    """A header with those of its includes that some Linux compiles, so none under `#if 0` or `#ifdef _WIN32`; without
+    lines, and without conditions that hold on all. Types that it announces are named as users write them."""
+    kept = []
+    for include in header.includes:
+        holds = all_hold(include.conditions, _NOTHING_KNOWN)
+        if holds is not False:
+            kept.append(Include(include.path, include.angled, 0, 0, () if holds else include.conditions))
+    announced = tuple(dict.fromkeys(plain(name, header.inline) for name in header.announced))
+    return msgspec.structs.replace(header, includes=tuple(kept), announced=announced)
+
+
+class Row(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What a header includes, and which types it announces without defining them, in some versions. spans: first and
+    last places of those, over and over; empty for all. includes, announced: places in Included.every and types."""
+
+    spans: tuple[int, ...]
+    includes: tuple[int, ...]
+    announced: tuple[int, ...] = ()
+
+
+class Included(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """versions: oldest first. approximate: those that a branch stood for. generations: of ROS that have each, as 1, 2,
+    or 3 for both. headers: by the path that dependants write; those that are generated are not among them."""
+
+    versions: tuple[str, ...]
+    approximate: tuple[str, ...]
+    generations: tuple[int, ...]
+    every: tuple[Include, ...]
+    types: tuple[str, ...]
+    headers: dict[str, tuple[Row, ...]]
+
+    def stands_for(self, version: str, ros: int) -> str | None:
+        """The stored version of a ROS generation that stands for one: itself, or the newest before it that was read at
+        its tag; None for one older than all."""
+        return newest_up_to(version, self.read(ros))
+
+    def read(self, ros: int) -> Iterator[str]:
+        """The versions of a ROS generation that were read at their tags, oldest first."""
+        for version, whose in zip(self.versions, self.generations, strict=True):
+            if whose & ros and version not in self.approximate:
+                yield version
+
+    def written(self, header: str, version: str) -> tuple[Include, ...] | None:
+        """What a header includes in a stored version, as written; None where the version has no such header."""
+        row = self._row(header, version)
+        return None if row is None else tuple(self.every[number] for number in row.includes)
+
+    def announced(self, header: str, version: str) -> tuple[str, ...]:
+        """Types that a header announces in a stored version without defining them."""
+        row = self._row(header, version)
+        return () if row is None else tuple(self.types[number] for number in row.announced)
+
+    def announcing(self) -> dict[str, tuple[str, ...]]:
+        """Types with the headers that announce them in any version."""
+        found: dict[str, dict[str, None]] = {}
+        for header, rows in self.headers.items():
+            for number in {number for row in rows for number in row.announced}:
+                found.setdefault(self.types[number], {})[header] = None
+        return {name: tuple(sorted(headers)) for name, headers in found.items()}
+
+    def _row(self, header: str, version: str) -> Row | None:
+        rows = self.headers.get(header)
+        if not rows or version not in self.versions:
+            return None
+        place = self.versions.index(version)
+        return next((row for row in rows if there(row.spans, place)), None)
+
+    def answer(self, include: Include, header: str, version: str) -> str:
+        """The path that dependants would write for what a header includes: that of a header of this package, where one
+        lies there, else as it is written."""
+        if include.angled and self._row(include.path, version) is not None:
+            return include.path
+        beside = posixpath.normpath(posixpath.join(posixpath.dirname(header), include.path))
+        return beside if self._row(beside, version) is not None else include.path
+
+
+def there(spans: Sequence[int], place: int) -> bool:
+    """Whether a place lies in some spans; none at all are all places."""
+    return not spans or any(spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2))
+
+
+def spans_of(places: Sequence[int], count: int) -> list[int]:
+    """First and last places of each run; nothing for all of them."""
+    if len(places) == count:
+        return []
+    runs: list[int] = []
+    for place in places:
+        if runs and runs[-1] == place - 1:
+            runs[-1] = place
+        else:
+            runs += [place, place]
+    return runs
+
+
+class Including:
+    """Packs what the headers of a package include, version by version, oldest first."""
+
+    def __init__(self) -> None:
+        self._versions: list[str] = []
+        self._approximate: list[str] = []
+        self._generations: list[int] = []
+        self._numbers: dict[Include, int] = {}
+        self._types: dict[str, int] = {}
+        self._places: dict[str, dict[tuple[tuple[int, ...], tuple[int, ...]], list[int]]] = {}
+
+    def add(
+        self,
+        version: str,
+        headers: Iterable[tuple[str, HeaderSurface]],
+        generations: Iterable[int],
+        approximate: bool = False,
+    ) -> None:
+        """The next version. generations: of ROS that have it."""
+        place = len(self._versions)
+        self._versions.append(version)
+        self._generations.append(sum(set(generations)))
+        if approximate:
+            self._approximate.append(version)
+        for path, header in headers:
+            includes = tuple(self._numbers.setdefault(include, len(self._numbers)) for include in header.includes)
+            announced = tuple(self._types.setdefault(name, len(self._types)) for name in header.announced)
+            self._places.setdefault(path, {}).setdefault((includes, announced), []).append(place)
+
+    def packed(self) -> bytes:
+        """All versions as they are stored."""
+        count = len(self._versions)
+        headers = {
+            path: tuple(Row(tuple(spans_of(places, count)), *state) for state, places in states.items())
+            for path, states in sorted(self._places.items())
+        }
+        whole = Included(
+            tuple(self._versions),
+            tuple(self._approximate),
+            tuple(self._generations),
+            tuple(self._numbers),
+            tuple(self._types),
+            headers,
+        )
+        return zstandard.ZstdCompressor(level=19).compress(_encoder.encode(whole))
+
+
+def unpack(data: bytes) -> Included:
+    """What Including packed."""
+    return _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
+
+
+_encoder = msgspec.msgpack.Encoder()
+_decoder = msgspec.msgpack.Decoder(Included)

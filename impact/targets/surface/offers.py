@@ -1,0 +1,245 @@
+"""What the packages of a target offer beside what other versions of them do: which names are gone there, not there yet,
+changed or on their way out. Asked of the shipped surfaces; packages of which none are stored are not known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, NamedTuple
+
+from ...facts.surface import declared
+from .changes import Event, Form, Line, Told
+
+if TYPE_CHECKING:
+    from ..target import Target
+    from .python import Names
+    from .store import Surfaces
+    from .surface import BuildSurface
+
+
+# Sides whose names many packages have alike (`launch/demo.launch`), so that another package's is no successor.
+_OF_EVERY_PACKAGE = frozenset(("launch file", "launch argument"))
+
+
+class Offered(NamedTuple):
+    """A name that the target's version of a package does not offer as every version does.
+
+    side: as in surface_changes.Line. what: the sort of thing (`class`, `method`, `executable` ...).
+    state: `removed` (earlier versions of this ROS generation had it), `moved` (the same, and another package of the
+    target, moved_to, has it now), `absent` (only later ones have it), `deprecated` (there, and it warns), `changed`
+    (there, and other versions had or have it in another form).
+    version: the target's. here: its form there, None when it is not there. before: its form in the version `last`,
+    before the present state began with the version `first` (both empty where all stored versions up to the target's
+    are alike); of what is absent, first is the first version that has it. after: its form from the version `coming`
+    on (empty: nothing later is known); gone_in: the first later version without it.
+    told: what the comparison of `last` and `first` told; of what is there unchanged, that of the next change.
+    instead: what to use now, empty where that is not known. sure: nothing about it is guessed.
+    """
+
+    package: str
+    side: str
+    name: str
+    what: str
+    state: str
+    version: str
+    here: Form | None
+    before: Form | None
+    last: str
+    first: str
+    after: Form | None
+    coming: str
+    gone_in: str
+    told: tuple[Told, ...]
+    instead: str
+    moved_to: str
+    sure: bool
+
+
+class Offers:
+    """The packages of a target. surfaces: where to look, by default the shipped file."""
+
+    def __init__(self, target: Target, surfaces: Surfaces | None = None):
+        self.target = target
+        self._given = surfaces
+        self._packages: dict[str, Offer | None] = {}
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """The stored surfaces."""
+        from .store import shipped
+
+        return self._given or shipped()
+
+    def package(self, name: str) -> Offer | None:
+        """What a package offers there; None when it is not there, or nothing comparable is stored."""
+        if name not in self._packages:
+            self._packages[name] = self._offer(name)
+        return self._packages[name]
+
+    def standard(self, name: str) -> int:
+        """The C++ standard that a package asks of those who link it, as CMake writes it; 0 when nothing tells."""
+        offer, history = self.package(name), self.surfaces.history(name)
+        built = history.build(offer.stored) if offer is not None and history is not None else None
+        return built.standard if built is not None else 0
+
+    def _offer(self, name: str) -> Offer | None:
+        version = self.target.version(name)
+        line = self.surfaces.lines(name).get(self.target.ros) if version else None
+        place = line.place(version) if line is not None and version else None
+        return None if line is None or place is None or not version else Offer(self, name, version, line, place)
+
+    def find(self, side: str, name: str, packages: Iterable[str]) -> Offered | None:
+        """The first of these packages' names that is so called and not as everywhere; or what it stands in: a member
+        of a class that is gone as a whole is told by its class."""
+        separator = {"c++": "::", "python": "."}.get(side, "\0")
+        offers = [offer for package in packages if (offer := self.package(package)) is not None]
+        while name:
+            for offer in offers:
+                found = offer.get(side, name)
+                if found is not None:
+                    return found
+            name = name.rpartition(separator)[0]
+        return None
+
+    def there(self, side: str, name: str, package: str) -> bool:
+        """Whether the stored version that stands for the target's has a name at all."""
+        offer, history = self.package(package), self.surfaces.history(package)
+        return offer is not None and history is not None and history.has(name, offer.stored)
+
+
+class Offer:
+    """One package on one target. stored: the version that stands for the target's; exact: it is the same."""
+
+    def __init__(self, offers: Offers, package: str, version: str, line: Line, place: int):
+        self._offers, self.package, self.version = offers, package, version
+        self.line, self.place = line, place
+        self.stored = line.versions[place]
+        self.exact = self.stored == version
+        self._known: dict[tuple[str, str], Offered | None] = {}
+
+    def get(self, side: str, name: str) -> Offered | None:
+        """A name that only some versions have, or have in the same form; None for one that all do, or that none has."""
+        key = side, name
+        if key not in self._known:
+            events = self.line.events.get(side, {}).get(name)
+            self._known[key] = self._offered(side, name, events) if events else None
+        return self._known[key]
+
+    @cached_property
+    def build(self) -> BuildSurface:
+        """What the stored version gives to CMake and at run time."""
+        from .surface import BuildSurface
+
+        history = self._offers.surfaces.history(self.package)
+        build = history.build(self.stored) if history is not None else None
+        return build or BuildSurface(self.package)
+
+    @cached_property
+    def parameters(self) -> tuple[str, ...]:
+        """The parameters that the stored version declares."""
+        history = self._offers.surfaces.history(self.package)
+        return tuple(name for name, _ in history.parameters(self.stored)) if history is not None else ()
+
+    def every(self, side: str) -> Iterator[Offered]:
+        """All such names."""
+        for name in self.line.events.get(side, ()):
+            found = self.get(side, name)
+            if found is not None:
+                yield found
+
+    def _offered(self, side: str, name: str, events: tuple[Event, ...]) -> Offered:
+        versions = self.line.versions
+        past = [event for event in events if event.place <= self.place]
+        future = [event for event in events if event.place > self.place]
+        there = there_at(side, events, self.place)
+        here = past[-1].has if past else future[0].had
+        told = (past[-1] if past else future[0]).told
+        deciding = past[-1:] if past else future[:1]
+        if there:
+            warns = (
+                here.deprecated is not None if here is not None else any(t.kind == "deprecated" for t in told if past)
+            )
+            state = "deprecated" if warns else "changed"
+        else:
+            state = "removed" if past else "absent"
+        sure = all(t.sure >= 1 for event in deciding for t in event.told)
+        if not self.exact and future and future[0].place == self.place + 1:
+            # Which of the versions between the two stored ones made the next change is not known.
+            sure = False
+        first = versions[past[-1].place] if past else versions[future[0].place] if state == "absent" else ""
+        coming = future[0] if future and there else None
+        instead = next((t.instead for t in told if t.instead), "")
+        moved_to = ""
+        if state == "removed" and side not in _OF_EVERY_PACKAGE:
+            moved_to = next((t.moved_to for t in told if t.moved_to), "") or self._elsewhere(side, name)
+        return Offered(
+            self.package,
+            side,
+            name,
+            told[0].what,
+            "moved" if moved_to else state,
+            self.version,
+            here if there else None,
+            past[-1].had if past else None,
+            versions[past[-1].place - 1] if past else "",
+            first,
+            coming.has if coming is not None else None,
+            versions[coming.place] if coming is not None else "",
+            next((versions[e.place] for e in future if there and effect(side, e) == "gone"), ""),
+            told,
+            instead,
+            moved_to,
+            sure,
+        )
+
+    def _elsewhere(self, side: str, name: str) -> str:
+        """Another package of the target that has the name."""
+        others = self._offers.surfaces.elsewhere(name)
+        return next((p for p in others if p != self.package and self._offers.there(side, name, p)), "")
+
+    def declarations(self, side: str, name: str, version: str) -> tuple[str, ...]:
+        """How a stored version declares a name of C++ or Python, a line for each overload."""
+        return declarations(self._offers.surfaces, self.package, side, name, version)
+
+
+def declarations(surfaces: Surfaces, package: str, side: str, name: str, version: str) -> tuple[str, ...]:
+    """How a stored version of a package declares a name of C++ or Python, a line for each overload; empty for anything
+    else."""
+    history = surfaces.history(package) if side in ("c++", "python") else None
+    if history is None:
+        return ()
+    if side == "c++":
+        return tuple(dict.fromkeys(declared(entity) for entity in history.entities(name, version)))
+    from .python import UNKNOWN, shown
+
+    names = _names(surfaces, package, version)
+    entry = names.find(name) if names is not None else None
+    if entry is None or entry is UNKNOWN or entry.bound is None:
+        return ()  # a module declares nothing by its name alone
+    text = shown(entry)
+    return (f"{name} = {text}" if text and not text.startswith("(") else f"{name}{text}",)
+
+
+@lru_cache(maxsize=8)
+def _names(surfaces: Surfaces, package: str, version: str) -> Names | None:
+    from .python import Names
+
+    history = surfaces.history(package)
+    python = history.python(version) if history is not None else None
+    return Names(python) if python is not None else None
+
+
+def there_at(side: str, events: tuple[Event, ...], place: int) -> bool:
+    """Whether a name of which these are all events is there in the version at a place of its line."""
+    past = [event for event in events if event.place <= place]
+    return effect(side, past[-1]) != "gone" if past else effect(side, events[0]) != "come"
+
+
+def effect(side: str, event: Event) -> str:
+    """What an event does to a name: it is `gone`, it has `come`, or it has another `form`."""
+    whole = [told for told in event.told if "overload" not in told.aspects]
+    come = any(told.kind == "added" for told in whole)
+    gone = any(
+        told.kind == "removed" or (told.kind == "moved" and (side != "c++" or bool(told.moved_to))) for told in whole
+    )
+    return "form" if come == gone else "come" if come else "gone"

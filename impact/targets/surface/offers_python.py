@@ -1,0 +1,297 @@
+"""What becomes of a use of a Python name on a target: gone there, not there yet, called in a way that is refused there.
+
+Told by the stored surfaces themselves, since a name can be reached by several paths, through re-exports and base
+classes; what only some versions have or take is reported, so that nothing rests on one reading alone.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import NamedTuple
+
+from ...facts.python_objects import Given, PythonUse
+from ...facts.surface_python import Parameter, parameters_of
+from .offers import Offer, Offers
+from .python import UNKNOWN, Entry, Names, signature, wrapped
+
+
+class Lost(NamedTuple):
+    """What is wrong with a use on a target.
+
+    state: `removed`, `absent` (only later versions have it), `unknown` (no version has it), `refused` (it is there
+    and does not take the call, while an earlier version does), `early` (the same of a later version), `override`
+    (the base class calls it otherwise than it did) or `deprecated`. name: what it is about, a part of the use's
+    name. version: the target's. last, first: the last version that has, or takes, it and the first that has not; of
+    what is not there yet first is the first that has it. why: in a clause why a call is refused, or the message of
+    a deprecation. old, new: declarations in the other version and here. instead: what to use now, empty where not
+    known. sure: nothing about it is guessed.
+    """
+
+    state: str
+    package: str
+    name: str
+    version: str
+    last: str
+    first: str
+    why: str
+    old: str
+    new: str
+    instead: str
+    sure: bool
+
+
+class PythonOffers:
+    """The Python names of a target's packages."""
+
+    def __init__(self, offers: Offers):
+        self._offers = offers
+        self._names: dict[tuple[str, str], Names | None] = {}
+        self._lost: dict[tuple, Lost | None] = {}
+        # By package and the last part of a name, the places in the line of versions around its changes.
+        self._places: dict[str, dict[str, set[int]]] = {}
+
+    def lost(self, use: PythonUse, packages: Iterable[str]) -> Lost | None:
+        """What is wrong with a use of a name that one of the packages may have; None for nothing that is known."""
+        offered = [offer for name in packages if (offer := self._offers.package(name)) is not None]
+        key = (use.name, use.how, use.given, use.parameters, tuple(offer.package for offer in offered))
+        if key not in self._lost:
+            found = [self._judged(offer, use) for offer in offered]
+            # What one of them has is there, whatever the others lost.
+            self._lost[key] = found[0] if found and None not in found else None
+        return self._lost[key]
+
+    def names(self, package: str, version: str) -> Names | None:
+        """The Python names of a stored version; None where it has no Python."""
+        key = package, version
+        if key not in self._names:
+            history = self._offers.surfaces.history(package)
+            python = history.python(version) if history is not None else None
+            self._names[key] = Names(python) if python is not None and python.modules else None
+        return self._names[key]
+
+    def _judged(self, offer: Offer, use: PythonUse) -> Lost | None:
+        if use.how == "from":
+            return self._imported(offer, use)
+        lost = self._at(offer, use, offer.place)
+        if lost is None or lost.state == "deprecated" or offer.exact:
+            return lost
+        # The target's version lies between two that are stored: both have to say the same.
+        after = self._at(offer, use, offer.place + 1) if offer.place + 1 < len(offer.line.versions) else lost
+        return lost if after is not None and (after.state, after.name) == (lost.state, lost.name) else None
+
+    def _at(self, offer: Offer, use: PythonUse, place: int) -> Lost | None:
+        names = self.names(offer.package, offer.line.versions[place])
+        if names is None:
+            return None
+        entry = names.find(use.name)
+        if entry is None:
+            return self._missing(offer, use, place, names)
+        if entry is UNKNOWN:
+            return None
+        # `Class.method(object, ...)` gives `self` among the arguments; nothing is said of it.
+        if use.given is not None and not (use.how == "call" and entry.kind == "method"):
+            refused = self._refused(offer, use, place, names, entry)
+            if refused is not None:
+                return refused
+        if use.how == "override":
+            return self._overridden(offer, use, place, entry)
+        if entry.bound is not None and entry.bound.deprecated:
+            return self._told("deprecated", offer, use.name, sure=not entry.conditional, why=entry.bound.deprecated)
+        return None
+
+    def _told(self, state: str, offer: Offer, name: str, **more) -> Lost:
+        told = {"last": "", "first": "", "why": "", "old": "", "new": "", "instead": "", "sure": True, **more}
+        return Lost(state, offer.package, name, offer.version, **told)
+
+    # Names
+
+    def _missing(self, offer: Offer, use: PythonUse, place: int, names: Names) -> Lost | None:
+        if use.how == "override":
+            return None
+        parts = use.name.split(".")
+        gone = next(name for n in range(1, len(parts) + 1) if names.find(name := ".".join(parts[:n])) is None)
+        versions = offer.line.versions
+        earlier, later = self._telling(offer, gone, place)
+        # Versions of older distros that got it meanwhile stand before those of newer ones that have not.
+        for other in later:
+            has = self._entry(offer, other, gone)
+            if has is not None:
+                return self._told("absent", offer, gone, first=versions[other], new=_shown(gone, has),
+                                  sure=not has.conditional)  # fmt: skip
+        for other in earlier:
+            had = self._entry(offer, other, gone)
+            if had is not None:
+                if any(self._has(package, gone) for package in self._offers.surfaces.elsewhere(gone)):
+                    return None
+                instead = self._instead(offer, gone, had)
+                return self._told("removed", offer, gone, last=versions[other], first=self._next(offer, other),
+                                  instead=instead, old=_shown(gone, had), sure=not had.conditional)  # fmt: skip
+        return None
+
+    def _imported(self, offer: Offer, use: PythonUse) -> Lost | None:
+        """A name that is imported from a module that is there, and that no version knows in any module."""
+        history = self._offers.surfaces.history(offer.package)
+        module, _, word = use.name.rpartition(".")
+        if history is None or word in history.python_words or offer.stored in offer.line.approximate:
+            return None
+        if not offer.exact and offer.place + 1 == len(offer.line.versions):
+            return None  # newer than all that were read, and may have got it
+        names = self.names(offer.package, offer.stored)
+        if names is None or module not in names.modules or names.find(use.name) is not None:
+            return None
+        return self._told("unknown", offer, use.name, sure=offer.exact)
+
+    def _telling(self, offer: Offer, name: str, place: int) -> tuple[list[int], list[int]]:
+        """Places of the versions before and after one in which a name may be otherwise, the nearest first: those on
+        both sides of each change of a name that ends alike."""
+        if offer.package not in self._places:
+            known = self._places[offer.package] = {}
+            for changed, events in offer.line.events.get("python", {}).items():
+                parts = changed.split(".")
+                last = parts[-2] if parts[-1] in ("__init__", "__new__") and len(parts) > 1 else parts[-1]
+                known.setdefault(last, set()).update(at for event in events for at in (event.place - 1, event.place))
+        last = name.removesuffix(".__init__").rpartition(".")[2]
+        places = sorted(at for at in self._places[offer.package].get(last, ()) if at >= 0)
+        return [at for at in reversed(places) if at < place], [at for at in places if at > place]
+
+    def _entry(self, offer: Offer, place: int, name: str) -> Entry | None:
+        """What a name is in a stored version; None where it is not there, or that cannot be told."""
+        version = offer.line.versions[place]
+        names = self.names(offer.package, version) if version not in offer.line.approximate else None
+        found = names.find(name) if names is not None else None
+        return None if found is UNKNOWN else found
+
+    def _next(self, offer: Offer, place: int) -> str:
+        """The version after a stored one, as far as releases were read."""
+        later = offer.line.versions[place + 1 : offer.place]
+        return next((version for version in later if version not in offer.line.approximate), offer.stored)
+
+    def _has(self, package: str, name: str) -> bool:
+        offer = self._offers.package(package)
+        return offer is not None and self._entry(offer, offer.place, name) is not None
+
+    def _instead(self, offer: Offer, gone: str, had: Entry) -> str:
+        """What the comparison of versions tells to use, by the name itself or by where it was defined."""
+        for name in (gone, had.where):
+            known = offer.get("python", name)
+            if known is not None and known.state in ("removed", "moved"):
+                return known.instead
+        return ""
+
+    # Calls
+
+    def _refused(self, offer: Offer, use: PythonUse, place: int, names: Names, entry: Entry) -> Lost | None:
+        here = called_with(names, entry)
+        assert use.given is not None
+        why = refused(use.given, here) if here is not None else ""
+        if here is None or not why:
+            return None
+        versions = offer.line.versions
+        earlier, later = self._telling(offer, use.name, place)
+        for other in (*earlier, *later):
+            took = self._entry(offer, other, use.name)
+            known = self.names(offer.package, versions[other])
+            then = called_with(known, took) if known is not None and took is not None else None
+            if then is None or took is None or refused(use.given, then):
+                continue
+            if other > place:
+                state, last, first = "early", "", versions[other]
+            else:
+                state, last, first = "refused", versions[other], self._next(offer, other)
+            return self._told(
+                state, offer, use.name, last=last, first=first, why=why,
+                old=f"{use.name}{signature(then)}", new=f"{use.name}{signature(here)}",
+                sure=not (entry.conditional or took.conditional),
+            )  # fmt: skip
+        return None
+
+    def _overridden(self, offer: Offer, use: PythonUse, place: int, entry: Entry) -> Lost | None:
+        """The base class has a method that is overridden, with other parameters than it had."""
+        own = read_parameters(use.parameters)
+        if own is None or entry.bound is None or entry.bound.kind != "method" or wrapped(entry.bound):
+            return None
+        here = entry.bound.parameters
+        why = unlike(own, here)
+        versions = offer.line.versions
+        for other in self._telling(offer, use.name, place)[0] if why else ():
+            had = self._entry(offer, other, use.name)
+            if had is None or had.bound is None or had.bound.kind != "method":
+                continue
+            if not unlike(own, had.bound.parameters):
+                return self._told(
+                    "override", offer, use.name, last=versions[other], first=self._next(offer, other), why=why,
+                    old=f"{use.name}{signature(had.bound.parameters)}", new=f"{use.name}{signature(here)}",
+                    sure=not (entry.conditional or had.conditional),
+                )  # fmt: skip
+        return None
+
+
+def _shown(name: str, entry: Entry) -> str:
+    if entry.bound is None or entry.bound.kind in ("class", "attribute", "instance", "property"):
+        return name
+    return f"{name}{signature(entry.bound.parameters)}"
+
+
+def called_with(names: Names, entry: Entry) -> tuple[Parameter, ...] | None:
+    """The parameters of a function or class; None where they cannot be told."""
+    if entry.kind == "class":
+        maker = names.member(entry, "__new__")
+        found = names.members(entry).get("__init__") or names.member(entry, "__init__")
+        # A class that makes its objects itself may take what its __init__ does not.
+        if (maker is not None and maker.bound is not None) or found is None or found is UNKNOWN:
+            return None
+        entry = found
+    bound = entry.bound
+    if bound is None or bound.kind not in ("function", "method", "classmethod", "staticmethod") or wrapped(bound):
+        return None
+    return bound.parameters
+
+
+def refused(given: Given, parameters: Iterable[Parameter]) -> str:
+    """Why a call with these arguments fails, in a clause; empty where it does not, as far as can be told."""
+    parameters = tuple(parameters)
+    kinds = {parameter.kind for parameter in parameters}
+    positional = [p for p in parameters if p.kind in ("positional", "normal")]
+    if given.positional > len(positional) and "args" not in kinds:
+        return f"it takes {f'at most {len(positional)}' if positional else 'no'} arguments by position"
+    by_name = {p.name for p in parameters if p.kind in ("normal", "keyword")}
+    for keyword in given.keywords:
+        if keyword not in by_name and "kwargs" not in kinds:
+            return f"it has no parameter `{keyword}`"
+    taken = {p.name for p in positional[: given.positional]}
+    for keyword in given.keywords:
+        if keyword in taken and keyword in by_name:
+            return f"`{keyword}` is given by position and by name"
+    if given.open:
+        return ""
+    needed = (p.name for p in parameters if p.default is None and p.kind in ("positional", "normal", "keyword"))
+    return next((f"`{name}` must be given" for name in needed if name not in taken and name not in given.keywords), "")
+
+
+def unlike(own: tuple[Parameter, ...], base: tuple[Parameter, ...]) -> str:
+    """Why a method with its own parameters cannot stand for one of the base's: by what has to be given to either."""
+    kinds = {p.kind for p in own}
+    wanted = [p for p in base if p.kind in ("positional", "normal") and p.default is None]
+    taken = [p for p in own if p.kind in ("positional", "normal")]
+    if len(wanted) > len(taken) and "args" not in kinds:
+        return f"`{wanted[len(taken)].name}` is given to it and not taken"
+    most = sum(p.kind in ("positional", "normal") for p in base)
+    needed = [p for p in taken if p.default is None]
+    if len(needed) > most and not any(p.kind == "args" for p in base):
+        return f"`{needed[most].name}` is not given to it"
+    names = {p.name for p in own}
+    asked = (p.name for p in base if p.kind == "keyword" and p.default is None)
+    missed = next((name for name in asked if name not in names), "")
+    return f"`{missed}` is given to it and not taken" if missed and "kwargs" not in kinds else ""
+
+
+@lru_cache(maxsize=4096)
+def read_parameters(text: str) -> tuple[Parameter, ...] | None:
+    """Parameters as Python writes them, `(a, b=..., *, c)`; None for what is none."""
+    try:
+        (function,) = ast.parse(f"def f{text}: pass").body
+    except (SyntaxError, ValueError):
+        return None
+    return tuple(parameters_of(function.args)) if isinstance(function, ast.FunctionDef) else None

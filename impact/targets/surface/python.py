@@ -1,0 +1,568 @@
+"""What a version of a package offers to Python: names, with re-exports followed, and what changed of them."""
+
+from __future__ import annotations
+
+import builtins
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
+from typing import NamedTuple
+
+import msgspec
+
+from ...facts.surface_python import LATE, Bound, Parameter, Taken, is_private
+from .surface import Module, PythonSurface
+
+
+class Entry(NamedTuple):
+    """What a dotted name stands for. where: where it is defined. bound: as written there; None for a module, or for
+    what another package gives. conditional: it stands under an `if` or a `try`, so it may not be there."""
+
+    where: str
+    kind: str
+    bound: Bound | None = None
+    conditional: bool = False
+
+
+UNKNOWN = Entry("", "unknown")
+"""Stands for a name of which it cannot be told whether it is there."""
+# Methods that every object has, so that one that is taken away is still there, and those that nobody calls by name.
+_OBJECT = frozenset((*dir(object), "__del__", "__slots__", "__post_init__", "__hash__", "__bool__"))
+_NO_ATTRIBUTES = frozenset(("object", "ABC", "abc.ABC", "Protocol", "typing.Protocol", "Generic", "typing.Generic"))
+_DEPTH = 12
+
+
+class Names:
+    """The names of a surface, ready to be asked."""
+
+    def __init__(self, surface: PythonSurface):
+        self.surface = surface
+        self.modules: dict[str, Module] = {module.name: module for module in surface.modules}
+        self._bound: dict[str, dict[str, list[Bound]]] = {}
+        self._taken: dict[str, dict[str, list[Taken]]] = {}
+
+    def find(self, dotted: str) -> Entry | None:
+        """What a dotted name (`rclpy.node.Node.create_timer`) stands for; None where it is surely not there, UNKNOWN
+        where that cannot be told."""
+        parts = dotted.split(".")
+        for length in range(len(parts), 0, -1):
+            module = self.modules.get(".".join(parts[:length]))
+            if module is not None:
+                return self.below(self.of_module(module), parts[length:])
+        if self._hidden(dotted) or self.surface.unresolved:
+            return UNKNOWN
+        if any(name.startswith(f"{dotted}.") for name in self.modules):
+            return Entry(dotted, "module")  # a folder without __init__.py
+        return None
+
+    def of_module(self, module: Module) -> Entry:
+        """The entry of a module itself."""
+        return Entry(module.name, "module")
+
+    def below(self, entry: Entry | None, parts: Iterable[str]) -> Entry | None:
+        """Goes on from an entry, name by name."""
+        for part in parts:
+            if entry is None or entry.kind in ("unknown", "external"):
+                return entry and UNKNOWN
+            if entry.kind == "module":
+                entry = self._in_module(self.modules.get(entry.where), entry.where, part, 0)
+            elif entry.kind == "class" and entry.bound is not None:
+                entry = self.member(entry, part)
+            else:
+                return UNKNOWN
+        return entry
+
+    def _hidden(self, dotted: str) -> bool:
+        return any(dotted == name or dotted.startswith(f"{name}.") for name in self.surface.unknown)
+
+    def bound(self, module: Module) -> dict[str, list[Bound]]:
+        """The names of a module in order of the source, those of classes dotted."""
+        known = self._bound.get(module.name)
+        if known is None:
+            known = self._bound[module.name] = {}
+            for bound in module.surface.names:
+                known.setdefault(bound.name, []).append(bound)
+        return known
+
+    def taken(self, module: Module) -> dict[str, list[Taken]]:
+        """The imports of a module by the name they bind."""
+        known = self._taken.get(module.name)
+        if known is None:
+            known = self._taken[module.name] = {}
+            for taken in module.surface.imports:
+                if not taken.scope:
+                    known.setdefault(taken.name, []).append(taken)
+        return known
+
+    def _in_module(self, module: Module | None, where: str, name: str, depth: int) -> Entry | None:
+        dotted = f"{where}.{name}"
+        if module is not None:
+            written = self.bound(module).get(name)
+            if written:
+                return _entry(dotted, written)
+            for taken in reversed(self.taken(module).get(name, ())):
+                return self._imported(module, taken, depth)
+        if dotted in self.modules or any(other.startswith(f"{dotted}.") for other in self.modules):
+            return Entry(dotted, "module")
+        if self._hidden(dotted):
+            return UNKNOWN
+        if module is None:
+            return None
+        unsure = not module.surface.parsed or any(scope == "" for scope, _ in module.surface.open)
+        for taken in self.taken(module).get("*", ()):
+            found = self._through_star(module, taken, name, depth)
+            if found is UNKNOWN:
+                unsure = True
+            elif found is not None:
+                return found
+        return UNKNOWN if unsure else None
+
+    def target(self, module: Module, taken: Taken) -> str:
+        """The dotted name of the module that an import is about."""
+        if not taken.level:
+            return taken.module
+        parts = module.name.split(".")
+        up = taken.level - 1 if module.package else taken.level
+        parts = parts[: len(parts) - up] if up else parts
+        return ".".join([*parts, *([taken.module] if taken.module else [])])
+
+    def _imported(self, module: Module, taken: Taken, depth: int) -> Entry:
+        """What an import binds. It binds something, whatever becomes of it."""
+        target = self.target(module, taken)
+        if not taken.original:
+            return Entry(taken.name, "module") if taken.name in self.modules else Entry(target, "external")
+        of = self.modules.get(target)
+        if of is None or depth > _DEPTH:
+            implicit = ""
+            if not taken.level:  # Python 2 looks beside the module first
+                implicit = ".".join([*module.name.split(".")[: None if module.package else -1], target])
+            of = self.modules.get(implicit)
+            if of is None or depth > _DEPTH:
+                return Entry(f"{target}.{taken.original}", "external")
+        found = self._in_module(of, of.name, taken.original, depth + 1)
+        if found is None or found is UNKNOWN:
+            return Entry(f"{target}.{taken.original}", "external")
+        return found._replace(conditional=True) if taken.conditions else found
+
+    def _through_star(self, module: Module, taken: Taken, name: str, depth: int) -> Entry | None:
+        of = self.modules.get(self.target(module, taken))
+        if of is None or depth > _DEPTH:
+            return UNKNOWN
+        listed = of.surface.all
+        if listed is not None and not of.surface.all_open and not any(one.startswith("+") for one in listed):
+            if name not in listed:
+                return None
+        elif name.startswith("_"):
+            return None
+        return self._in_module(of, of.name, name, depth + 1)
+
+    # -- classes
+
+    def member(self, entry: Entry, name: str, depth: int = 0) -> Entry | None:
+        """A member of a class, its base classes included."""
+        split = self._split(entry.where)
+        if split is None or entry.bound is None or depth > _DEPTH:
+            return UNKNOWN
+        module, inside = split
+        written = self.bound(module).get(f"{inside}.{name}")
+        if written:
+            return _entry(f"{entry.where}.{name}", written)
+        if any(t.scope == inside and t.name == name for t in module.surface.imports):
+            return Entry(f"{entry.where}.{name}", "external")
+        unsure = any(scope == inside for scope, _ in module.surface.open)
+        for base in entry.bound.bases:
+            found = self.inherited(module, inside, base, name, depth)
+            if found is UNKNOWN:
+                unsure = True
+            elif found is not None:
+                return found
+        return UNKNOWN if unsure else None
+
+    def inherited(self, module: Module, inside: str, base: str, name: str, depth: int) -> Entry | None:
+        """A member by way of a base class, as written."""
+        base = base.partition("[")[0].strip()
+        if base in _NO_ATTRIBUTES:
+            return Entry(f"object.{name}", "external") if name in _OBJECT else None
+        if not re.fullmatch(r"[\w.]+", base):
+            return UNKNOWN
+        found = self.base(module, inside, base)
+        if found is not None and found.kind == "class":
+            return self.member(found, name, depth + 1)
+        known = getattr(builtins, base, None)
+        if found is None and isinstance(known, type):
+            return Entry(f"{base}.{name}", "external") if hasattr(known, name) else None
+        return UNKNOWN
+
+    def base(self, module: Module, inside: str, base: str) -> Entry | None:
+        """What the name of a base class stands for in its module."""
+        head, *rest = base.split(".")
+        return self.below(self._in_module(module, module.name, head, 0), rest)
+
+    def _split(self, where: str) -> tuple[Module, str] | None:
+        """The module of something defined here, and its name in it."""
+        parts = where.split(".")
+        for length in range(len(parts) - 1, 0, -1):
+            module = self.modules.get(".".join(parts[:length]))
+            if module is not None:
+                return module, ".".join(parts[length:])
+        return None
+
+    # -- all of them
+
+    @cached_property
+    def offered(self) -> dict[str, Entry]:
+        """Every public name that modules offer: their own, and in packages what they re-export. Members of classes are
+        not among them, see members()."""
+        found: dict[str, Entry] = {}
+        for module in self.surface.modules:
+            if any(is_private(part) for part in module.name.split(".")):
+                continue
+            for name in self.bound(module):
+                if "." not in name and not is_private(name) and not name.startswith("__"):
+                    found[f"{module.name}.{name}"] = _entry(f"{module.name}.{name}", self.bound(module)[name])
+            for name in self.reexported(module):
+                dotted = f"{module.name}.{name}"
+                entry = self._in_module(module, module.name, name, 0)
+                if dotted not in found and entry is not None and entry.kind not in ("unknown", "module"):
+                    found[dotted] = entry
+        return found
+
+    def reexported(self, module: Module, seen: frozenset[str] = frozenset()) -> Iterator[str]:
+        """Public names that a module has from others of its package and means to offer: what is in its `__all__`, and
+        in an `__init__.py` what it imports from below itself; what it takes from elsewhere it needs for itself. seen:
+        modules that lead here, as they may take all names from each other."""
+        listed = module.surface.all or ()
+        for name, taken in self.taken(module).items():
+            for one in taken:
+                own = f"{self.target(module, one)}.".startswith(f"{module.name}.")
+                if name == "*" and own:
+                    of = self.modules.get(self.target(module, one))
+                    yield from self.starred(of, seen | {module.name}) if of is not None else ()
+                elif name != "*" and not is_private(name) and (name in listed or (own and module.package)):
+                    yield name
+
+    def starred(self, module: Module, seen: frozenset[str] = frozenset()) -> Iterator[str]:
+        """Names that `from module import *` gives, as far as they are written. seen: as of reexported()."""
+        if module.surface.all is not None:
+            yield from (name for name in module.surface.all if not name.startswith("+"))
+            return
+        yield from (name for name in self.bound(module) if "." not in name and not name.startswith("_"))
+        if module.package and module.name not in seen:
+            yield from self.reexported(module, seen)
+
+    def members(self, entry: Entry) -> dict[str, Entry]:
+        """Public members that a class itself has, and `__init__`."""
+        split = self._split(entry.where)
+        if split is None:
+            return {}
+        module, inside = split
+        found = {}
+        for name, written in self.bound(module).items():
+            head, _, last = name.rpartition(".")
+            if head == inside and (last == "__init__" or not (is_private(last) or last in _OBJECT)):
+                found[last] = _entry(f"{entry.where}.{last}", written)
+        if "__init__" not in found:
+            fields = self.fields(entry, 0)
+            if fields is not None:
+                found["__init__"] = Entry(
+                    f"{entry.where}.__init__", "method", Bound("__init__", "method", 0, tuple(fields.values()))
+                )
+        return found
+
+    def fields(self, entry: Entry, depth: int) -> dict[str, Parameter] | None:
+        """The constructor's parameters of a dataclass; None for any other class, and where a base cannot be told."""
+        split = self._split(entry.where)
+        if entry.bound is None or split is None or depth > _DEPTH:
+            return None
+        module, inside = split
+        if not any(d.rpartition(".")[2] == "dataclass" for d in entry.bound.decorators):
+            return None
+        found: dict[str, Parameter] = {}
+        for base in reversed(entry.bound.bases):
+            of = self.base(module, inside, base.partition("[")[0])
+            more = self.fields(of, depth + 1) if of is not None and of.kind == "class" else None
+            if more is None and base not in _NO_ATTRIBUTES:
+                return None
+            found.update(more or {})
+        for bound in module.surface.names:
+            head, _, last = bound.name.rpartition(".")
+            field = head == inside and bound.kind == "attribute" and bound.annotation
+            if field and not re.match(r"['\"]?(?:typing\.)?ClassVar\b", bound.annotation):
+                # Which value it has by default is told where that is a literal.
+                found[last] = Parameter(last, "normal", bound.value or "?", bound.annotation)
+        return found
+
+
+def _entry(dotted: str, written: list[Bound]) -> Entry:
+    """What several bindings of one name come to: the last that does not depend on a condition, else the first."""
+    written = [b for b in written if not any(c.text == "overload" for c in b.conditions)] or written
+    plain = [b for b in written if not b.conditions]
+    bound = plain[-1] if plain else written[0]
+    others = [b for b in written if b.conditions and LATE not in b.conditions]
+    return Entry(dotted, bound.kind, bound, not plain or bool(others))
+
+
+class Change(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A difference between two surfaces.
+
+    kind: `removed`, `moved` (now: where it can be imported instead), `added`, `signature`, `default`, `deprecated`
+    (now: the message), `kind` (a method became a property ...). name: dotted. what: of which kind the thing is
+    (`module`, `class`, `function`, `method` ...). old, now: as written. breaks: code that used the old form may fail.
+    sure: False where a condition, a decorator or a base class of another package leaves it open.
+    """
+
+    kind: str
+    name: str
+    what: str
+    old: str = ""
+    now: str = ""
+    breaks: bool = True
+    sure: bool = True
+
+
+def compare(old: PythonSurface, new: PythonSurface) -> tuple[Change, ...]:
+    """What changed for those who use the package from Python, sorted by name. A name of which it cannot be told whether
+    it is still there is left out."""
+    return _Comparison(Names(old), Names(new)).run()
+
+
+class _Comparison:
+    def __init__(self, old: Names, new: Names):
+        self.old, self.new = old, new
+        self.changes: dict[tuple[str, str], Change] = {}
+        self.seen: set[str] = set()
+
+    def run(self) -> tuple[Change, ...]:
+        gone = self.modules()
+        # The shortest way to a thing is how its members are called.
+        for name, entry in sorted(self.old.offered.items(), key=lambda item: (item[0].count("."), item[0])):
+            found = self.new.find(name)
+            if found is UNKNOWN:
+                continue
+            if found is None:
+                self.missing(name, entry, gone)
+            elif entry.where not in self.seen:
+                self.seen.add(entry.where)
+                self.both(name, entry, found)
+        for name, entry in self.new.offered.items():
+            if self.old.find(name) is None and name not in self.moved_to:
+                self.add("added", name, entry.kind, now=shown(entry), breaks=False)
+        return tuple(sorted(self.changes.values(), key=lambda c: (c.name, c.kind)))
+
+    @cached_property
+    def moved_to(self) -> set[str]:
+        return {change.now for change in self.changes.values() if change.kind == "moved"}
+
+    def add(self, kind: str, name: str, what: str, **more) -> None:
+        self.changes.setdefault((kind, name), Change(kind, name, what, **more))
+
+    def modules(self) -> list[str]:
+        """Public modules that are gone: told once for the topmost."""
+        gone: list[str] = []
+        for name in sorted(self.old.modules):
+            if any(is_private(part) for part in name.split(".")) or any(name.startswith(f"{g}.") for g in gone):
+                continue
+            if self.new.find(name) is None:
+                gone.append(name)
+                twins = [m for m in self.new.modules if m.rpartition(".")[2] == name.rpartition(".")[2]]
+                twins = [m for m in twins if m not in self.old.modules and self.alike_modules(name, m)]
+                if len(twins) == 1:
+                    self.add("moved", name, "module", old=name, now=twins[0])
+                else:
+                    self.add("removed", name, "module", old=name)
+        for name in sorted(self.new.modules):
+            if not any(is_private(part) for part in name.split(".")) and self.old.find(name) is None:
+                self.add("added", name, "module", breaks=False)
+        return gone
+
+    def alike_modules(self, old: str, new: str) -> bool:
+        had = {n for n in self.old.bound(self.old.modules[old]) if "." not in n}
+        has = {n for n in self.new.bound(self.new.modules[new]) if "." not in n}
+        return not had or len(had & has) * 2 >= len(had)
+
+    def missing(self, name: str, entry: Entry, gone: list[str]) -> None:
+        """A name that can no longer be imported from where it was."""
+        target = self.elsewhere(name, entry)
+        inside = any(name.startswith(f"{module}.") for module in gone)
+        if target:
+            if not inside or (("moved", name.rpartition(".")[0]) not in self.changes):
+                self.add("moved", name, entry.kind, old=shown(entry), now=target, sure=not entry.conditional)
+        elif not inside:
+            self.add("removed", name, entry.kind, old=shown(entry), sure=not entry.conditional)
+
+    def elsewhere(self, name: str, entry: Entry) -> str:
+        """Where else the thing can be imported from, empty where nowhere or where several things are like it."""
+        last = name.rpartition(".")[2]
+        found: dict[str, list[str]] = {}
+        for path, other in self.new.offered.items():
+            if path.rpartition(".")[2] != last or other.kind != entry.kind:
+                continue
+            before = self.old.find(path)
+            same = before is not None and before.where == entry.where
+            if same or (before is None and self.alike(entry, other)):
+                found.setdefault(other.where, []).append(path)
+        if len(found) != 1:
+            return ""
+        return min(next(iter(found.values())), key=lambda path: (path.count("."), path))
+
+    def alike(self, old: Entry, new: Entry) -> bool:
+        """Whether two things of one name may be the same: by the name of their module, else functions by their
+        parameters, classes by their members."""
+        if old.bound is None or new.bound is None:
+            return False
+        if old.where.split(".")[-2:] == new.where.split(".")[-2:] and old.where.count(".") > 2:
+            return True
+        if old.kind == "class":
+            had, has = set(self.old.members(old)), set(self.new.members(new))
+            return len(had & has) * 2 >= len(had) and (bool(had) or old.bound.bases == new.bound.bases)
+        if old.kind == "function":
+            had, has = ({p.name for p in b.parameters} for b in (old.bound, new.bound))
+            return len(had & has) * 2 >= len(had | has)
+        return old.bound.value == new.bound.value and bool(old.bound.value)
+
+    def both(self, name: str, old: Entry, new: Entry) -> None:
+        """A thing that both have."""
+        if old.bound is None or new.bound is None:
+            return
+        sure = not (old.conditional or new.conditional)
+        of_class = name.endswith(".__init__")  # then it is told of the class
+        if new.bound.deprecated and not old.bound.deprecated and not of_class:
+            self.add("deprecated", name, old.kind, now=new.bound.deprecated, breaks=False, sure=sure)
+        if old.kind == "class" and new.kind == "class":
+            self.classes(name, old, new)
+        elif _callable(old.kind) and _callable(new.kind):
+            self.signatures(name, old, new, sure)
+        elif _nature(old) != _nature(new) and "" not in (_nature(old), _nature(new)):
+            if {old.kind, new.kind} != {"function", "class"}:  # both are called
+                self.add("kind", name, old.kind, old=old.kind, now=new.kind, sure=sure)
+        elif old.kind == "attribute" and old.bound.value and new.bound.value and old.bound.value != new.bound.value:
+            self.add("default", name, old.kind, old=old.bound.value, now=new.bound.value, breaks=False, sure=sure)
+
+    def classes(self, name: str, old: Entry, new: Entry) -> None:
+        mine = self.new.members(new)
+        for member, had in self.old.members(old).items():
+            dotted = f"{name}.{member}"
+            has = mine.get(member) or self.new.member(new, member)
+            if has is UNKNOWN:
+                continue
+            if has is None:
+                if member != "__init__":
+                    self.add("removed", dotted, had.kind, old=shown(had), sure=not had.conditional)
+                elif had.bound is not None and had.bound.parameters:
+                    self.add("signature", dotted, "method", old=shown(had), now="()", sure=not had.conditional)
+            else:
+                self.both(dotted, had, has)
+        for member, has in mine.items():
+            if member != "__init__" and self.old.member(old, member) is None:
+                self.add("added", f"{name}.{member}", has.kind, now=shown(has), breaks=False)
+
+    def signatures(self, name: str, old: Entry, new: Entry, sure: bool) -> None:
+        assert old.bound is not None and new.bound is not None
+        had, has = old.bound.parameters, new.bound.parameters
+        sure = sure and not (wrapped(old.bound) or wrapped(new.bound))
+        problem = broken_by(had, has)
+        # Which keywords `**kwargs` stood for cannot be told.
+        sure = sure and not (problem.startswith("`**"))
+        if problem or [(p.name, p.kind) for p in had] != [(p.name, p.kind) for p in has]:
+            self.add("signature", name, old.kind, old=shown(old), now=shown(new), breaks=bool(problem), sure=sure)
+        before = {p.name: p.default for p in had}
+        for parameter in has:
+            value, now = before.get(parameter.name), parameter.default
+            if value is None or now is None or "?" in (value, now):
+                continue
+            if value != now and not (_PATH.match(value) and _PATH.match(now) and _last(value) == _last(now)):
+                at = f"{name}({parameter.name})"
+                self.add("default", at, "parameter", old=value, now=now, breaks=False, sure=sure)
+
+
+_KEEPS = frozenset((
+    "property", "cached_property", "abstractproperty", "staticmethod", "classmethod", "abstractmethod", "overload",
+    "abstractclassmethod", "abstractstaticmethod", "contextmanager", "asynccontextmanager", "cache", "lru_cache",
+    "override", "final", "deprecated", "deprecate", "dataclass", "no_type_check", "wraps", "coroutine",
+))  # fmt: skip
+"""Decorators that leave the parameters as they are."""
+# One constant may be called by several paths (`_rclpy.ClockType.ROS_TIME`, `ClockType.ROS_TIME`).
+_PATH = re.compile(r"[A-Za-z_][\w.]*\Z")
+
+
+def _last(path: str) -> str:
+    return path.rpartition(".")[2]
+
+
+def wrapped(bound: Bound) -> bool:
+    """True where a decorator that is not known may give it other parameters."""
+    return any(decorator.rpartition(".")[2] not in _KEEPS for decorator in bound.decorators)
+
+
+def _callable(kind: str) -> bool:
+    return kind in ("function", "method", "classmethod", "staticmethod")
+
+
+def _nature(entry: Entry) -> str:
+    """How a thing is used: `value` without a call; empty where it cannot be told, since a name may stand for a class
+    or a function."""
+    if entry.kind in ("attribute", "instance"):
+        return "value" if entry.bound is not None and entry.bound.value else ""
+    return "value" if entry.kind == "property" else "call" if _callable(entry.kind) else entry.kind
+
+
+def shown(entry: Entry) -> str:
+    """What stands behind a name where it is defined: parameters, bases or a value."""
+    bound = entry.bound
+    if bound is None:
+        return entry.where
+    if _callable(bound.kind):
+        return signature(bound.parameters)
+    return f"({', '.join(bound.bases)})" if bound.kind == "class" else bound.value
+
+
+def signature(parameters: Iterable[Parameter]) -> str:
+    """Parameters as Python writes them, without annotations."""
+    texts: list[str] = []
+    last = ""
+    for parameter in parameters:
+        if last == "positional" and parameter.kind != "positional":
+            texts.append("/")
+        if parameter.kind == "keyword" and last not in ("keyword", "args"):
+            texts.append("*")
+        star = {"args": "*", "kwargs": "**"}.get(parameter.kind, "")
+        default = "" if parameter.default is None else f"={parameter.default}"
+        texts.append(f"{star}{parameter.name}{default}")
+        last = parameter.kind
+    if last == "positional":
+        texts.append("/")
+    return f"({', '.join(texts)})"
+
+
+def broken_by(old: tuple[Parameter, ...], new: tuple[Parameter, ...]) -> str:
+    """Why a call that the old parameters took may fail with the new ones, empty where none does."""
+    kinds = {parameter.kind for parameter in new}
+    by_name: Mapping[str, Parameter] = {p.name: p for p in new if p.kind in ("normal", "keyword")}
+    had = [p for p in old if p.kind in ("positional", "normal")]
+    has = [p for p in new if p.kind in ("positional", "normal")]
+    for parameter in old:
+        if parameter.kind == "args" and "args" not in kinds:
+            return f"`*{parameter.name}` is gone"
+        if parameter.kind == "kwargs" and "kwargs" not in kinds:
+            return f"`**{parameter.name}` is gone"
+        if parameter.kind in ("normal", "keyword") and parameter.name not in by_name and "kwargs" not in kinds:
+            return f"`{parameter.name}` is gone"
+        now = by_name.get(parameter.name)
+        if now is not None and now.default is None and parameter.default is not None:
+            return f"`{parameter.name}` must be given"
+    for number, parameter in enumerate(had):
+        if number >= len(has):
+            if "args" not in kinds:
+                return f"`{parameter.name}` is no longer taken by position"
+        elif has[number].name != parameter.name and parameter.kind == "normal":
+            return f"`{has[number].name}` stands where `{parameter.name}` stood"
+        elif parameter.kind == "positional" and has[number].default is None and parameter.default is not None:
+            return f"`{has[number].name}` must be given"
+    known = {parameter.name for parameter in old}
+    for number, parameter in enumerate(new):
+        takes_over = parameter.kind == "positional" and number < len(had)
+        if parameter.kind in ("args", "kwargs") or parameter.default is not None or takes_over:
+            continue
+        if parameter.name not in known:
+            return f"`{parameter.name}` must be given"
+    return ""

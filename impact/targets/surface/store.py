@@ -1,0 +1,583 @@
+"""Surfaces of many versions in one file: facts only (names, signatures, versions), each kept once with its versions.
+
+An SQLite file with a row for each package, packed by itself, so that one package is read in milliseconds and the
+others not at all. What is packed: the versions in order, and rows of (kind, scope, value, the first and last versions
+that have it, over and over). Lines, comments, and names of C++ parameters are left out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sqlite3
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
+from functools import cache, cached_property, lru_cache
+from operator import itemgetter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import msgspec
+import zstandard
+
+from ....edges.console import UserError
+from ....edges.files import read_chunks, writing
+from ...facts.interface import Interface
+from ...facts.parameters import last_part
+from ...facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
+from ...facts.surface_python import Bound, ModuleSurface, Taken
+from ..snapshot import DATA, SnapshotError
+from . import includes as surface_includes
+from .changes import PARAMETER, Line, brief, unpack
+from .includes import Included, spans_of, there
+
+if TYPE_CHECKING:
+    from .surface import BuildSurface, PythonSurface, Surface
+
+_SCHEMA = """
+CREATE TABLE package(name TEXT PRIMARY KEY, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL)
+  WITHOUT ROWID;
+CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE headers(data BLOB NOT NULL);
+CREATE TABLE parameters(data BLOB NOT NULL);
+CREATE TABLE about(packages INTEGER, versions INTEGER, distros TEXT, date TEXT);
+"""
+"""about: one row, see About. package: what its versions offer, what changed between them (see surface_changes.py), and
+what their headers include (see surface_includes.py). elsewhere: names that some version of a package lost, and the
+packages, space separated, that have or had one of that name. headers: one row, packed: headers that do not lie in a
+folder that is called like their package, with the packages that have or had them. parameters: one row, packed: the last
+parts of the names of parameters that came or went for sure, with the packages that declare or declared them."""
+_LEVEL = 19
+_TYPES = CLASSES | {"enum", "alias"}
+# (kind, scope, value as JSON-like data)
+_Row = tuple[str, str, Any]
+
+
+class StoredSurfacesError(UserError):
+    """The file cannot be read; the message names it and says what to do."""
+
+
+class Stored(NamedTuple):
+    """One version of a package. approximate: a branch stood for its tag."""
+
+    version: str
+    approximate: bool
+    surface: Surface
+
+
+class Packed(NamedTuple):
+    """A package as it is stored: what its versions offer, what changed between them, what their headers include."""
+
+    data: bytes
+    changes: bytes
+    includes: bytes
+
+
+class About(NamedTuple):
+    """What a file holds. versions: of all packages together. distros: whose versions were read, space separated. date:
+    the newest day of what was known of them."""
+
+    packages: int
+    versions: int
+    distros: str
+    date: str
+
+
+class History:
+    """All stored versions of one package, oldest first. approximate: those that a branch stood for."""
+
+    def __init__(self, package: str, data: bytes, includes: bytes):
+        self.package, self._includes = package, includes
+        versions, approximate, rows = _decoder.decode(zstandard.ZstdDecompressor().decompress(data))
+        self.versions: tuple[str, ...] = tuple(versions)
+        self.approximate = frozenset(approximate)
+        # Values are read where they are asked for.
+        self._rows: dict[str, list[tuple[str, msgspec.Raw, list[int]]]] = {}
+        for kind, scope, value, spans in rows:
+            self._rows.setdefault(kind, []).append((scope, value, spans))
+
+    def surface(self, version: str) -> Surface | None:
+        """What a version offers; None for one that is not stored."""
+        build, python = self.build(version), self.python(version)
+        if build is None or python is None:
+            return None
+        # What only changed is asked far more often than a whole version is.
+        from .surface import Surface
+
+        guessed, runs_with = next((value for _, value in self._values("surface", version)), (False, ()))
+        return Surface(
+            self.package,
+            version,
+            build,
+            python,
+            tuple(sorted(self._headers(version), key=_name)),
+            tuple(sorted(self._values("interface", version, Interface), key=_name)),
+            guessed,
+            tuple(runs_with),
+            self.parameters(version),
+        )
+
+    def parameters(self, version: str) -> tuple[tuple[str, str | None], ...]:
+        """The parameters that a version declares, with their defaults, as in Surface."""
+        return tuple(sorted(self._values("parameter", version), key=_name))
+
+    def build(self, version: str) -> BuildSurface | None:
+        """What a version gives to CMake and at run time; None for one that is not stored."""
+        if version not in self.versions:
+            return None
+        from .surface import BuildSurface
+
+        build: dict[str, list[Any]] = {}
+        for scope, value in self._values("build", version):
+            build.setdefault(scope, []).append(value)
+        known = {field.name: field.type for field in msgspec.structs.fields(BuildSurface)}
+        empty = BuildSurface("")
+        given = {
+            name: msgspec.convert(values, known[name]) if isinstance(getattr(empty, name), tuple) else values[-1]
+            for name, values in build.items()
+        }
+        return BuildSurface(self.package, version, **given)
+
+    def python(self, version: str) -> PythonSurface | None:
+        """The Python of a version; None for one that is not stored."""
+        if version not in self.versions:
+            return None
+        from .surface import Module, PythonSurface
+
+        bound, taken = self._inside("bound", version, Bound), self._inside("taken", version, Taken)
+        told = self._inside("python", version, str)
+        modules = (
+            Module(
+                name,
+                path,
+                is_package,
+                ModuleSurface(
+                    tuple(bound.get(name, ())),
+                    tuple(taken.get(name, ())),
+                    None if all_ is None else tuple(all_),
+                    all_open,
+                    tuple((scope, why) for scope, why in open_),
+                    deprecated,
+                    parsed,
+                ),
+            )
+            for name, (path, is_package, all_, all_open, open_, deprecated, parsed) in self._values("module", version)
+        )
+        return PythonSurface(
+            self.package,
+            tuple(sorted(modules, key=lambda module: module.name)),
+            tuple(told.get("unknown", ())),
+            tuple(told.get("unresolved", ())),
+        )
+
+    @cached_property
+    def included(self) -> Included:
+        """What the headers of each version include."""
+        return surface_includes.unpack(self._includes)
+
+    def interfaces(self, version: str) -> dict[str, Interface]:
+        """The messages, services and actions of a version, by `msg/Name`."""
+        return dict(self._values("interface", version, Interface))
+
+    def entities(self, name: str, version: str) -> Iterator[Entity]:
+        """What a version declares by a name of C++, as users write it; nothing for a version that is not stored."""
+        inline = (space for _, (spaces, *_) in self._values("header", version) for space in spaces)
+        last = name.rpartition("::")[2].encode()
+        near = (one for _, one in self._values("entity", version, Entity, last))
+        found = offered([HeaderSurface(tuple(near), inline=tuple(inline))])
+        return (entity for entity in found if entity.name == name)
+
+    def _headers(self, version: str) -> Iterator[tuple[str, HeaderSurface]]:
+        entities = self._inside("entity", version, Entity)
+        for path, (inline, deprecated, instead, lost) in self._values("header", version):
+            yield (
+                path,
+                HeaderSurface(
+                    tuple(entities.get(path, ())),
+                    self.included.written(path, version) or (),
+                    tuple(inline),
+                    deprecated,
+                    instead,
+                    lost,
+                    announced=self.included.announced(path, version),
+                ),
+            )
+
+    def _inside(self, kind: str, version: str, type_: Any) -> dict[str, list[Any]]:
+        """The values of a kind by their scope."""
+        found: dict[str, list[Any]] = {}
+        for scope, value in self._values(kind, version, type_):
+            found.setdefault(scope, []).append(value)
+        return found
+
+    def _values(self, kind: str, version: str, type_: Any = Any, word: bytes = b"") -> Iterator[tuple[str, Any]]:
+        """Scope and value of each row of a kind that a version has, and in which a word stands."""
+        place = self.versions.index(version) if version in self.versions else -1
+        decode = msgspec.msgpack.Decoder(type_).decode
+        for scope, value, spans in self._rows.get(kind, ()):
+            if place >= 0 and (not word or word in bytes(value)) and there(spans, place):
+                yield scope, decode(value)
+
+    @cached_property
+    def _named(self) -> dict[str, list[list[int]]]:
+        """The spans of everything that has a name of its own."""
+        found: dict[str, list[list[int]]] = {}
+        for kind, named in _NAMED.items():
+            for scope, value, spans in self._rows.get(kind, ()):
+                found.setdefault(named(self.package, scope, value), []).append(spans)
+        return found
+
+    def has(self, name: str, version: str) -> bool:
+        """Whether a version has a header, interface, C++ name, Python module or name."""
+        if version not in self.versions:
+            return False
+        place = self.versions.index(version)
+        return any(there(spans, place) for spans in self._named.get(name, ()))
+
+    def names(self) -> dict[str, tuple[str, ...]]:
+        """Headers, interfaces, C++ names, Python modules and names that any version had, with the versions that do."""
+        count = len(self.versions)
+        found = {name: {place for one in spans for place in _places(one, count)} for name, spans in self._named.items()}
+        return {name: tuple(self.versions[place] for place in sorted(places)) for name, places in found.items()}
+
+    def types(self) -> dict[str, tuple[str, ...]]:
+        """Classes, enums and aliases of namespaces that any version had, with the headers that define them."""
+        inline = {name for _, value, _ in self._rows.get("header", ()) for name in _decoded(value)[0]}
+        found: dict[str, dict[str, None]] = {}
+        classes: set[str] = set()
+        for scope, value, _ in self._rows.get("entity", ()):
+            what, full, *_ = _decoded(value)
+            if what in _TYPES:
+                name = plain(full, inline)
+                found.setdefault(name, {})[scope] = None
+                if what in CLASSES:
+                    classes.add(name)
+        return {name: tuple(sorted(where)) for name, where in found.items() if name.rpartition("::")[0] not in classes}
+
+    @cached_property
+    def python_words(self) -> frozenset[str]:
+        """Every word that some version binds somewhere in its Python modules, and the last parts of their names."""
+        values = (value for kind in ("bound", "taken") for _, value, _ in self._rows.get(kind, ()))
+        found = {_decoded(value)[0].rpartition(".")[2] for value in values}
+        return frozenset(found.union(*(scope.split(".") for scope, *_ in self._rows.get("module", ()))))
+
+    def stored(self) -> Iterator[Stored]:
+        """Every version."""
+        for version in self.versions:
+            surface = self.surface(version)
+            assert surface is not None
+            yield Stored(version, version in self.approximate, surface)
+
+
+_decoder = msgspec.msgpack.Decoder(tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]]])
+_decoded = msgspec.msgpack.Decoder().decode
+_name = itemgetter(0)
+# How what a row of a kind is about is called.
+_NAMED: dict[str, Callable[[str, str, msgspec.Raw], str]] = {
+    "header": lambda package, path, value: path,
+    "entity": lambda package, path, value: _decoded(value)[1],
+    "bound": lambda package, module, value: f"{module}.{_decoded(value)[0]}",
+    "module": lambda package, module, value: module,
+    "interface": lambda package, name, value: f"{package}/{name}",
+}
+
+
+def _places(spans: Sequence[int], count: int) -> Iterator[int]:
+    for at in range(0, len(spans), 2):
+        yield from range(spans[at], spans[at + 1] + 1)
+    if not spans:
+        yield from range(count)
+
+
+# -- packing -----------------------------------------------------------------------------------------------------------
+
+
+class Packer:
+    """Packs the versions of one package as they come, oldest first, without what their headers include. What is equal
+    is kept once."""
+
+    def __init__(self) -> None:
+        self._versions: list[str] = []
+        self._approximate: list[str] = []
+        self._values: list[_Row] = []
+        self._places: list[list[int]] = []
+        self._numbers: dict[bytes, int] = {}
+        self._parts: dict[bytes, list[int]] = {}
+
+    def add(self, stored: Stored) -> None:
+        """The next version."""
+        place = len(self._versions)
+        self._versions.append(stored.version)
+        if stored.approximate:
+            self._approximate.append(stored.version)
+        for part in _parts(stored.surface):
+            whole = _encoder.encode(part)
+            numbers = self._parts.get(whole)
+            if numbers is None:
+                numbers = self._parts[whole] = [self._number(row) for row in _rows(*part)]
+            for number in numbers:
+                places = self._places[number]
+                if not places or places[-1] != place:
+                    places.append(place)
+
+    def _number(self, row: _Row) -> int:
+        key = _encoder.encode(row)
+        number = self._numbers.setdefault(key, len(self._values))
+        if number == len(self._values):
+            self._values.append(row)
+            self._places.append([])
+        return number
+
+    def packed(self) -> bytes:
+        """All versions as they are stored."""
+        count = len(self._versions)
+        rows = [(*value, spans_of(places, count)) for value, places in zip(self._values, self._places, strict=True)]
+        rows.sort(key=lambda row: (row[0], row[1]))  # stable: what is declared first comes first
+        whole = _encoder.encode((self._versions, self._approximate, rows))
+        return zstandard.ZstdCompressor(level=_LEVEL).compress(whole)
+
+
+_encoder = msgspec.msgpack.Encoder()
+
+
+def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
+    """What a surface consists of: kind, name, value. Each gives rows of its own."""
+    from .surface import BuildSurface
+
+    yield from (("header", path, header) for path, header in surface.headers)
+    yield from (("module", module.name, module) for module in surface.python.modules)
+    for what, listed in (("unknown", surface.python.unknown), ("unresolved", surface.python.unresolved)):
+        yield from (("python", what, text) for text in listed)
+    yield from (("interface", name, definition) for name, definition in surface.interfaces)
+    for field in msgspec.structs.fields(BuildSurface):
+        value = getattr(surface.build, field.name)
+        if field.name in ("package", "version"):
+            continue
+        yield from (("build", field.name, item) for item in (value if isinstance(value, tuple) else (value,)))
+    yield from (("parameter", name, default) for name, default in surface.parameters)
+    yield "surface", "", [surface.guessed, surface.runs_with]
+
+
+def _rows(kind: str, name: str, value: Any) -> Iterator[_Row]:
+    bare = msgspec.to_builtins
+    if kind == "header":
+        yield "header", name, [value.inline, _brief(value.deprecated), value.instead, value.lost]
+        for one in value.entities:
+            yield "entity", name, _short(bare(_without_text(one)), _ENTITY)
+    elif kind == "module":
+        told = value.surface
+        yield "module", name, [value.path, value.package, told.all, told.all_open, told.open, _brief(told.deprecated),
+                               told.parsed]  # fmt: skip
+        for bound in told.names:
+            bound = msgspec.structs.replace(bound, line=0, deprecated=_brief(bound.deprecated))
+            yield "bound", name, _short(bare(bound), _BOUND)
+        for taken in told.imports:
+            yield "taken", name, bare(msgspec.structs.replace(taken, line=0))
+    elif kind == "interface":
+        yield kind, name, bare(_without_lines(value))
+    else:
+        yield kind, name, bare(value)
+
+
+def _brief(message: str | None) -> str | None:
+    return None if message is None else brief(message)
+
+
+def _without_text(one: Entity) -> Entity:
+    """An entity without its line, names of parameters, statements and long messages."""
+    parameters = one.parameters
+    if parameters is not None:
+        parameters = tuple(
+            msgspec.structs.replace(p, name="", default=None if p.default is None else _without_statements(p.default))
+            for p in parameters
+        )
+    return msgspec.structs.replace(
+        one,
+        line=0,
+        parameters=parameters,
+        value=_without_statements(one.value),
+        deprecated=_brief(one.deprecated),
+    )
+
+
+def _without_statements(value: str) -> str:
+    """A default or a constant; of one that calls a lambda only a digest, which tells it from another."""
+    return f"[](){{{hashlib.sha1(value.encode()).hexdigest()[:8]}}}()" if "{" in value and ";" in value else value
+
+
+def _without_lines(definition: Interface) -> Interface:
+    sections = tuple(
+        msgspec.structs.replace(
+            section,
+            fields=tuple(msgspec.structs.replace(f, line=0, column=0) for f in section.fields),
+            constants=tuple(msgspec.structs.replace(c, line=0, column=0) for c in section.constants),
+        )
+        for section in definition.sections
+    )
+    return msgspec.structs.replace(definition, sections=sections, problems=())
+
+
+def _short(values: list[Any], defaults: list[Any]) -> list[Any]:
+    """The values up to the last that is not what it is by default."""
+    end = len(values)
+    while end and values[end - 1] == defaults[end - 1]:
+        end -= 1
+    return values[:end]
+
+
+_ENTITY = msgspec.to_builtins(Entity("\0", "\0", -1))
+_BOUND = msgspec.to_builtins(Bound("\0", "\0", -1))
+
+
+# -- the file ----------------------------------------------------------------------------------------------------------
+
+
+class Surfaces:
+    """A file of surfaces. Raises StoredSurfacesError when it cannot be opened."""
+
+    def __init__(self, file: Path):
+        self.file = file
+        self._reader = 0  # the process that opened it
+        self.packages = frozenset(name for (name,) in self._rows("SELECT name FROM package"))
+
+    @lru_cache(maxsize=64)  # noqa: B019  (one of them lives as long as the program)
+    def history(self, package: str) -> History | None:
+        """All versions of a package, None when it is not there."""
+        row = next(self._rows("SELECT data, includes FROM package WHERE name = ?", package), None)
+        return History(package, *row) if row else None
+
+    @lru_cache(maxsize=1024)  # noqa: B019
+    def lines(self, package: str) -> dict[int, Line]:
+        """What changed in a package from version to version, by ROS generation; empty when it is not there."""
+        row = next(self._rows("SELECT changes FROM package WHERE name = ?", package), None)
+        return unpack(row[0]) if row else {}
+
+    @lru_cache(maxsize=1024)  # noqa: B019
+    def included(self, package: str) -> Included | None:
+        """What the headers of each version of a package include, None when it is not there."""
+        row = next(self._rows("SELECT includes FROM package WHERE name = ?", package), None)
+        return surface_includes.unpack(row[0]) if row else None
+
+    def holders(self, header: str) -> tuple[str, ...]:
+        """The packages that may have, or have had, a header, by the path that dependants write."""
+        head, separator, _ = header.partition("/")
+        named = (head,) if separator and head in self.packages else ()
+        return (*named, *self._headers.get(header, ()))
+
+    @cached_property
+    def _headers(self) -> dict[str, tuple[str, ...]]:
+        """Headers that do not lie in a folder called like their package."""
+        (data,) = next(self._rows("SELECT data FROM headers"))
+        return msgspec.msgpack.decode(zstandard.ZstdDecompressor().decompress(data), type=dict[str, tuple[str, ...]])
+
+    @cached_property
+    def changing_parameters(self) -> dict[str, frozenset[str]]:
+        """The last parts of names of parameters that some versions of a package surely declare and others surely do
+        not, with those packages."""
+        (data,) = next(self._rows("SELECT data FROM parameters"))
+        plain = zstandard.ZstdDecompressor().decompress(data)
+        return msgspec.msgpack.decode(plain, type=dict[str, frozenset[str]])
+
+    @cached_property
+    def about(self) -> About:
+        """What the file holds."""
+        return About(*next(self._rows("SELECT packages, versions, distros, date FROM about")))
+
+    def elsewhere(self, name: str) -> tuple[str, ...]:
+        """The packages that have, or had, a name that some package lost."""
+        row = next(self._rows("SELECT packages FROM elsewhere WHERE name = ?", name), None)
+        return tuple(row[0].split()) if row else ()
+
+    @cached_property
+    def stamp(self) -> str:
+        """Differs whenever the file does."""
+        return hashlib.sha1(self.file.read_bytes()).hexdigest()[:16]
+
+    def _rows(self, query: str, *values: str) -> Iterator[tuple]:
+        try:
+            if self._reader != os.getpid():
+                # No other process may go on with a connection of this one.
+                self._db = sqlite3.connect(f"{self.file.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
+                self._reader = os.getpid()
+            yield from self._db.execute(query, values)
+        except sqlite3.Error as error:
+            raise StoredSurfacesError(f"{self.file}: {error}; make it anew with `rosimpact surface build`") from None
+
+
+@cache
+def shipped() -> Surfaces:
+    """The surfaces that come with the program. Raises SnapshotError when they cannot be read."""
+    try:
+        return Surfaces(DATA / "surfaces.sqlite")
+    except StoredSurfacesError as error:
+        raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
+
+
+def write(file: Path, packages: Mapping[str, Packed], distros: Sequence[str] = (), date: str = "") -> About:
+    """Writes packed packages; a file that is there is replaced as a whole. distros, date: see About."""
+    versions = sum(len(History(name, packed.data, packed.includes).versions) for name, packed in packages.items())
+    about = About(len(packages), versions, " ".join(distros), date)
+    with tempfile.TemporaryDirectory() as folder:
+        fresh = Path(folder, "surfaces.sqlite")
+        _fill(fresh, packages, about)
+        with writing(file) as output:
+            for piece in read_chunks(fresh):
+                output.write(piece)
+    return about
+
+
+def _fill(file: Path, packages: Mapping[str, Packed], about: About) -> None:
+    with closing(sqlite3.connect(file)) as db:
+        db.execute("PRAGMA page_size=512")  # each packed value ends in a page that it fills in part
+        db.executescript(_SCHEMA)
+        db.executemany(
+            "INSERT INTO package VALUES(?, ?, ?, ?)", ((name, *packed) for name, packed in sorted(packages.items()))
+        )
+        db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_elsewhere(packages).items()))
+        db.execute("INSERT INTO headers VALUES(?)", (_headers(packages),))
+        db.execute("INSERT INTO parameters VALUES(?)", (_parameters(packages),))
+        db.execute("INSERT INTO about VALUES(?, ?, ?, ?)", about)
+        db.commit()
+        db.execute("VACUUM")
+
+
+def _elsewhere(packages: Mapping[str, Packed]) -> dict[str, str]:
+    """Names that a package lost and others have or had, with those packages."""
+    lost: dict[str, set[str]] = {}
+    for package, packed in packages.items():
+        for line in unpack(packed.changes).values():
+            for side in ("c++", "header", "python"):
+                for name in line.events.get(side, ()):
+                    lost.setdefault(name, set()).add(package)
+    found: dict[str, set[str]] = {}
+    for package, packed in packages.items():
+        for name in History(package, packed.data, packed.includes).names().keys() & lost.keys():
+            if lost[name] != {package}:
+                found.setdefault(name, set()).add(package)
+    return {name: " ".join(sorted(those)) for name, those in found.items()}
+
+
+def _headers(packages: Mapping[str, Packed]) -> bytes:
+    """Headers that do not lie in a folder called like their package, with the packages that have or had them."""
+    found: dict[str, list[str]] = {}
+    for package, packed in sorted(packages.items()):
+        for header in surface_includes.unpack(packed.includes).headers:
+            if not header.startswith(f"{package}/"):
+                found.setdefault(header, []).append(package)
+    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(dict(sorted(found.items()))))
+
+
+def _parameters(packages: Mapping[str, Packed]) -> bytes:
+    """The last parts of names of parameters that came or went for sure, with the packages they did so in."""
+    found: dict[str, list[str]] = {}
+    for package, packed in sorted(packages.items()):
+        names = {
+            last_part(name)
+            for line in unpack(packed.changes).values()
+            for name, events in line.events.get(PARAMETER, {}).items()
+            if any(told.kind in ("added", "removed") and told.sure >= 1 for event in events for told in event.told)
+        }
+        for name in names:
+            found.setdefault(name, []).append(package)
+    return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(dict(sorted(found.items()))))
