@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.report import Report
 from rosimpact.impact.analysis.session import Options
-from rosimpact.impact.report.report import Report
 from rosimpact.impact.rules.rule import Finding, all_rules
 from rosimpact.impact.tree.paths import IGNORE_MARKERS, Entry, PathProblem, Walked, blob_id, inside
 

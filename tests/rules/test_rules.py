@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 import rule_cases
 from rosimpact.impact.analysis.check import check
+from rosimpact.impact.analysis.report import Report
 from rosimpact.impact.analysis.session import Options
-from rosimpact.impact.report.report import Report
 from rosimpact.impact.rules.rule import all_rules
 from rosimpact.impact.targets.machine.loader import own_machine
 from rule_cases import Case
