@@ -88,7 +88,7 @@ def test_a_file_is_read(file):
         ("```findings", "```finding", ":35: a block is"),
         ("```removed\ndeck/mark", "```removed\ndeck/marks", ":47: there is no file `deck/marks` to remove"),
         ("## A deck of its own", "## A rope is cut", "two sections have the same heading"),
-        ("```text deck/rope.txt", "````text deck/rope.txt", ":7: the block is not closed"),
+        ("```text deck/rope.txt", "`````text deck/rope.txt", ":7: the block is not closed"),
     ],
 )
 def test_what_is_wrong_is_named(file, old, new, error):
