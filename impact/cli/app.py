@@ -17,6 +17,7 @@ from ...classifier.cli import triage
 from ...corpus.cli import app as corpus_app
 from ...corpus.study_cli import app as study_app
 from ...edges.console import UserError, hold_streams, output_failed, say, visible, write
+from .dev import app as dev_app
 
 app = typer.Typer(
     name="rosimpact",
@@ -41,6 +42,7 @@ app.add_typer(corpus_app, name="corpus")
 app.add_typer(classifier_app, name="classifier")
 app.command()(triage)
 app.add_typer(study_app, name="study")
+app.add_typer(dev_app, name="dev", hidden=True)
 
 
 _FOLLOW_LINKS = "Also read what links lead to that leave the workspace. Not for workspaces of people you do not know."
