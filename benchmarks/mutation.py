@@ -1,6 +1,6 @@
 """Changes the code in small ways and counts which of the changes the tests notice.
 
-usage: mutation.py [--rev REV ...] [--number 40] [--seed 1] [--timeout 900] [FOLDER ...]
+usage: mutation.py [--rev REV ...] [--number 40] [--seed 1] [--skip 0] [--timeout 900] [FOLDER ...]
 
 Of the given folders (impact/rules, impact/model and impact/facts without any) `number` places are drawn, in modules as
 likely as they are long, and for each of them one of the changes that cosmic-ray's operators can make there (`pip
@@ -108,14 +108,14 @@ def choose_tests(root: Path, path: str) -> list[list[str]]:
     cases = ["tests/rules/test_rules.py"]
     if room == "rules" and module.count("/") == 3:
         pattern = re.compile(rf"\b{name}\b|\b{name.replace('_', '-')}\b")
-        return [[*cases, "-k", name], cases, *([file] for file in find_tests(root / "tests/rules", pattern))]
+        return [[*cases, "-k", name], [*cases, *find_tests(root / "tests/rules", pattern)]]
     dotted = module.replace("/", r"\.")
     parent, _, last = dotted.rpartition(r"\.")
     pattern = re.compile(rf"rosimpact\.(?:{dotted}\b|{parent} import (?:[\w, ]*\W)?{last}\b)")
     chosen = find_tests(root / "tests" / room, pattern)
     if module.count("/") > 2:
         chosen += [file for file in find_tests(root / "tests" / Path(*module.split("/")[1:-1])) if file not in chosen]
-    return [*([file] for file in chosen), cases]
+    return [[*chosen, *cases]]
 
 
 def find_tests(folder: Path, pattern: re.Pattern[str] = re.compile("")) -> list[str]:
@@ -183,13 +183,15 @@ def main() -> None:
     parser.add_argument("--rev", action="append", default=[], help="a revision; HEAD without any")
     parser.add_argument("--number", type=int, default=40, help="how many changes")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--skip", type=int, default=0, help="how many of them to leave out, the first ones")
     parser.add_argument("--timeout", type=float, default=900, help="seconds for the tests of one change")
     arguments = parser.parse_args()
     revisions = arguments.rev or ["HEAD"]
     with tempfile.TemporaryDirectory(prefix="mutation-") as scratch:
         trees = [make_tree(Path(scratch) / str(at), rev) for at, rev in enumerate(revisions)]
         counts: list[Counter[str]] = [Counter() for _ in revisions]
-        for mutant in draw_mutants(trees[0][0], arguments.folders, arguments.number, arguments.seed):
+        mutants = draw_mutants(trees[0][0], arguments.folders, arguments.number, arguments.seed)
+        for mutant in mutants[arguments.skip :]:
             original = (trees[0][0] / mutant.path).read_text(encoding="utf-8")
             outcomes = [try_mutant(mutant, original, *tree, arguments.timeout) for tree in trees]
             for count, outcome in zip(counts, outcomes, strict=True):
