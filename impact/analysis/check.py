@@ -57,15 +57,17 @@ def check(
     options: Options = DEFAULTS,
     progress: Progress | None = None,
     *,
+    tree: Tree | None = None,
     base_tree: Tree | None = None,
 ) -> Report:
     """Checks a workspace and says what breaks, and for whom.
 
     path: a workspace, package, or git repository. progress: called with (done, total) bytes while files are parsed.
-    base_tree: the tree to compare with, instead of the revision that the options name.
+    tree: what is read instead of what is at the path. base_tree: the tree to compare with, instead of the revision that
+    the options name.
     Raises CheckError, TreeError, TargetError, SettingsError, SnapshotError or ConfigError with a text for the user.
     """
-    return run(path, options, progress, base_tree=base_tree).report
+    return run(path, options, progress, tree=tree, base_tree=base_tree).report
 
 
 def run(
@@ -73,11 +75,12 @@ def run(
     options: Options = DEFAULTS,
     progress: Progress | None = None,
     *,
+    tree: Tree | None = None,
     base_tree: Tree | None = None,
 ) -> Checked:
     """check(), with the configuration and the tree that it was made with. Raises as check() does."""
     started = time.perf_counter()
-    with open_workspace(path, options, progress, lambda config: select_rules(options, config)) as opened:
+    with open_workspace(path, options, progress, lambda config: select_rules(options, config), tree) as opened:
         return check_opened(path, options, opened, base_tree=base_tree, started=started)
 
 

@@ -129,10 +129,10 @@ def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
 
 
 def load_settings(root: Path, tree: Tree, file: Path | None, *, follow_links: bool = False) -> Config:
-    """The configuration: the file given, else rosimpact.toml on disk, else that of the revision. Raises ConfigError."""
+    """The configuration: the file given, else rosimpact.toml on disk, else that of the tree. Raises ConfigError."""
     config = load(root, file, follow_links=follow_links)
     name = "rosimpact.toml"
-    if config.path is None and isinstance(tree, GitTree) and tree.exists(name) and not tree.is_dir(name):
+    if config.path is None and not isinstance(tree, WorkingTree) and tree.exists(name) and not tree.is_dir(name):
         try:
             data = tree.read(name, limits().settings)
         except OSError as error:

@@ -17,6 +17,7 @@ from ...classifier.cli import triage
 from ...corpus.cli import app as corpus_app
 from ...corpus.study_cli import app as study_app
 from ...edges.console import UserError, hold_streams, output_failed, say, visible, write
+from .dev import app as dev_app
 
 app = typer.Typer(
     name="rosimpact",
@@ -43,6 +44,7 @@ app.add_typer(corpus_app, name="corpus")
 app.add_typer(classifier_app, name="classifier")
 app.command()(triage)
 app.add_typer(study_app, name="study")
+app.add_typer(dev_app, name="dev", hidden=True)
 
 
 _FOLLOW_LINKS = "Follow links that lead out of the workspace. Do not use it on workspaces that you do not trust."
