@@ -19,7 +19,7 @@ STEPS = 2
 HEAD = """\
 # What a rule can ask
 
-A rule is given a `View`: the workspace (`view.workspace`) as one target (`view.target`) sees it. It yields `Diagnostic`s.
+A rule gets a `View`: the workspace (`view.workspace`) as one target (`view.target`) sees it. It yields `Diagnostic`s.
 These are their public attributes and methods, and those of the types that they return, each with the first sentence of
 its docstring. What no row explains is explained where the type is defined.
 """
