@@ -213,7 +213,7 @@ def test_rules_run_only_when_a_digest_changed(ws, run, monkeypatch, edit, anew):
     run(ws, "kept")
     edit(ws)
     ran = []
-    monkeypatch.setattr(memo, "remember", lambda store, view, *rest: ran.append(view.target.name))
+    monkeypatch.setattr(memo, "store_results", lambda store, view, *rest: ran.append(view.target.name))
     run(ws, "kept")
     assert ran == (["jazzy", "humble"] if anew else [])
 

@@ -27,12 +27,14 @@ from ..text import Text
     scope="workspace",
     severity="warning",
     group="unreadable-file",
-    texts=Text("{problem}", help="rename one of the packages, or put a COLCON_IGNORE into the folder of one of them"),
+    texts=Text(
+        "not analysed, because another package named `{name}` is in {folder}",
+        help="rename one of the packages, or put a COLCON_IGNORE into the folder of one of them",
+    ),
 )
 def duplicate_package(workspace: Workspace):
-    duplicates = {place.manifest_path for place in workspace.hidden}
-    for problem in workspace.gathered.problems:
-        if problem.path in duplicates:
-            owner = workspace.discovered.owner(problem.path)
-            package = owner.name if owner else ""
-            yield Diagnostic(At(problem.path, 1), problem.path, package, {"problem": problem.message})
+    folders = {package.name: package.path for package in workspace}
+    for place in workspace.hidden:
+        owner = workspace.discovered.owner(place.manifest_path)
+        data = {"name": place.name, "folder": folders.get(place.name) or "."}
+        yield Diagnostic(At(place.manifest_path, 1), place.manifest_path, owner.name if owner else "", data)
