@@ -167,7 +167,7 @@ def _result(future: Any, address: str, job: Job) -> Result:
     return result
 
 
-_KEPT = "what was read is kept, and the next run goes on from there"
+_KEPT = "what was read is kept, and the next run continues from there"
 
 
 def _wait(client: Any, ended: Any, address: str) -> None:

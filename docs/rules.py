@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from itertools import groupby
 
-from rosimpact.impact.rules.rule import Rule, all_rules
+from rosimpact.impact.rules.explain import summarize
+from rosimpact.impact.rules.rule import Rule, all_rules, groups
 
 FAMILIES = {
     "api": "What other packages and libraries offer, and used to offer.",
@@ -20,12 +21,23 @@ FAMILIES = {
 HEAD = """\
 # Rules
 
-Every rule with its usual severity; a single finding may be graver or milder, as the rule's documentation says.
-`rosimpact explain RULE` prints that documentation: what it reports, why it breaks, an example, what to use instead, and
-what it leaves alone. The links lead to the same text, at the top of each rule.
+All rules with their usual severity; a single finding can have another one, as the rule's documentation says.
+`rosimpact explain RULE` prints that documentation: what the rule reports, why it breaks, an example, what to use
+instead, and what it does not report. The links lead to the same text, at the top of each rule.
 
-How rules and whole families are chosen, silenced and given another severity is in [findings.md](findings.md) and
-[configuration.md](configuration.md).
+[findings.md](findings.md) and [configuration.md](configuration.md) describe how to select rules and families, how to
+suppress findings and how to change severities.
+"""
+
+
+GROUPS = """
+## Groups
+
+A group is the name of a rule that was split into several. In settings, comments and baselines it still stands for all
+of its rules. The name of a rule is more specific than that of its group.
+
+| group | rules |
+|---|---|
 """
 
 
@@ -35,6 +47,9 @@ def page() -> str:
     for family, rules in groupby(sorted(all_rules().values(), key=lambda rule: rule.family), lambda rule: rule.family):
         parts.append(f"\n## {family}\n\n{FAMILIES[family]}\n\n| rule | severity | what it reports |\n|---|---|---|\n")
         parts += [row(rule) for rule in rules]
+    parts.append(GROUPS)
+    for name, members in groups(all_rules()).items():
+        parts.append(f"| `{name}` | {', '.join(f'`{rule.name}`' for rule in members)} |\n")
     return "".join(parts)
 
 
@@ -42,7 +57,7 @@ def row(rule: Rule) -> str:
     """One line of a table. The rule's file is named as the rule is, with underscores."""
     path = f"../impact/rules/{rule.family}/{rule.name.replace('-', '_')}.py"
     severity = rule.severity + (", preview" if rule.preview else "")
-    summary = rule.documentation.splitlines()[0].partition(": ")[2].rstrip(".").replace("|", "\\|")
+    summary = summarize(rule).rstrip(".").replace("|", "\\|")
     return f"| [`{rule.name}`]({path}) | {severity} | {summary} |\n"
 
 

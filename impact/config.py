@@ -99,7 +99,7 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
     except (DocumentError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path}: cannot be read: {error}; correct the file or remove it") from None
     if _has_null(tables):
-        raise ConfigError(f"{path}: holds a null byte, which no name or path can; take it out")
+        raise ConfigError(f"{path}: contains a null byte, which no name or path can contain; remove it")
     for key in tables:
         if key not in _TABLES:
             raise ConfigError(

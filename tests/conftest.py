@@ -24,6 +24,10 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--update-cases", action="store_true", help="write the findings that cases of rules expect")
+
+
 class Said(NamedTuple):
     """What a command said, and its exit status."""
 
@@ -133,14 +137,21 @@ def say(capfd, cache, monkeypatch) -> Callable[..., Said]:
     return run
 
 
-_IN_ONE_PROCESS = ("rules", "model", "report", "targets", "facts")
-"""Folders of tests that look at what is found, not at how it is divided among processes; that has tests of its own."""
+_IN_ONE_PROCESS = {
+    "rules", "model", "report", "targets", "facts", "flow", "test_bad_input.py", "test_base.py", "test_check.py",
+    "test_cli.py", "test_findings.py", "test_fix.py", "test_guarded.py", "test_impact_command.py", "test_installed.py",
+    "test_one_change.py", "test_upgrade.py", "test_why.py",
+}  # fmt: skip
+"""Folders and files of tests that look at what is found, not at how it is divided among processes; that has tests of
+its own (test_processes.py, test_gather.py, test_signals.py, test_same_every_time.py, hostile/)."""
 
 
 @pytest.fixture(autouse=True)
 def one_process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A fork of a process that has grown to a gigabyte of tests takes longer than most of them."""
+    """A forked process decodes anew what the tests before it have decoded already, and a fork of a process that has
+    grown to a gigabyte of tests takes longer than most of them."""
     if request.path.relative_to(Path(__file__).parent).parts[0] in _IN_ONE_PROCESS:
         from rosimpact.edges import processes
 
         monkeypatch.setattr(processes, "may_fork", lambda: False)
+        monkeypatch.setattr(processes, "cores", lambda: 1)

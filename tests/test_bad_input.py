@@ -17,7 +17,7 @@ from typing import NamedTuple
 import pygit2
 import pytest
 from rosimpact.impact.targets import snapshot
-from rosimpact.impact.targets.providers.providers import providers
+from rosimpact.impact.targets.providers import providers
 
 MANIFEST = """<?xml version="1.0"?>
 <package format="3">

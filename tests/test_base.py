@@ -265,7 +265,7 @@ def test_a_workspace_that_a_repository_links_elsewhere(tmp_path, target, tracked
     if not tracked:
         (tmp_path / "work/ws").symlink_to(target)
     if refused:
-        with pytest.raises(TreeError, match="leads out of it, and is not followed"):
+        with pytest.raises(TreeError, match="leads out of its repository, and is not followed"):
             check(tmp_path / "work/ws")
     found = check(tmp_path / "work/ws", Options(follow_links=refused))
     assert [f.package for f in found.findings if f.severity == "error"] == ["a"]
@@ -275,7 +275,7 @@ def test_a_workspace_that_a_repository_links_elsewhere(tmp_path, target, tracked
 def test_a_package_that_another_of_its_name_stands_for_is_a_warning(tmp_path, folder):
     package(tmp_path / "a", WRONG)
     package(tmp_path / folder / "a")
-    told = [f for f in check(tmp_path, JAZZY).findings if "not analysed, since another package named" in f.message]
+    told = [f for f in check(tmp_path, JAZZY).findings if "not analysed, because another package named" in f.message]
     assert [finding.severity for finding in told] == ["warning"]
 
 

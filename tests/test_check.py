@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 import rosimpact.impact
-from rosimpact.impact.analysis.check import check, check_workspace, holds
+from rosimpact.impact.analysis.check import check, check_workspace, is_right_on
 from rosimpact.impact.analysis.findings import SettingsError
 from rosimpact.impact.analysis.session import CheckError, Options, open_workspace
 from rosimpact.impact.config import ConfigError, load
@@ -100,7 +100,7 @@ def test_a_target_more_takes_nothing_away():
 def test_a_cure_is_right_elsewhere_only_where_that_is_known(cure, on_jazzy, on_humble):
     with open_workspace(EXAMPLE, Options(targets=("jazzy", "humble"))) as opened:
         jazzy, humble = opened.views
-        assert (holds(cure, jazzy), holds(cure, humble)) == (on_jazzy, on_humble)
+        assert (is_right_on(cure, jazzy), is_right_on(cure, humble)) == (on_jazzy, on_humble)
 
 
 def test_configuration(tmp_path):

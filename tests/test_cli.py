@@ -161,12 +161,12 @@ def test_a_baseline(say, ws, tmp_path):
     assert {"Boost", "OpenCV"} <= {entry["subject"] for entry in json.loads(known.read_text())["findings"]}
 
 
-def test_pruning_a_baseline_takes_out_what_is_cured_and_adds_nothing(say, ws, tmp_path):
+def test_pruning_a_baseline_removes_fixed_findings_and_adds_nothing(say, ws, tmp_path):
     known = tmp_path / "known.json"
     say("check", ws, "-t", "jazzy", "--write-baseline", known)
     (ws / "a/CMakeLists.txt").write_text(CMAKE.format("find_package(Boost 9.9 REQUIRED)\n"))
     said = say("check", ws, "-t", "jazzy", "--baseline", known, "--prune-baseline")
-    assert said.status == 1 and "1 cured" in said.err
+    assert said.status == 1 and "1 fixed, removed" in said.err
     assert "OpenCV" not in known.read_text() and "Boost" not in known.read_text()
 
 
@@ -367,6 +367,12 @@ def test_explain_lists_the_rules_and_knows_no_others(say):
     assert all(f"  {rule} " in listed for rule in all_rules())
     said = say("explain", "removed-haeder")
     assert said.status == 2 and "did you mean `removed-header`" in said.err
+
+
+def test_explain_knows_groups(say):
+    assert "  changed-constant           changed-constant, removed-constant\n" in say("explain").out
+    said = say("explain", "changed-constant").out
+    assert said.startswith("changed-constant: ") and "\nThe name also stands for\n    removed-constant: " in said
 
 
 def test_why(say):

@@ -62,7 +62,7 @@ def filled(workspace, tmp_path_factory) -> tuple[Path, int, dict]:
 def test_any_change_of_any_file_gives_the_same_answer(workspace, filled, say, tmp_path, monkeypatch):
     """In this process, which is many times faster than one for each change."""
     from rosimpact.impact.targets import snapshot
-    from rosimpact.impact.targets.providers.providers import providers
+    from rosimpact.impact.targets.providers import providers
 
     cache, status, expected = filled
     chance = random.Random(15)

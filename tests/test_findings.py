@@ -11,30 +11,30 @@ from hypothesis import strategies as st
 from rosimpact.impact.analysis.findings import (
     SettingsError,
     _reach,
-    baseline,
-    checked,
-    chosen,
+    add_fingerprints,
+    apply_settings,
+    choose_rules,
     fails,
-    fingerprinted,
+    format_baseline,
     glob_matches,
-    joined,
-    known_from,
-    marked_new,
+    join_texts,
+    mark_new,
     merge,
-    pruned,
-    suppressed,
-    with_settings,
-    without_known,
+    prune_baseline,
+    read_baseline,
+    split_by_baseline,
+    suppress,
+    verify_settings,
 )
 from rosimpact.impact.config import PathSetting
 from rosimpact.impact.facts.place import Allow
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Edit, Finding, Hit, Rule
+from rosimpact.impact.rules.rule import Edit, Finding, Hit, Rule, groups
 from rosimpact.impact.targets.evidence import Evidence
 
 TARGETS = ("humble", "jazzy", "rolling")
 RULES = {
-    name: Rule(name, family, severity, preview, True, lambda: iter(()), "")
+    name: Rule(name, family, severity, lambda: iter(()), preview=preview)
     for name, family, severity, preview in (
         ("removed-header", "api", "error", False),
         ("deprecated-name", "api", "note", True),
@@ -43,7 +43,16 @@ RULES = {
         ("unused-suppression", "sources", "note", False),
     )
 }
-FAMILIES = {name: rule.family for name, rule in RULES.items()}
+# `lost-name` was a rule, and is three now; of `lost-header` nothing is left under its own name.
+SPLIT = RULES | {
+    name: Rule(name, "api", "error", lambda: iter(()), group=group, preview=preview)
+    for name, group, preview in (
+        ("lost-name", "", False),
+        ("lost-macro", "lost-name", False),
+        ("lost-type", "lost-name", True),
+        ("lost-c-header", "lost-header", False),
+    )
+}
 FIX = (Edit("a.xml", 0, 0, "x"),)
 
 
@@ -153,12 +162,12 @@ JOINED = [
 
 @pytest.mark.parametrize(("texts", "expected"), JOINED)
 def test_joined(texts, expected):
-    assert joined(list(texts.items())) == expected
+    assert join_texts(list(texts.items())) == expected
 
 
 @given(st.dictionaries(st.sampled_from(["jazzy", "rolling", "robot"]), st.text("ab` ,;1.", max_size=12), min_size=1))
 def test_joined_drops_no_word(texts):
-    result = joined(list(texts.items()))
+    result = join_texts(list(texts.items()))
     for text in texts.values():
         assert all(word in result for word in re.findall(r"\w+", text))
 
@@ -222,7 +231,7 @@ COMPARED = [
 
 @pytest.mark.parametrize(("now", "base", "expected"), COMPARED)
 def test_what_is_new_against_a_base(now, base, expected):
-    assert [each.new for each in marked_new(now, base)] == expected
+    assert [each.new for each in mark_new(now, base)] == expected
 
 
 # (select, ignore, preview, rules that run)
@@ -242,12 +251,81 @@ CHOSEN = [
 
 @pytest.mark.parametrize(("select", "ignore", "preview", "expected"), CHOSEN)
 def test_chosen(select, ignore, preview, expected):
-    assert set(chosen(RULES, select=select, ignore=ignore, preview=preview)) == expected
+    assert set(choose_rules(RULES, select=select, ignore=ignore, preview=preview)) == expected
+
+
+# (select, ignore, preview, rules that run of those that were split)
+CHOSEN_GROUPS = [
+    ((), (), False, {"lost-name", "lost-macro", "lost-c-header"}),
+    (("lost-name",), (), False, {"lost-name", "lost-macro", "lost-type"}),
+    (("lost-header",), (), False, {"lost-c-header"}),
+    ((), ("lost-name",), True, {"lost-c-header"}),
+    # a rule's own name is more specific than that of its group, and that more than the family
+    (("lost-macro",), ("lost-name",), False, {"lost-macro"}),
+    (("lost-name",), ("lost-macro",), False, {"lost-name", "lost-type"}),
+    (("lost-name",), ("api",), False, {"lost-name", "lost-macro", "lost-type"}),
+    (("api",), ("lost-name",), False, {"lost-c-header"}),
+]
+
+
+@pytest.mark.parametrize(("select", "ignore", "preview", "expected"), CHOSEN_GROUPS)
+def test_the_name_of_a_group_means_its_rules(select, ignore, preview, expected):
+    found = choose_rules(SPLIT, select=select, ignore=ignore, preview=preview)
+    assert {name for name in found if name.startswith("lost")} == expected
+
+
+@pytest.mark.parametrize(
+    ("severity", "expected"),
+    [
+        ({"lost-name": "note"}, ["note", "note", "error"]),
+        ({"lost-name": "note", "lost-macro": "warning"}, ["note", "warning", "error"]),
+        ({"lost-name": "warning", "api": "note"}, ["warning", "warning", "note"]),
+        ({"lost-header": "off"}, ["error", "error"]),
+    ],
+)
+def test_severities_of_groups(severity, expected):
+    findings = [finding(rule) for rule in ("lost-name", "lost-macro", "lost-c-header")]
+    settings = verify_settings([PathSetting("**", severity=severity)], SPLIT)
+    assert [each.severity for each in apply_settings(findings, settings, SPLIT)] == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "ran", "stay", "unused"),
+    [
+        ("lost-name", SPLIT, ["lost-c-header"], []),
+        ("lost-macro", SPLIT, ["lost-name", "lost-c-header"], []),
+        ("lost-header", SPLIT, ["lost-name", "lost-macro"], []),
+        # no rule of the group ran, so that the comment cannot be called unused
+        ("lost-header", ("lost-name",), ["lost-name"], []),
+        ("lost-name", ("lost-type", "lost-c-header"), ["lost-c-header"], [("a.cpp", 1, "lost-name")]),
+        ("lost-type", SPLIT, ["lost-name", "lost-macro", "lost-c-header"], [("a.cpp", 1, "lost-type")]),
+    ],
+)
+def test_comments_that_name_a_group(name, ran, stay, unused):
+    found = [finding(rule) for rule in ("lost-name", "lost-macro", "lost-c-header") if rule in ran]
+    outcome = suppress(found, {"a.cpp": [Allow(1, (name,), False)]}, rules=SPLIT, ran=ran)
+    assert [each.rule for each in outcome.kept] == stay
+    assert outcome.unused == unused
+
+
+def test_a_rule_that_was_split_keeps_its_fingerprints():
+    def merged_as(rule, rules):
+        found = merge([(rule, "", hit())], targets=(), rules=rules, line_text=lambda path, line: "x")
+        return found[0].fingerprint
+
+    assert merged_as("lost-macro", SPLIT) == merged_as("lost-name", SPLIT)
+    assert merged_as("lost-c-header", SPLIT) == merged_as("lost-header", RULES)
+    assert merged_as("lost-c-header", SPLIT) != merged_as("lost-c-header", RULES)
+
+
+def test_groups_by_name():
+    listed = {name: [rule.name for rule in members] for name, members in groups(SPLIT).items()}
+    assert listed == {"lost-header": ["lost-c-header"], "lost-name": ["lost-name", "lost-macro", "lost-type"]}
 
 
 def test_an_unknown_rule_is_named_with_the_nearest():
     with pytest.raises(SettingsError, match=r"`removed-headers`; did you mean `removed-header`\?"):
-        chosen(RULES, select=("removed-headers",))
+        choose_rules(RULES, select=("removed-headers",))
 
 
 GLOBS = [
@@ -307,7 +385,7 @@ def test_settings_by_path(settings, expected):
         finding("unused-dependency", path="src/v/package.xml", severity="note"),
         finding(path="src/w/a.cpp"),
     ]
-    assert [each.severity for each in with_settings(findings, settings, FAMILIES)] == expected
+    assert [each.severity for each in apply_settings(findings, settings, RULES)] == expected
 
 
 @pytest.mark.parametrize(
@@ -319,7 +397,7 @@ def test_settings_by_path(settings, expected):
 )
 def test_settings_that_cannot_be_obeyed_are_named(setting, message):
     with pytest.raises(SettingsError, match=message) as error:
-        checked([setting], RULES)
+        verify_settings([setting], RULES)
     assert '[paths."src"]' in str(error.value)
 
 
@@ -347,34 +425,34 @@ ALLOWED = [
 def test_suppression(comments, stay, unused):
     findings = [finding(line=line) for line in (2, 3, 4)]
     ran = {"removed-header", "undeclared-package", "unused-dependency"}
-    outcome = suppressed(findings, {"a.cpp": comments}, families=FAMILIES, ran=ran)
+    outcome = suppress(findings, {"a.cpp": comments}, rules=RULES, ran=ran)
     assert [each.line for each in outcome.kept] == stay
     assert len(outcome.kept) + len(outcome.suppressed) == 3
     assert outcome.unused == unused
 
 
 def test_a_comment_holds_for_its_own_file_only():
-    outcome = suppressed([finding()], {"b.cpp": [Allow(1, ("*",), False)]}, families=FAMILIES, ran=set(RULES))
+    outcome = suppress([finding()], {"b.cpp": [Allow(1, ("*",), False)]}, rules=RULES, ran=set(RULES))
     assert outcome.kept == [finding()]
     assert outcome.unused == [("b.cpp", 1, "*")]
 
 
 def test_baseline_knows_by_content_and_count():
     old = [finding(mark="1"), finding(mark="1"), finding(mark="2")]
-    known = known_from(baseline(old))
+    known = read_baseline(format_baseline(old))
     now = [finding(mark="1", line=40), finding(mark="1"), finding(mark="1"), finding(mark="3")]
-    fresh, seen = without_known(now, known)
+    fresh, seen = split_by_baseline(now, known)
     assert [each.fingerprint for each in fresh] == ["1", "3"]
     assert len(seen) == 2
-    text, gone = pruned(known, now)
+    text, gone = prune_baseline(known, now)
     assert gone == 1
-    assert known_from(text) == {"1": 2}, "what is cured goes, what is new is not added"
+    assert read_baseline(text) == {"1": 2}, "what is cured goes, what is new is not added"
 
 
 def test_baseline_is_the_same_for_the_same_findings_in_any_order():
     findings = [finding(mark=str(mark), path=f"{mark % 3}.cpp\udcff") for mark in range(9)]
-    text = baseline(findings)
-    assert text == baseline(findings[::-1])
+    text = format_baseline(findings)
+    assert text == format_baseline(findings[::-1])
     assert json.loads(text.encode())["schema"] == 1
 
 
@@ -394,7 +472,7 @@ def test_baseline_is_the_same_for_the_same_findings_in_any_order():
 )
 def test_what_is_no_baseline_is_refused_with_advice(text):
     with pytest.raises(SettingsError, match="baseline"):
-        known_from(text)
+        read_baseline(text)
 
 
 @pytest.mark.parametrize(
@@ -414,9 +492,9 @@ def test_fail_on(severity, new, fail_on, expected):
 
 def test_counts_of_a_baseline_have_a_limit():
     entries = ({"fingerprint": name, "count": count} for name, count in (("a", 10**4000), ("b", -3), ("c", 2)))
-    known = known_from(json.dumps({"schema": 1, "findings": list(entries)}))
+    known = read_baseline(json.dumps({"schema": 1, "findings": list(entries)}))
     assert known["a"] == 1_000_000 and known["b"] == 0 and known["c"] == 2
-    assert pruned(known, [])[1] == 1_000_002
+    assert prune_baseline(known, [])[1] == 1_000_002
 
 
 def test_a_block_of_comments_is_walked_once():
@@ -439,7 +517,7 @@ def test_a_long_line_with_many_findings_is_read_once():
 
     found = [Finding("rule", "note", "p", "a.cpp", 1, column, f"name{column}", (), "") for column in range(1, 2_000)]
     started = time.process_time()
-    prints = {finding.fingerprint for finding in fingerprinted(found, line_text)}
+    prints = {finding.fingerprint for finding in add_fingerprints(found, line_text)}
     assert time.process_time() - started < 2
     assert asked == [("a.cpp", 1)]
     assert len(prints) == len(found)

@@ -15,7 +15,7 @@ from rosimpact.impact.analysis.fix import (
     declare_dependency,
     fixes,
     insert_lines,
-    made,
+    make_fixes,
     offset_of,
     remove_dependency,
     replace_text,
@@ -347,7 +347,7 @@ PROPOSED = [
 @pytest.mark.parametrize(("proposed", "before", "after", "kept"), PROPOSED)
 def test_what_rules_propose_becomes_edits(proposed, before, after, kept):
     files = {"package.xml": manifest(before)}
-    findings = made([wish(*fix) for fix in proposed], files.get)
+    findings = make_fixes([wish(*fix) for fix in proposed], files.get)
     assert sum(bool(finding.fix) for finding in findings) == kept
     outcome = apply(fixes(findings), files.get)
     assert outcome.refused == []

@@ -104,7 +104,7 @@ def test_a_revision_against_itself_reaches_nothing(ws: Path, say):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        ((), "--base: needed"),
+        ((), "--base: missing"),
         (("--base", "nowhere"), "nowhere"),
         (("--base", "HEAD", "-f", "dot"), "--format dot: unknown; choose one of text, json, markdown"),
     ],
@@ -119,13 +119,13 @@ def test_what_cannot_be_done_is_said_in_a_line(ws: Path, say, arguments: tuple[s
 def test_check_says_it_after_the_findings(ws: Path, say):
     said = say("check", ws, "--base", "HEAD", "-t", "jazzy")
     assert said.status == 0
-    section = said.out.partition("what this change reaches\n")[2].splitlines()
+    section = said.out.partition("affected by this change\n")[2].splitlines()
     assert section[:3] == [
         "  tightened  /bell  (/ring)  bell/bell/ring.py:15",
         "      only when `self.rope`",
         "      reaches /hear",
     ]
-    assert "what this change reaches" not in say("check", ws, "-t", "jazzy").out
+    assert "affected by this change" not in say("check", ws, "-t", "jazzy").out
 
 
 def test_check_says_it_to_machines(ws: Path, say):

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import rule_cases
 from rosimpact.impact.analysis import result_cache as memo
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options, open_workspace
@@ -18,7 +19,6 @@ from rosimpact.impact.model.view import View
 from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import all_rules
 
-HERE = Path(__file__).parent
 MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>d</description>
 <maintainer email="a@b.org">a</maintainer><license>MIT</license><buildtool_depend>ament_cmake</buildtool_depend>
 {depends}<export><build_type>ament_cmake</build_type></export></package>
@@ -213,7 +213,7 @@ def test_rules_run_only_when_a_digest_changed(ws, run, monkeypatch, edit, anew):
     run(ws, "kept")
     edit(ws)
     ran = []
-    monkeypatch.setattr(memo, "remember", lambda store, view, *rest: ran.append(view.target.name))
+    monkeypatch.setattr(memo, "store_results", lambda store, view, *rest: ran.append(view.target.name))
     run(ws, "kept")
     assert ran == (["jazzy", "humble"] if anew else [])
 
@@ -235,15 +235,16 @@ class _Unseen:
         raise AssertionError(f"a rule asked for `{name}` of what is no digest")
 
 
-CASES = sorted(path for path in (HERE / "rules").glob("*/*/before") if path.is_dir())
+CASES = [case for case in rule_cases.find_cases() if case.findings]
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda path: path.parent.name)
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_rules_per_target_see_nothing_but_digests(case, cache, tmp_path, monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
-    rules = [rule for rule in all_rules().values() if rule.per_target]
-    with open_workspace(case, Options(targets=("jazzy", "noetic"), cache=tmp_path / "facts")) as opened:
+    rules = [rule for rule in all_rules().values() if rule.scope == "target"]
+    options, tree = Options(targets=("jazzy", "noetic"), cache=tmp_path / "facts"), rule_cases.MemoryTree(case.files)
+    with open_workspace("case", options, tree=tree) as opened:
         for view in opened.views:
             whole = [list(rule.run(view)) for rule in rules]
             digests = [package.digest for package in opened.workspace]

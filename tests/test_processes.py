@@ -87,7 +87,7 @@ def test_a_rule_that_fails_on_one_package_is_named_once(tmp_path, at_once, monke
             yield from ()
 
     rules = {**all_rules(), "unresolvable-key": rule._replace(run=run)}
-    monkeypatch.setattr("rosimpact.impact.analysis.check.all_rules", lambda: rules)
+    monkeypatch.setattr("rosimpact.impact.analysis.session.all_rules", lambda: rules)
     report = check(ws, Options(("humble", "jazzy"), jobs=2, cache=tmp_path / "cache"))
     assert report.failure.count("the rule unresolvable-key failed on humble, jazzy: RuntimeError") == 1
     assert any(finding.rule == "undeclared-package" for finding in report.findings)
@@ -204,7 +204,7 @@ def test_a_process_that_dies_once_loses_nothing(tmp_path, at_once, monkeypatch):
     assert died.exists() and told(alone) == told(together)
     died.unlink()
     monkeypatch.setattr(workspace, "_join", join)
-    monkeypatch.setattr(judge, "_part", dying(judge._part))
+    monkeypatch.setattr(judge, "_run_part", dying(judge._run_part))
     together = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "three"))
     assert died.exists() and told(alone) == told(together)
 
@@ -247,7 +247,7 @@ def test_rules_that_end_their_process_on_a_package_are_named_and_lose_no_other(t
     def of_link_4(opened, rules, packages, size, task):
         return "link_4" in packages[task[1] : task[1] + size]
 
-    monkeypatch.setattr(judge, "_part", _dying_on(judge._part, of_link_4))
+    monkeypatch.setattr(judge, "_run_part", _dying_on(judge._run_part, of_link_4))
     report = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "two"))
     assert "the check of `link_4` crashed" in report.failure
     found = [f for f in report.findings if f.package != "link_4" and "link_4" not in f.message]
@@ -264,15 +264,15 @@ def test_a_rule_that_comes_to_no_end_costs_its_package_alone(tmp_path, monkeypat
     """In a workspace that is too small for several processes."""
     ws = ring(tmp_path / "ws", 3)
     whole = check(ws, Options(("jazzy",), cache=tmp_path / "one"))
-    part = judge._part
+    part = judge._run_part
 
     def of_link_1(opened, rules, packages, size, task):
         here = "link_1" in packages[task[1] : task[1] + size]
         return part(opened, endless if here else rules, packages, size, task)
 
     endless = [next(iter(all_rules().values()))._replace(run=_endless)]
-    monkeypatch.setattr(judge, "_part", of_link_1)
-    monkeypatch.setattr(judge, "_bytes", lambda workspace, packages: -900_000)
+    monkeypatch.setattr(judge, "_run_part", of_link_1)
+    monkeypatch.setattr(judge, "_estimate_bytes", lambda workspace, packages: -900_000)
     monkeypatch.setattr(judge, "_PACKAGE_BYTES", 0)
     report = check(ws, Options(("jazzy",), cache=tmp_path / "two"))
     assert "the check of `link_1` needed too much time" in report.failure
@@ -285,7 +285,7 @@ def test_a_rule_that_comes_to_no_end_costs_its_package_alone(tmp_path, monkeypat
 def test_a_message_flow_that_comes_to_no_end_costs_its_rules_alone(tmp_path, monkeypatch):
     ws = ring(tmp_path / "ws", 3)
     whole = check(ws, Options(("jazzy",), cache=tmp_path / "one"))
-    monkeypatch.setattr(judge, "_flow_part", lambda *arguments: os.kill(os.getpid(), signal.SIGSEGV))
+    monkeypatch.setattr(judge, "_run_flow_part", lambda *arguments: os.kill(os.getpid(), signal.SIGSEGV))
     report = check(ws, Options(("jazzy",), preview=True, cache=tmp_path / "two"))
     assert report.failure.endswith("failed: the check of the message flow crashed")
     names = {f.rule for f in whole.findings}

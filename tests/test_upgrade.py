@@ -9,7 +9,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from rosimpact.impact.analysis.target_compare import compared, items
+from rosimpact.impact.analysis.target_compare import compare_findings, group_items
 from rosimpact.impact.rules.rule import Finding
 
 ROOT = Path(__file__).parents[1]
@@ -81,7 +81,7 @@ def test_the_verdict_comes_first_and_the_work_in_build_order(say, ws):
     said = say("upgrade", ws, "--from", "humble", "--to", "kilted")
     assert (said.status, said.err) == (1, "")
     lines = said.out.splitlines()
-    assert lines[0] == "humble → kilted breaks 2 of 4 packages: 2 errors to work off, in 3 places"
+    assert lines[0] == "humble → kilted breaks 2 of 4 packages: 2 errors to fix, in 3 places"
     assert lines[1] == f"  2 of 2 items can be fixed: rosimpact check {ws} --target kilted --fix"
     titles = [line for line in lines if " of 2: " in line]
     assert titles == ["1 of 2: zoom", "2 of 2: arm"]
@@ -91,7 +91,7 @@ def test_the_verdict_comes_first_and_the_work_in_build_order(say, ws):
     assert "  help: include `cv_bridge/cv_bridge.hpp`, there since iron" in first
     assert "deprecated on kilted" in lines and "StaticSingleThreadedExecutor` is deprecated" in said.out
     assert "OpenCV" not in said.out, "what is broken on both is counted alone"
-    assert f"1 error on humble already: rosimpact check {ws} --target humble lists it" in lines[-1]
+    assert f"1 error already on humble: rosimpact check {ws} --target humble lists it" in lines[-1]
 
 
 def test_what_it_says_can_be_fixed_is_fixed_by_the_command_it_names(say, ws):
@@ -103,7 +103,7 @@ def test_what_it_says_can_be_fixed_is_fixed_by_the_command_it_names(say, ws):
     assert say(*shlex.split(command)[1:]).status == 1, "OpenCV 9 is nowhere"
     said = say("upgrade", ws, "--from", "humble", "--to", "kilted")
     assert said.status == 0
-    assert said.out.splitlines()[0] == "humble → kilted is safe: nothing that is known breaks in 4 packages"
+    assert said.out.splitlines()[0] == "humble → kilted is safe: no known break in 4 packages"
     assert "error of humble is" not in said.out and "can be fixed" not in said.out
 
 
@@ -127,7 +127,7 @@ def test_json_is_what_the_schema_says(say, ws):
     ]
     assert report["verdict"] == {
         "safe": False, "packages": 2, "errors": 2, "warnings": 0, "places": 3,
-        "text": "humble → kilted breaks 2 of 4 packages: 2 errors to work off, in 3 places",
+        "text": "humble → kilted breaks 2 of 4 packages: 2 errors to fix, in 3 places",
     }  # fmt: skip
     assert report["fix"]["items"] == 2 and report["work"][0]["items"][0]["fixable"] == 2
     assert report["both"] == {"error": 1, "warning": 0, "note": 0}
@@ -171,14 +171,14 @@ def test_a_warning_fails_when_asked_to(say, tmp_path):
     )
     asked = ("upgrade", ws, "--from", "humble", "--to", "jazzy")
     said = say(*asked)
-    assert said.out.splitlines()[0] == "humble → jazzy may break 1 of 1 package: 1 warning to work off, in 1 place"
+    assert said.out.splitlines()[0] == "humble → jazzy may break 1 of 1 package: 1 warning to fix, in 1 place"
     assert said.status == 0
     assert say(*asked, "--fail-on", "warning").status == 1
 
 
 def test_only_packages_that_were_asked_for(say, ws):
     said = say("upgrade", ws, "--from", "humble", "--to", "kilted", "--packages", "zoom")
-    assert said.out.splitlines()[0] == "humble → kilted breaks 1 of 1 package: 1 error to work off, in 2 places"
+    assert said.out.splitlines()[0] == "humble → kilted breaks 1 of 1 package: 1 error to fix, in 2 places"
     assert "arm" not in said.out.replace(str(ws), "")
 
 
@@ -211,9 +211,9 @@ def test_named_machines_and_a_revision(say, ws):
         subprocess.run([*git, *arguments], cwd=ws, check=True, capture_output=True)
     (ws / "zoom/src/near.cpp").write_text("\n")
     asked = ("upgrade", ws, "--from", "laptop", "--to", "robot")
-    assert "2 errors to work off, in 2 places" in say(*asked).out
+    assert "2 errors to fix, in 2 places" in say(*asked).out
     said = say(*asked, "--rev", "HEAD")
-    assert said.out.startswith("laptop → robot breaks 2 of 4 packages: 2 errors to work off, in 3 places")
+    assert said.out.startswith("laptop → robot breaks 2 of 4 packages: 2 errors to fix, in 3 places")
     assert f"rosimpact check {ws} --target robot --rev HEAD --diff" in said.out
 
 
@@ -260,12 +260,12 @@ def finding(
     ],
 )
 def test_a_finding_is_new_unless_the_other_side_has_it_as_gravely(other, new):
-    assert [len(group) for group in compared([finding()], other)] == ([1, 0] if new else [0, 1])
+    assert [len(group) for group in compare_findings([finding()], other)] == ([1, 0] if new else [0, 1])
 
 
 def test_one_cause_in_a_package_is_one_item():
     found = [finding(line=3), finding("warning", line=1), finding(line=2, package="b"), finding(line=4, subject="y.h")]
-    made = items(found, ["b", "a"])
+    made = group_items(found, ["b", "a"])
     assert [(item.package, item.subject, item.severity, [f.line for f in item.findings]) for item in made] == [
         ("b", "x.h", "error", [2]),
         ("a", "x.h", "error", [3, 1]),
@@ -291,7 +291,7 @@ def page(say, ws, tmp_path, opened):
 
 def test_the_page_shows_the_work(page, ws):
     browser = page()
-    assert texts(browser, "#verdict") == ["humble → kilted breaks 2 of 4 packages: 2 errors to work off, in 3 places"]
+    assert texts(browser, "#verdict") == ["humble → kilted breaks 2 of 4 packages: 2 errors to fix, in 3 places"]
     assert texts(browser, "#command") == [f"rosimpact check {ws} --target kilted --fix"]
     assert [text.partition(" ")[0] for text in texts(browser, "#targets li")] == ["humble", "→", "kilted"]
     assert texts(browser, "#list h2") == ["zoom1 of 2 · 1 error", "arm2 of 2 · 1 error", "Deprecated on kilted", "arm"]

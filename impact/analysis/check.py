@@ -15,25 +15,25 @@ from ..facts.extract import Gathered
 from ..model.view import View
 from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, Insert, Replace
-from ..rules.rule import Cure, Finding, Hit, Rule, all_rules
+from ..rules.rule import Cure, Diagnostic, Finding, Hit, Rule, all_rules
 from ..targets.resolve import Chosen
 from ..targets.version import compare as compare_versions
 from ..tree import Tree, WorkingTree
 from . import findings as after
 from . import result_cache as memo
-from .cross_target_fix import Split, with_evidence
+from .cross_target_fix import Split, add_evidence
 from .report import Coverage, Report, ReportedPackage, ReportedTarget, Sources
-from .run_rules import Crashes, hits_of
+from .run_rules import Crashes, run_rules
 from .session import (
     DEFAULTS,
     CheckError,
     Opened,
     Options,
     Progress,
-    chosen_rules,
-    nothing_analysed,
+    explain_nothing_analysed,
+    make_reader,
     open_workspace,
-    reader,
+    select_rules,
 )
 
 if TYPE_CHECKING:
@@ -57,15 +57,17 @@ def check(
     options: Options = DEFAULTS,
     progress: Progress | None = None,
     *,
+    tree: Tree | None = None,
     base_tree: Tree | None = None,
 ) -> Report:
     """Checks a workspace and says what breaks, and for whom.
 
     path: a workspace, package, or git repository. progress: called with (done, total) bytes while files are parsed.
-    base_tree: the tree to compare with, instead of the revision that the options name.
+    tree: what is read instead of what is at the path. base_tree: the tree to compare with, instead of the revision that
+    the options name.
     Raises CheckError, TreeError, TargetError, SettingsError, SnapshotError or ConfigError with a text for the user.
     """
-    return run(path, options, progress, base_tree=base_tree).report
+    return run(path, options, progress, tree=tree, base_tree=base_tree).report
 
 
 def run(
@@ -73,15 +75,16 @@ def run(
     options: Options = DEFAULTS,
     progress: Progress | None = None,
     *,
+    tree: Tree | None = None,
     base_tree: Tree | None = None,
 ) -> Checked:
     """check(), with the configuration and the tree that it was made with. Raises as check() does."""
     started = time.perf_counter()
-    with open_workspace(path, options, progress, lambda config: chosen_rules(options, config)) as opened:
-        return judged(path, options, opened, base_tree=base_tree, started=started)
+    with open_workspace(path, options, progress, lambda config: select_rules(options, config), tree) as opened:
+        return check_opened(path, options, opened, base_tree=base_tree, started=started)
 
 
-def judged(
+def check_opened(
     path: str | os.PathLike[str],
     options: Options,
     opened: Opened,
@@ -96,9 +99,9 @@ def judged(
     started = time.perf_counter() if started is None else started
     rules = all_rules()
     tree, store, gathered, workspace, targets, views, config, installed, shelves = opened
-    chosen = chosen_rules(options, config)
+    chosen = select_rules(options, config)
     settings = _settings(rules, config)
-    sources = Sources(reader(tree))
+    sources = Sources(make_reader(tree))
     crashed: Crashes = {}
     reached: Impact | None = None
     notes: list[str] = []
@@ -107,31 +110,31 @@ def judged(
 
         if base_tree is None:
             base_tree, notes = bases.base_tree(tree, options.base)
-        before = bases.at_base(base_tree, opened, jobs=options.jobs)
-        old = judge(before, chosen, settings, Sources(reader(base_tree)), crashed, jobs=options.jobs)
-        now = judge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
-        found: Sequence[Finding] = after.marked_new(now.kept, old.kept)
+        before = bases.open_base(base_tree, opened, jobs=options.jobs)
+        old = run_and_merge(before, chosen, settings, Sources(make_reader(base_tree)), crashed, jobs=options.jobs)
+        now = run_and_merge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
+        found: Sequence[Finding] = after.mark_new(now.kept, old.kept)
         reached = _reached(workspace, before.workspace, crashed)
     else:
-        now = judge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
+        now = run_and_merge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
         found = now.kept
     if any(finding.evidence for finding in found):
         for view in views:
-            memo.prepare(store, view.target)
-        found, parted = with_evidence(found, views)
+            memo.load_changes(store, view.target)
+        found, parted = add_evidence(found, views)
         if parted and "unguarded-split" in chosen:
-            found = after.in_order([*found, *_splits(parted, opened, chosen, settings, sources)])
+            found = after.sort_findings([*found, *_splits(parted, opened, chosen, settings, sources)])
     originals: dict[str, bytes] = {}
     if any(finding.fix for finding in found):
         from . import fix
 
-        found = fix.made(found, reader(tree), originals)
+        found = fix.make_fixes(found, make_reader(tree), originals)
     known: Sequence[Finding] = ()
     if options.baseline:
-        found, known = after.without_known(found, after.known_from(options.baseline))
+        found, known = after.split_by_baseline(found, after.read_baseline(options.baseline))
     notes += store.notes
-    failures = [] if workspace.packages else [nothing_analysed(path, opened)]
-    failures += [f"the rule {rule} failed{on(crashed[rule, why])}: {why}" for rule, why in crashed]
+    failures = [] if workspace.packages else [explain_nothing_analysed(path, opened)]
+    failures += [f"the rule {rule} failed{format_targets(crashed[rule, why])}: {why}" for rule, why in crashed]
     report = Report(
         version=__version__,
         data=targets[0].target.data_date if targets else "",
@@ -173,11 +176,10 @@ def _splits(
         line_text=sources.line,
     )
     old = {finding.package for finding, _ in parted if not finding.new}
-    families = {name: rule.family for name, rule in rules.items()}
     marked = [finding._replace(new=finding.package not in old) for finding in found]
     allows = {path: comments for package in opened.workspace for path, comments in package.digest.allows}
-    told = after.with_settings(marked, settings, families)
-    return after.suppressed(told, allows, families=families, ran=()).kept
+    configured = after.apply_settings(marked, settings, rules)
+    return after.suppress(configured, allows, rules=rules, ran=()).kept
 
 
 def _reached(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
@@ -240,12 +242,12 @@ def _settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, .
     """Settings by path, those for the whole workspace first, so that the others go over them."""
     everywhere = (PathSetting("**", severity=config.severity),) if config.severity else ()
     try:
-        after.checked(everywhere, rules)
+        after.verify_settings(everywhere, rules)
     except after.SettingsError as error:
         text = str(error).removeprefix('[paths."**"]: ')
         raise after.SettingsError(f"{config.path}: [check]: {text}") from None
     try:
-        return (*everywhere, *after.checked(config.paths, rules))
+        return (*everywhere, *after.verify_settings(config.paths, rules))
     except after.SettingsError as error:
         raise after.SettingsError(f"{config.path}: {error}") from None
 
@@ -257,7 +259,7 @@ class Judged(NamedTuple):
     suppressed: list[Finding]
 
 
-def judge(
+def run_and_merge(
     opened: Opened,
     rules: Mapping[str, Rule],
     settings: Sequence[PathSetting],
@@ -270,42 +272,42 @@ def judge(
     failed; what the others found stands."""
     workspace, views = opened.workspace, opened.views
     names = [view.target.name for view in views]
-    families = {name: rule.family for name, rule in all_rules().items()}
+    known = all_rules()
     by_name = {view.target.name: view for view in views}
 
-    def made(hits: Iterable[tuple[str, str, Hit]]) -> list[Finding]:
+    def merge(diagnostics: Iterable[tuple[str, str, Diagnostic | Hit]]) -> list[Finding]:
         found = after.merge(
-            hits,
+            diagnostics,
             targets=names,
             rules=rules,
             line_text=sources.line,
-            holds=lambda fix, target: all(holds(cure, by_name[target]) for cure in fix),
+            holds=lambda fix, target: all(is_right_on(cure, by_name[target]) for cure in fix),
         )
-        return after.with_settings(found, settings, families)
+        return after.apply_settings(found, settings, known)
 
     allows = {path: comments for package in workspace for path, comments in package.digest.allows}
-    result = after.suppressed(
-        made(hits_of(opened, rules.values(), crashed, before, jobs)),
+    result = after.suppress(
+        merge(run_rules(opened, rules.values(), crashed, before, jobs)),
         allows,
-        families=families,
+        rules=known,
         ran=[name for name in rules if name != "unguarded-split"],  # it speaks last, see _splits()
     )
     kept = list(result.kept)
     if "unused-suppression" in rules and result.unused:
-        from ..rules.general.unused_suppression import unused
+        from ..rules.general.unused_suppression import find_unused
 
-        kept = after.in_order(
-            [*kept, *made(("unused-suppression", "", hit) for hit in unused(workspace, result.unused))]
+        kept = after.sort_findings(
+            [*kept, *merge(("unused-suppression", "", hit) for hit in find_unused(workspace, result.unused))]
         )
     return Judged(kept, list(result.suppressed))
 
 
-def on(targets: Sequence[str]) -> str:
+def format_targets(targets: Sequence[str]) -> str:
     """` on jazzy, robot`, empty without targets."""
     return f" on {', '.join(targets)}" if targets else ""
 
 
-def holds(cure: Cure, view: View) -> bool:
+def is_right_on(cure: Cure, view: View) -> bool:
     """Whether a cure is right on a target where the rule found nothing to cure.
 
     A declaration is when the package is there, an include when its header surely is; anything else cannot be told.

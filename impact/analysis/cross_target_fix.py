@@ -1,5 +1,5 @@
-"""What a finding rests on, joined with all targets asked for: who has the change since when, and what to write where
-no one spelling is right on all of them."""
+"""What a finding rests on, for all targets together: which of them have the change, since when, and what to write when
+they need different names."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Split(NamedTuple):
     ros: int
 
 
-def with_evidence(
+def add_evidence(
     findings: Iterable[Finding], views: Sequence[View]
 ) -> tuple[list[Finding], list[tuple[Finding, Split]]]:
     """The findings with how every target stands to the change that each rests on, and with the guarded form as help
@@ -62,10 +62,10 @@ def _joined(
     if not views:
         return None, None
     seen = seen_on(evidence, [view.target for view in views], spoken_of, views[0].providers)
-    return seen, split_of(seen, spoken_of, views) if seen is not None else None
+    return seen, find_split(seen, spoken_of, views) if seen is not None else None
 
 
-def split_of(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[View]) -> Split | None:
+def find_split(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[View]) -> Split | None:
     """How the targets differ, when on some only the one and on others only the other spelling is there; else None.
 
     evidence: as seen_on() gives it. spoken_of: targets on which the name that is used is not there.
@@ -142,13 +142,13 @@ def _lowest(versions: Iterable[str]) -> str:
 
 
 def _guarded(split: Split) -> str:
-    """What to write where neither spelling is right everywhere."""
+    """What to write when neither name works on all targets."""
     evidence = split.evidence
     where = f"{_listed(split.old_only)} {'has' if len(split.old_only) == 1 else 'have'} only `{split.old}`"
     if evidence.side == "header":
         return f"`#if __has_include(<{split.new}>)`, include it, `#else` include `{split.old}`: {where}"
     if evidence.side == "python":
-        return f"take `{split.new}` where it is there (`try`, or `hasattr`), else `{split.old}`: {where}"
+        return f"use `{split.new}` if it is available (`try`, or `hasattr`), else `{split.old}`: {where}"
     package = evidence.package
     if evidence.side == "c++" and split.first:
         test = version_test(package, evidence.library, split.first, ros=split.ros, oldest=split.oldest)
@@ -158,8 +158,8 @@ def _guarded(split: Split) -> str:
         cmake = f"`if({package}_VERSION VERSION_GREATER_EQUAL {split.first})`"
         if evidence.side in _CMAKE:
             return f"{cmake} use `{split.new}`, else `{split.old}`: {where}"
-        return f"use `{split.new}` or `{split.old}` by a definition that CMake sets {cmake}: {where}"
-    return f"use `{split.new}` or `{split.old}`, whichever is there: {where}"
+        return f"choose between `{split.new}` and `{split.old}` with a definition that CMake sets {cmake}: {where}"
+    return f"use `{split.new}` or `{split.old}`, whichever is available: {where}"
 
 
 def _listed(names: Sequence[str]) -> str:

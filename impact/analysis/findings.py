@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from ...edges.console import UserError, json_text
 from ...edges.documents import load_json
 from ..facts.place import Allow
-from ..rules.rule import SEVERITIES, Cure, Finding, Hit, Rule
+from ..rules.rule import SEVERITIES, Cure, Diagnostic, Finding, Hit, Rule
+from ..rules.text import Value, attributed
 
 if TYPE_CHECKING:
     from ..config import PathSetting
@@ -48,7 +49,7 @@ def _never(fix: tuple[Cure, ...], target: str) -> bool:
 
 
 def merge(
-    hits: Iterable[tuple[str, str, Hit]],
+    diagnostics: Iterable[tuple[str, str, Diagnostic | Hit]],
     *,
     targets: Sequence[str],
     rules: Mapping[str, Rule],
@@ -57,75 +58,102 @@ def merge(
 ) -> list[Finding]:
     """One fact about several targets becomes one finding.
 
-    hits: (rule name, target name, hit); an empty target name stands for every target. targets: those asked for, in
-    order. rules: for the severity of hits that name none. line_text: the text of a line, empty when it cannot be read.
+    diagnostics: (rule name, target name, diagnostic); an empty target name stands for every target. targets: those
+    asked for, in order. rules: for severities and texts. line_text: the text of a line, empty when it cannot be read.
 
-    Hits of the same rule, path, line, subject and severity are one finding; what two hits say about one target with
-    different words stays apart, and so does what breaks on a target from what is still to come on another. The fix is
-    kept when every target asked for yields the same, or where a target yields no such hit, when `holds(fix, target)`
-    says that it is right there as well. Sorted by path, line, column, rule; fingerprinted.
+    Diagnostics of the same rule, path, line, subject and severity are one finding; two different facts about one target
+    stay apart, and so does what breaks on a target from what is still to come on another. The fix is kept when every
+    target asked for yields the same, or where a target yields no such diagnostic, when `holds(fix, target)` says that
+    it is right there as well. Sorted by path, line, column, rule; fingerprinted.
     """
     order = {name: index for index, name in enumerate(targets)}
-    groups: dict[tuple, list[dict[str, Hit]]] = {}
-    for rule_name, target, hit in hits:
+    groups: dict[tuple, list[dict[str, Diagnostic | Hit]]] = {}
+    for rule_name, target, diagnostic in diagnostics:
         rule = rules.get(rule_name)
-        severity = hit.severity or (rule.severity if rule else "warning")
-        ahead = hit.evidence is not None and hit.evidence.ahead
-        key = (rule_name, severity, getattr(hit.at, "path", ""), getattr(hit.at, "line", 0), hit.subject, ahead)
+        severity = rule.severity_of(diagnostic) if rule else diagnostic.severity or "warning"
+        ahead = diagnostic.evidence is not None and diagnostic.evidence.ahead
+        at = diagnostic.at
+        key = (rule_name, severity, getattr(at, "path", ""), getattr(at, "line", 0), diagnostic.subject, ahead)
         names = (target,) if target else tuple(targets) or ("",)
-        _place(groups.setdefault(key, []), names, hit)
+        _place(groups.setdefault(key, []), names, diagnostic)
     findings = [
-        _finding(rule, severity, path, line, subject, by_target, order, holds)
-        for (rule, severity, path, line, subject, _), facts in groups.items()
+        _finding(rules.get(name), name, severity, path, line, by_target, order, holds)
+        for (name, severity, path, line, _, _), facts in groups.items()
         for by_target in facts
     ]
-    return fingerprinted(in_order(findings), line_text)
+    grouped = {rule.name: rule.group for rule in rules.values() if rule.group}
+    return add_fingerprints(sort_findings(findings), line_text, grouped)
 
 
-def in_order(findings: Iterable[Finding]) -> list[Finding]:
+def sort_findings(findings: Iterable[Finding]) -> list[Finding]:
     """Findings by path, line, column, rule and subject, the graver first: the order of every report."""
     return sorted(findings, key=_sort_key)
 
 
-def _place(facts: list[dict[str, Hit]], names: tuple[str, ...], hit: Hit) -> None:
-    """Puts a hit into the first fact of its group that says nothing else about these targets."""
+def _place(facts: list[dict[str, Diagnostic | Hit]], names: tuple[str, ...], diagnostic: Diagnostic | Hit) -> None:
+    """Puts a diagnostic into the first fact of its group that says nothing else about these targets."""
     for by_target in facts:
-        if all(name not in by_target or by_target[name].message == hit.message for name in names):
+        if all(name not in by_target or by_target[name].fact == diagnostic.fact for name in names):
             for name in names:
-                by_target.setdefault(name, hit)
+                by_target.setdefault(name, diagnostic)
             return
-    facts.append(dict.fromkeys(names, hit))
+    facts.append(dict.fromkeys(names, diagnostic))
 
 
 def _finding(
-    rule: str,
+    rule: Rule | None,
+    name: str,
     severity: str,
     path: str,
     line: int,
-    subject: str,
-    by_target: dict[str, Hit],
+    by_target: dict[str, Diagnostic | Hit],
     order: dict[str, int],
     holds: Callable[[tuple[Cure, ...], str], bool],
 ) -> Finding:
-    names = sorted(by_target, key=lambda name: order.get(name, len(order)))
-    hits = [by_target[name] for name in names]
-    first = hits[0]
+    targets = sorted(by_target, key=lambda target: order.get(target, len(order)))
+    diagnostics = [by_target[target] for target in targets]
+    first = diagnostics[0]
     right = bool(first.fix) and all(
-        by_target[name].fix == first.fix if name in by_target else holds(first.fix, name) for name in order or by_target
+        by_target[target].fix == first.fix if target in by_target else holds(first.fix, target)
+        for target in order or by_target
     )
+    message, help = _render(rule, list(zip(targets, diagnostics, strict=True)))
     return Finding(
-        rule=rule,
+        rule=name,
         severity=severity,
         package=first.package,
         path=path,
         line=line,
         column=getattr(first.at, "column", 0),
-        subject=subject,
-        targets=tuple(name for name in names if name),
-        message=joined([(name, hit.message) for name, hit in zip(names, hits, strict=True)]),
-        help=joined([(name, hit.help) for name, hit in zip(names, hits, strict=True)]),
+        subject=first.subject,
+        targets=tuple(target for target in targets if target),
+        message=message,
+        help=help,
         fix=first.fix if right else (),
-        evidence=next((hit.evidence for hit in hits if hit.evidence is not None), None),
+        evidence=next((each.evidence for each in diagnostics if each.evidence is not None), None),
+    )
+
+
+def _render(rule: Rule | None, by_target: Sequence[tuple[str, Diagnostic | Hit]]) -> tuple[str, str]:
+    """Message and help of a finding. Diagnostics of one kind are rendered from their data together."""
+    kinds: dict[str, list[tuple[str, Mapping[str, Value]]]] = {}
+    texts: list[tuple[str, str, str]] = []
+    for target, diagnostic in by_target:
+        if isinstance(diagnostic, Hit):
+            texts.append((target, diagnostic.message, diagnostic.help))
+        else:
+            kinds.setdefault(diagnostic.kind, []).append((target, diagnostic.values))
+    for kind, data in kinds.items():
+        assert rule is not None, "a diagnostic without text is of a registered rule"
+        message, help = rule.texts[kind].render(data)
+        if not texts and len(kinds) == 1:
+            return message, help
+        texts += [(target, message, help) for target, _ in data]
+    order = [target for target, _ in by_target]
+    texts.sort(key=lambda text: order.index(text[0]))
+    return (
+        join_texts([(target, message) for target, message, _ in texts]),
+        join_texts([(target, help) for target, _, help in texts]),
     )
 
 
@@ -134,7 +162,7 @@ def _sort_key(finding: Finding) -> tuple:
             finding.message)  # fmt: skip
 
 
-def joined(texts: Sequence[tuple[str, str]]) -> str:
+def join_texts(texts: Sequence[tuple[str, str]]) -> str:
     """One text for what is said by target, naming the targets where the words differ.
 
     >>> joined([("jazzy", "`x.h` is gone in tf2 0.36"), ("rolling", "`x.h` is gone in tf2 0.41")])
@@ -148,7 +176,7 @@ def joined(texts: Sequence[tuple[str, str]]) -> str:
             by_text.setdefault(text, []).append(target)
     if len(by_text) <= 1:
         return next(iter(by_text), "")
-    whole = "; ".join(_attributed(text, names) for text, names in by_text.items())
+    whole = "; ".join(attributed(text, names) for text, names in by_text.items())
     spans = [[match.span() for match in _TOKEN.finditer(text)] for text in by_text]
     words = [[text[start:end] for start, end in span] for text, span in zip(by_text, spans, strict=True)]
     shortest = min(map(len, words))
@@ -169,25 +197,22 @@ def joined(texts: Sequence[tuple[str, str]]) -> str:
         return whole
     before = first[: spans[0][head][0]]
     after = first[spans[0][len(spans[0]) - 1 - tail][1] :]
-    return before + ", ".join(_attributed(part, names) for part, names in parts.items()) + after
-
-
-def _attributed(text: str, names: Sequence[str]) -> str:
-    """The text with the targets it holds for behind it, unless it names them itself."""
-    words = set(re.split(r"[\s`,;:()]+", text))
-    named = [name for name in names if name and name not in words and not (" " in name and name in text)]
-    return f"{text} ({', '.join(named)})" if named else text
+    return before + ", ".join(attributed(part, names) for part, names in parts.items()) + after
 
 
 _LONGEST_LINE = 10_000
 
 
-def fingerprinted(findings: Iterable[Finding], line_text: Callable[[str, int], str]) -> list[Finding]:
+def add_fingerprints(
+    findings: Iterable[Finding], line_text: Callable[[str, int], str], groups: Mapping[str, str] | None = None
+) -> list[Finding]:
     """Findings with a fingerprint that stays the same when lines above them come and go.
 
     It is a hash of rule, path, package, subject, the line's text with white space levelled, and how many findings
-    alike stand before it. Findings are expected in file order.
+    alike stand before it. Findings are expected in file order. groups: the group by the rule, of rules that were a part
+    of another one; the group's name counts for theirs, so that baselines from before still know their findings.
     """
+    groups = groups or {}
     seen: Counter[str] = Counter()
     result = []
     place, text = ("", 0), ""
@@ -197,7 +222,8 @@ def fingerprinted(findings: Iterable[Finding], line_text: Callable[[str, int], s
             text = " ".join(line_text(*place).split()) if finding.line else ""
             if len(text) > _LONGEST_LINE:  # it may have as many findings
                 text = _digest(text)
-        content = "\0".join((finding.rule, finding.path, finding.package, finding.subject, text))
+        rule = groups.get(finding.rule, finding.rule)
+        content = "\0".join((rule, finding.path, finding.package, finding.subject, text))
         digest = _digest(f"{content}\0{seen[content]}")
         seen[content] += 1
         result.append(finding._replace(fingerprint=digest))
@@ -208,7 +234,7 @@ def _digest(text: str) -> str:
     return blake2b(text.encode("utf-8", "surrogatepass"), digest_size=12).hexdigest()
 
 
-def marked_new(findings: Iterable[Finding], base: Iterable[Finding]) -> list[Finding]:
+def mark_new(findings: Iterable[Finding], base: Iterable[Finding]) -> list[Finding]:
     """Findings with `new` False where the base had the same fact, at least as severe and on the same targets.
 
     Matched one to one in three passes: same fingerprint; same rule, path, package and subject (its line was edited);
@@ -240,30 +266,40 @@ def _covers(old: Finding, finding: Finding) -> bool:
     return rank(old.severity) >= rank(finding.severity) and set(finding.targets) <= set(old.targets)
 
 
-def chosen(
+def choose_rules(
     rules: Mapping[str, Rule], *, select: Sequence[str] = (), ignore: Sequence[str] = (), preview: bool = False
 ) -> dict[str, Rule]:
-    """The rules to run. select and ignore hold names of rules or families, or `all`; the more specific wins.
+    """The rules to run. select and ignore hold names of rules, groups or families, or `all`; the more specific wins.
 
-    Where both mean a rule as closely, it is ignored. A preview rule runs when previews are asked for or when it is
-    selected by its own name.
-    Raises SettingsError for a name that is neither a rule nor a family.
+    Where both mean a rule as closely, it is ignored. A preview rule runs when previews are asked for or when it, or its
+    group, is selected by name.
+    Raises SettingsError for a name that is no rule, group or family.
     """
-    families = {rule.family for rule in rules.values()}
+    known = _known_names(rules.values())
     for name in (*select, *ignore):
-        if name not in rules and name not in families and name not in EVERYTHING:
-            raise SettingsError(_unknown_rule(name, [*rules, *sorted(families)]))
+        if name not in known and name not in EVERYTHING:
+            raise SettingsError(_unknown_rule(name, known))
     return {
         name: rule
         for name, rule in rules.items()
-        if _specific(select or EVERYTHING, name, rule.family) > _specific(ignore, name, rule.family)
-        and (preview or not rule.preview or name in select)
+        if _specific(select or EVERYTHING, rule.names) > _specific(ignore, rule.names)
+        and (preview or not rule.preview or not {*rule.names[:2]}.isdisjoint(select))
     }
 
 
-def _specific(names: Collection[str], rule: str, family: str) -> int:
-    """How closely a list of names means a rule: 3 by name, 2 by family, 1 with everything, 0 not at all."""
-    return 3 if rule in names else 2 if family in names else 1 if any(name in names for name in EVERYTHING) else 0
+def _known_names(rules: Iterable[Rule]) -> list[str]:
+    """What a setting can name beside `all`: rules, groups and, last, families."""
+    rules = list(rules)
+    return [*dict.fromkeys(name for rule in rules for name in rule.names[:2]), *sorted({rule.family for rule in rules})]
+
+
+def _specific(settings: Collection[str], names: Sequence[str]) -> int:
+    """How closely the names in a setting mean a rule: 4 by name, 3 by group, 2 by family, 1 with everything, 0 not at
+    all. names: those of the rule."""
+    for place, name in enumerate(names):
+        if name in settings:
+            return 4 - place
+    return int(any(name in settings for name in EVERYTHING))
 
 
 def _unknown_rule(name: str, known: Sequence[str]) -> str:
@@ -274,12 +310,12 @@ def _unknown_rule(name: str, known: Sequence[str]) -> str:
     return f"no rule or family is called `{name}`; {hint}"
 
 
-def checked(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) -> Sequence[PathSetting]:
-    """The settings, when every name in them is a rule, a family or `all` and every severity is one.
+def verify_settings(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) -> Sequence[PathSetting]:
+    """The settings, when every name in them is a rule, a group, a family or `all` and every severity is one.
 
     Raises SettingsError otherwise.
     """
-    known = [*rules, *sorted({rule.family for rule in rules.values()})]
+    known = _known_names(rules.values())
     for entry in settings:
         where = f'[paths."{entry.pattern}"]'
         for name in (*entry.select, *entry.ignore, *entry.severity):
@@ -291,32 +327,37 @@ def checked(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) -> Seque
     return settings
 
 
-def with_settings(
-    findings: Iterable[Finding], settings: Sequence[PathSetting], families: Mapping[str, str]
+def apply_settings(
+    findings: Iterable[Finding], settings: Sequence[PathSetting], rules: Mapping[str, Rule]
 ) -> list[Finding]:
     """Findings under the per-path settings that match them; of several that match, later ones go over earlier ones.
 
-    A severity of `off` silences. families: family by rule name.
+    A severity of `off` silences. rules: by name, for their groups and families.
     """
     if not settings:
         return list(findings)
     result = []
     for finding in findings:
-        family = families.get(finding.rule, "")
+        names = _names_of(finding, rules)
         severity: str | None = finding.severity
         for entry in settings:
             if glob_matches(entry.pattern, finding.path):
-                severity = _under(entry, finding.rule, family, severity)
+                severity = _under(entry, names, severity)
         if severity is not None:
             result.append(finding._replace(severity=severity))
     return result
 
 
-def _under(entry: PathSetting, rule: str, family: str, severity: str | None) -> str | None:
-    """The severity a setting gives, None when it silences."""
-    if _specific(entry.select or EVERYTHING, rule, family) <= _specific(entry.ignore, rule, family):
+def _names_of(finding: Finding, rules: Mapping[str, Rule]) -> tuple[str, ...]:
+    """The names that mean a finding's rule in settings and comments, the most specific first."""
+    return rules[finding.rule].names if finding.rule in rules else (finding.rule,)
+
+
+def _under(entry: PathSetting, names: Sequence[str], severity: str | None) -> str | None:
+    """The severity a setting gives, None when it silences. names: those of the rule."""
+    if _specific(entry.select or EVERYTHING, names) <= _specific(entry.ignore, names):
         return None
-    for name in (rule, family, *EVERYTHING):
+    for name in (*names, *EVERYTHING):
         if name in entry.severity:
             return None if entry.severity[name] == "off" else entry.severity[name]
     return severity
@@ -392,17 +433,17 @@ def _glob_class(content: str) -> re.Pattern[str] | None:
         return None
 
 
-def suppressed(
+def suppress(
     findings: Iterable[Finding],
     allows: Mapping[str, Sequence[Allow]],
     *,
-    families: Mapping[str, str],
+    rules: Mapping[str, Rule],
     ran: Collection[str],
 ) -> Suppression:
     """Findings without those that an `allow` comment of their file silences.
 
-    allows: comments by path; an Allow at line 0 holds for the whole file. families: family by rule name, so that a
-    comment may name a family. ran: rules that ran, since a comment for another rule cannot be called unused.
+    allows: comments by path; an Allow at line 0 holds for the whole file. rules: by name, since a comment may name a
+    group or a family. ran: rules that ran, since a comment for another rule cannot be called unused.
     """
     kept: list[Finding] = []
     silent: list[Finding] = []
@@ -415,7 +456,7 @@ def suppressed(
             lines = reach.get(finding.path)
             if lines is None:
                 lines = reach[finding.path] = _reach(comments)
-            names = (finding.rule, families.get(finding.rule, ""), *EVERYTHING)
+            names = (*_names_of(finding, rules), *EVERYTHING)
             for line in (finding.line, 0):
                 there = lines.get(line)
                 found = [(*there[name], name) for name in names if name in there] if there else []
@@ -428,13 +469,14 @@ def suppressed(
         else:
             used.add(hit)
             silent.append(finding)
-    live = {*ran, *(families.get(rule, "") for rule in ran), *EVERYTHING}
+    live = {name for rule in ran for name in (rules[rule].names if rule in rules else (rule,))} | {*EVERYTHING}
+    known = {name for rule in rules.values() for name in rule.names[:2]}
     unused = [
         (path, allow.line, name)
         for path, comments in allows.items()
         for allow in comments
         for name in allow.rules
-        if (path, allow.line, name) not in used and (name in live or name not in families)
+        if (path, allow.line, name) not in used and (name in live or name not in known)
     ]
     return Suppression(kept, silent, sorted(unused))
 
@@ -454,7 +496,7 @@ def _reach(comments: Sequence[Allow]) -> dict[int, dict[str, tuple[int, int]]]:
     return lines
 
 
-def baseline(findings: Iterable[Finding]) -> str:
+def format_baseline(findings: Iterable[Finding]) -> str:
     """The text of a baseline file that knows these findings: by content, so that moved lines stay known.
 
     Only `fingerprint` and `count` are read again; the rest is for the person who reviews the file.
@@ -477,7 +519,7 @@ def baseline(findings: Iterable[Finding]) -> str:
     return json_text({"schema": 1, "findings": entries}) + "\n"
 
 
-def known_from(text: str | bytes) -> Counter[str]:
+def read_baseline(text: str | bytes) -> Counter[str]:
     """Fingerprints a baseline file knows, with their counts. Raises SettingsError when it is not a baseline file."""
     try:
         data = load_json(text)
@@ -495,7 +537,7 @@ def known_from(text: str | bytes) -> Counter[str]:
         raise SettingsError(f"the baseline cannot be read ({error}); write it anew with --write-baseline") from None
 
 
-def without_known(findings: Iterable[Finding], known: Counter[str]) -> tuple[list[Finding], list[Finding]]:
+def split_by_baseline(findings: Iterable[Finding], known: Counter[str]) -> tuple[list[Finding], list[Finding]]:
     """(findings a baseline does not know, findings it knows)."""
     left = Counter(known)
     fresh: list[Finding] = []
@@ -509,10 +551,10 @@ def without_known(findings: Iterable[Finding], known: Counter[str]) -> tuple[lis
     return fresh, old
 
 
-def pruned(known: Counter[str], findings: Iterable[Finding]) -> tuple[str, int]:
+def prune_baseline(known: Counter[str], findings: Iterable[Finding]) -> tuple[str, int]:
     """(the baseline's text without what is cured, how many entries went). Findings it does not know are not added."""
-    _, old = without_known(findings, known)
-    return baseline(old), sum(known.values()) - len(old)
+    _, old = split_by_baseline(findings, known)
+    return format_baseline(old), sum(known.values()) - len(old)
 
 
 def fails(findings: Iterable[Finding], fail_on: str = "error") -> bool:

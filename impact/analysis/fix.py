@@ -58,7 +58,7 @@ class Applied(NamedTuple):
     refused: list[tuple[Edit, str]]
 
 
-def made(
+def make_fixes(
     findings: Iterable[Finding], read: Callable[[str], bytes | None], originals: dict[str, bytes] | None = None
 ) -> list[Finding]:
     """Findings whose fixes are byte edits: what rules propose by name and place is looked up in the files.

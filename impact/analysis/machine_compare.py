@@ -15,7 +15,7 @@ from ..targets.resolve import parse_target
 from .findings import rank
 from .report import Report, ReportedTarget
 from .session import Options
-from .target_compare import Item, compared, items, sides
+from .target_compare import Item, compare_findings, group_items, open_sides
 
 _MACHINE = ("distro", "date", "platform")
 
@@ -72,7 +72,7 @@ def machines(first: str, second: str, path: Path | None = None) -> Machines:
 
 
 def _beside(path: Path, first: str, second: str) -> Machines:
-    with sides(path, first, second, Options()) as (opened, one, other):
+    with open_sides(path, first, second, Options()) as (opened, one, other):
         order = build_order(opened.views[0])
         found = differences(opened.targets[0].target, opened.targets[1].target)
         uses = _uses(opened.views)
@@ -82,9 +82,9 @@ def _beside(path: Path, first: str, second: str) -> Machines:
         if each.kind not in _MACHINE and each.name in uses and each.name not in opened.workspace.packages
     ]
     now, then = ([f for f in side.report.findings if rank(f.severity) >= rank("warning")] for side in (one, other))
-    alone = compared(now, then)
+    alone = compare_findings(now, then)
     report = one.report._replace(targets=(*one.report.targets, *other.report.targets))
-    harms = [*items(alone.new, order), *items(compared(then, now).new, order)]
+    harms = [*group_items(alone.new, order), *group_items(compare_findings(then, now).new, order)]
     machine = tuple(d for d in found if d.kind in _MACHINE)
     return Machines(
         one.report.targets[0],

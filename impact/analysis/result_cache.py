@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 from msgspec import structs
@@ -20,7 +20,9 @@ from ..model.package import Watched
 from ..model.view import View
 from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, Insert, Remove, Replace
-from ..rules.rule import Cure, Edit, Hit
+from ..rules.rule import Cure, Diagnostic, Edit, Hit
+from ..rules.severity import Doubt
+from ..rules.text import Value
 from ..source_keys import code_stamp
 from ..targets.evidence import Evidence
 from ..targets.snapshot import data_stamp
@@ -29,31 +31,37 @@ from ..targets.surface.store import shipped
 from ..targets.target import Change, Target
 from ..targets.uses import looked_for
 
+# (rule, what it yields)
+Yielded = tuple[str, Diagnostic | Hit]
 _CURES: dict[str, type] = {kind.__name__: kind for kind in (Declare, Remove, Replace, Insert, Edit)}
 
 
-class _Hit(msgspec.Struct, frozen=True, array_like=True):
-    """A Hit as stored: its rule, its place taken apart, its cures as (kind, fields)."""
+class _Stored(msgspec.Struct, frozen=True, array_like=True):
+    """A diagnostic as stored: its rule, its place taken apart, its doubts by name, its cures as (kind, fields).
+
+    One whose rule wrote its text itself has no kind, and the text as data.
+    """
 
     rule: str
     path: str
     line: int
     column: int
     subject: str
-    message: str
-    help: str
     package: str
     severity: str
     fix: tuple[tuple[str, tuple[str | int, ...]], ...]
-    evidence: Evidence | None = None
+    evidence: Evidence | None
+    kind: str | None
+    data: dict[str, str | int | float | tuple[str, ...]]
+    doubts: tuple[str, ...] = ()
 
 
 class _Judgement(msgspec.Struct, frozen=True, array_like=True):
-    hits: tuple[_Hit, ...]
+    diagnostics: tuple[_Stored, ...]
     unresolved: dict[str, tuple[str, ...]]
 
 
-def watched(store: Store) -> Watched:
+def load_tracked_names(store: Store) -> Watched:
     """The names that rules look out for, as an earlier run gathered them from the same tables."""
     name = hashlib.sha1(f"{code_stamp()} {data_stamp()}".encode()).digest()
     data = store.memo("watched", name)
@@ -68,7 +76,7 @@ def watched(store: Store) -> Watched:
     return names
 
 
-def key(view: View, rules: Iterable[str]) -> bytes:
+def results_key(view: View, rules: Iterable[str]) -> bytes:
     """The key of a view's judgement by these rules."""
     found = hashlib.sha1(view.workspace.identity)
     config = view.config
@@ -83,9 +91,9 @@ def key(view: View, rules: Iterable[str]) -> bytes:
     return found.digest()
 
 
-def recall(store: Store, view: View, rules: Sequence[str]) -> list[tuple[str, Hit]] | None:
+def load_results(store: Store, view: View, rules: Sequence[str]) -> list[Yielded] | None:
     """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
-    found = _recalled(store, key(view, rules))
+    found = _recalled(store, results_key(view, rules))
     if found is None:
         return None
     hits, unresolved = found
@@ -94,10 +102,10 @@ def recall(store: Store, view: View, rules: Sequence[str]) -> list[tuple[str, Hi
     return hits
 
 
-def remember(store: Store, view: View, rules: Sequence[str], hits: Iterable[tuple[str, Hit]]) -> None:
-    """Keeps what the rules said for later runs."""
+def store_results(store: Store, view: View, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
+    """Keeps what the rules yielded for later runs."""
     unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
-    _keep(store, key(view, rules), hits, unresolved)
+    _keep(store, results_key(view, rules), diagnostics, unresolved)
 
 
 def flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
@@ -106,49 +114,36 @@ def flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str
     return hashlib.sha1(repr((stamps, data_stamp(), sorted(rules))).encode()).digest()
 
 
-def recall_flow(store: Store, key: bytes) -> list[tuple[str, Hit]] | None:
+def load_flow_results(store: Store, key: bytes) -> list[Yielded] | None:
     """(rule, hit) on the message flow of an earlier run, None when there was none. key: a flow_key()."""
     found = _recalled(store, key)
     return found[0] if found is not None else None
 
 
-def remember_flow(store: Store, key: bytes, hits: Iterable[tuple[str, Hit]]) -> None:
-    """Keeps what rules said of the message flow for later runs."""
-    _keep(store, key, hits, {})
+def store_flow_results(store: Store, key: bytes, diagnostics: Iterable[Yielded]) -> None:
+    """Keeps what rules yielded on the message flow for later runs."""
+    _keep(store, key, diagnostics, {})
 
 
-def _keep(store: Store, key: bytes, hits: Iterable[tuple[str, Hit]], unresolved: dict[str, tuple[str, ...]]) -> None:
-    stored = tuple(
-        _Hit(
-            rule,
-            getattr(hit.at, "path", ""),
-            getattr(hit.at, "line", 0),
-            getattr(hit.at, "column", 0),
-            hit.subject,
-            hit.message,
-            hit.help,
-            hit.package,
-            hit.severity,
-            tuple((type(cure).__name__, tuple(cure)) for cure in hit.fix),
-            hit.evidence,
-        )
-        for rule, hit in hits
-    )
+def _keep(
+    store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
+) -> None:
+    stored = tuple(_packed(rule, diagnostic) for rule, diagnostic in diagnostics)
     store.remember("judgement", encodable([(key, _Judgement(stored, unresolved))]))
 
 
-def _recalled(store: Store, key: bytes) -> tuple[list[tuple[str, Hit]], dict[str, tuple[str, ...]]] | None:
+def _recalled(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[str, ...]]] | None:
     data = store.memo("judgement", key)
     if data is None:
         return None
     try:
         judgement = msgspec.msgpack.decode(data, type=_Judgement)
-        return [(h.rule, _hit(h)) for h in judgement.hits], judgement.unresolved
+        return [(stored.rule, _unpacked(stored)) for stored in judgement.diagnostics], judgement.unresolved
     except (msgspec.MsgspecError, UnicodeDecodeError, KeyError, TypeError):
         return None
 
 
-def prepare(store: Store, target: Target) -> None:
+def load_changes(store: Store, target: Target) -> None:
     """Gives a target, and the newest distro that it is compared with, the changes an earlier run worked out."""
     newest = target.newest()
     for one in (target, newest) if newest is not None else (target,):
@@ -165,6 +160,36 @@ def prepare(store: Store, target: Target) -> None:
         store.remember("changes", encodable([(name, [tuple(change) for change in one.changes()])]))
 
 
-def _hit(h: _Hit) -> Hit:
-    cures: tuple[Cure, ...] = tuple(_CURES[kind](*fields) for kind, fields in h.fix)
-    return Hit(At(h.path, h.line, h.column), h.subject, h.message, h.help, h.package, h.severity, cures, h.evidence)
+def _packed(rule: str, diagnostic: Diagnostic | Hit) -> _Stored:
+    at = diagnostic.at
+    kind: str | None = None
+    data: Mapping[str, Value]
+    if isinstance(diagnostic, Hit):
+        data, doubts = {"message": diagnostic.message, "help": diagnostic.help}, ()
+    else:
+        kind, data, doubts = diagnostic.kind, diagnostic.data, diagnostic.doubts
+    return _Stored(
+        rule,
+        getattr(at, "path", ""),
+        getattr(at, "line", 0),
+        getattr(at, "column", 0),
+        diagnostic.subject,
+        diagnostic.package,
+        diagnostic.severity,
+        tuple((type(cure).__name__, tuple(cure)) for cure in diagnostic.fix),
+        diagnostic.evidence,
+        kind,
+        dict(data),
+        tuple(doubt.name for doubt in doubts),
+    )
+
+
+def _unpacked(stored: _Stored) -> Diagnostic | Hit:
+    at = At(stored.path, stored.line, stored.column)
+    fix: tuple[Cure, ...] = tuple(_CURES[kind](*fields) for kind, fields in stored.fix)
+    package, severity, evidence = stored.package, stored.severity, stored.evidence
+    if stored.kind is None:
+        message, help = str(stored.data["message"]), str(stored.data["help"])
+        return Hit(at, stored.subject, message, help, package, severity, fix, evidence)
+    doubts = tuple(Doubt[name] for name in stored.doubts)
+    return Diagnostic(at, stored.subject, package, stored.data, stored.kind, doubts, severity, fix, evidence)

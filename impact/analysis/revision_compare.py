@@ -106,10 +106,10 @@ def read_pinned(path: Path) -> dict[str, str]:
     return {name.strip("/"): version for name, version in found.items()}
 
 
-def at_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
+def open_base(tree: Tree, opened: Opened, *, jobs: int | None = None) -> Opened:
     """The workspace as it was in another tree, seen by the same targets."""
     second = code_kinds(tree) if opened.gathered.second is not None else None
-    watched = memo.watched(opened.store)
+    watched = memo.load_tracked_names(opened.store)
     gathered = gather(tree, opened.store, jobs=jobs, second=second, along=watched.searches)
     workspace = link(tree, gathered, opened.store, opened.workspace.ros, watched, jobs)
     views = [View(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]

@@ -1,5 +1,5 @@
-"""The rules, run over a workspace on every target: in several processes where there is much to judge, and not at all
-where an earlier run judged the same."""
+"""Runs the rules on a workspace for every target: in several processes when there is much to do, and not at all when an
+earlier run had the same input."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...edges import processes
 from ...edges.console import unforeseen
-from ..rules.rule import Hit, Rule
+from ..rules.rule import Diagnostic, Hit, Rule, Scope
 from ..targets.snapshot import SnapshotError
 from . import result_cache as memo
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from ..model.workspace import Workspace
     from .session import Opened
 
-# Starting processes costs about as much as judging this many packages on one target.
+# Starting processes costs about as much as running the rules on this many packages for one target.
 _ALONE = 16
 _PARTS_PER_JOB = 4
-# Judging a package may take as much time as extracting from this much text, and as much more for each file.
+# The rules may take as much time for a package as extraction takes for this much text, and as much more for each file.
 _PACKAGE_BYTES = 1 << 20
 _FILE_BYTES = 20 << 10
 # Of the message flow of a whole workspace, beyond what a process may need.
@@ -28,114 +28,127 @@ _PACKAGE_MEMORY = 8 << 20
 
 # (rule, why it failed) to the targets on which it did
 Crashes = dict[tuple[str, str], list[str]]
+# (rule, what it yields)
+Yielded = tuple[str, Diagnostic | Hit]
 
 
-def hits_of(
+def run_rules(
     opened: Opened, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None, jobs: int | None = None
-) -> Iterator[tuple[str, str, Hit]]:
-    """(rule, target, hit) of all the rules; the target is empty for rules that know none.
+) -> Iterator[tuple[str, str, Diagnostic | Hit]]:
+    """(rule, target, diagnostic) of all the rules; the target is empty for rules that know none.
 
-    before: the workspace at the base, for rules that compare. crashed: gets the rules that failed; what the others
-    found stands. jobs: processes to use, all available cores when None.
+    before: the workspace at the base, for rules that compare. crashed: receives the rules that failed; the results of
+    the others are kept. jobs: processes to use, all available cores when None.
     """
     every = list(rules)
-    told = [rule for rule in every if rule.per_target]
-    names = [rule.name for rule in told]
-    kept: dict[str, list[tuple[str, Hit]]] = {}
-    fresh = []
-    for place, view in enumerate(opened.views):
-        known = memo.recall(opened.store, view, names)
-        if known is None:
-            fresh.append(place)
-            memo.prepare(opened.store, view.target)
-        else:
-            kept[view.target.name] = known
-    for place, said in _judged(opened, told, fresh, crashed, jobs or processes.cores()):
-        view = opened.views[place]
-        kept[view.target.name] = said
-        if not crashed:
-            memo.remember(opened.store, view, names, said)
-    of_flow = _of_flow(opened, [rule for rule in every if rule.flow], crashed, before)
+    by_target = _run_on_targets(opened, _of_scope(every, "target"), crashed, jobs)
+    on_flow = _run_on_flow(opened, [rule for rule in every if rule.reads_flow], crashed, before)
     for rule in every:
-        if rule.name in names:
+        if rule.scope == "target":
             for view in opened.views:
                 target = view.target.name
-                yield from ((name, target, hit) for name, hit in kept[target] if name == rule.name)
-        elif rule.installed:
-            yield from _of_install(opened, rule, crashed)
-        elif rule.across:
-            hits = _tried(rule, "", crashed, lambda rule=rule: rule.run(opened.views))
-            yield from ((rule.name, view.target.name, hit) for view, hit in hits)
-        elif rule.flow:
-            yield from ((name, "", hit) for name, hit in of_flow if name == rule.name)
+                yield from ((name, target, each) for name, each in by_target[target] if name == rule.name)
+        elif rule.scope == "install_space":
+            yield from _run_on_install(opened, rule, crashed)
+        elif rule.scope == "targets":
+            yielded = _run_safely(rule, "", crashed, lambda rule=rule: rule.run(opened.views))
+            yield from ((rule.name, view.target.name, each) for view, each in yielded)
+        elif rule.reads_flow:
+            yield from ((name, "", each) for name, each in on_flow if name == rule.name)
         else:
-            yield from ((rule.name, "", hit) for hit in _tried(rule, "", crashed, _run(rule, opened, before)))
+            yield from ((rule.name, "", each) for each in _run_safely(rule, "", crashed, _bind(rule, opened, before)))
 
 
-def _judged(
+def _of_scope(rules: Iterable[Rule], scope: Scope) -> list[Rule]:
+    return [rule for rule in rules if rule.scope == scope]
+
+
+def _run_on_targets(
+    opened: Opened, rules: Sequence[Rule], crashed: Crashes, jobs: int | None
+) -> dict[str, list[Yielded]]:
+    """What rules yield on each target, by its name: remembered from an earlier run where nothing changed."""
+    names = [rule.name for rule in rules]
+    found: dict[str, list[Yielded]] = {}
+    fresh = []
+    for place, view in enumerate(opened.views):
+        known = memo.load_results(opened.store, view, names)
+        if known is None:
+            fresh.append(place)
+            memo.load_changes(opened.store, view.target)
+        else:
+            found[view.target.name] = known
+    for place, yielded in _run_in_parts(opened, rules, fresh, crashed, jobs or processes.cores()):
+        view = opened.views[place]
+        found[view.target.name] = yielded
+        if not crashed:
+            memo.store_results(opened.store, view, names, yielded)
+    return found
+
+
+def _run_in_parts(
     opened: Opened, rules: Sequence[Rule], places: Sequence[int], crashed: Crashes, jobs: int
-) -> Iterator[tuple[int, list[tuple[str, Hit]]]]:
-    """What the rules say of these views, each with its place among them."""
+) -> Iterator[tuple[int, list[Yielded]]]:
+    """What the rules yield for these views, each with its place among them."""
     packages = list(opened.workspace.packages)
     if not packages or not processes.may_fork():
         for place in places:
-            yield place, list(_all(rules, opened.views[place], crashed))
+            yield place, list(_run_all(rules, opened.views[place], crashed))
         return
     if len(packages) * len(places) < _ALONE:
         jobs = 1
-    # A rule that does not come to its end on a package does not stop the run: no package is judged in this process.
+    # A rule that does not end on a package must not stop the run: no rule runs in this process.
     size = max(1, -(-len(packages) // (_PARTS_PER_JOB * jobs) if jobs > 1 else len(packages)))
     tasks = [(place, at) for place in places for at in range(0, len(packages), size)]
     done = {}
     opened.store.close()  # no other process may go on with a connection of this one
-    for task, result in processes.forked(_part, tasks, jobs, opened, rules, packages, size):
-        done[task] = _one_by_one(opened, rules, packages, size, task) if isinstance(result, processes.Died) else result
+    for task, result in processes.forked(_run_part, tasks, jobs, opened, rules, packages, size):
+        done[task] = _run_singly(opened, rules, packages, size, task) if isinstance(result, processes.Died) else result
     for place, tasks_of_view in groupby(tasks, key=lambda task: task[0]):
         view = opened.views[place]
-        said: dict[str, list[tuple[str, Hit]]] = {}
+        yielded: dict[str, list[Yielded]] = {}
         for task in tasks_of_view:
             hits, unresolved, failures = done[task]
             for name, hit in hits:
-                said.setdefault(name, []).append((name, hit))
+                yielded.setdefault(name, []).append((name, hit))
             for kind, unknown in unresolved.items():
                 view.unresolved.setdefault(kind, set()).update(unknown)
             for failure in failures:
-                _note(crashed, failure, view.target.name)
-        yield place, [each for rule in rules for each in said.get(rule.name, ())]
+                _record_failure(crashed, failure, view.target.name)
+        yield place, [each for rule in rules for each in yielded.get(rule.name, ())]
 
 
-def _part(
+def _run_part(
     opened: Opened, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
-) -> tuple[list[tuple[str, Hit]], dict[str, set[str]], Crashes]:
-    """What rules say of some packages on one view, what was not resolved, and the rules that failed."""
+) -> tuple[list[Yielded], dict[str, set[str]], Crashes]:
+    """What rules yield for some packages on one view, what was not resolved, and the rules that failed."""
     place, at = task
     view = opened.views[place]
     crashed: Crashes = {}
     part = packages[at : at + size]
     view.part = frozenset(part)
-    processes.begin_part(0, _bytes(opened.workspace, part))
+    processes.begin_part(0, _estimate_bytes(opened.workspace, part))
     try:
-        return list(_all(rules, view, crashed)), view.unresolved, crashed
+        return list(_run_all(rules, view, crashed)), view.unresolved, crashed
     finally:
         view.part = None
 
 
-def _bytes(workspace: Workspace, packages: Collection[str]) -> int:
-    """How much text it may take as long to extract from as to judge these packages."""
+def _estimate_bytes(workspace: Workspace, packages: Collection[str]) -> int:
+    """The amount of text whose extraction may take as long as the rules on these packages."""
     files = sum(len(workspace.packages[name].digest.files) for name in packages)
     return (1 + len(packages)) * _PACKAGE_BYTES + files * _FILE_BYTES
 
 
-def _one_by_one(
+def _run_singly(
     opened: Opened, rules: Sequence[Rule], packages: Sequence[str], size: int, task: tuple[int, int]
-) -> tuple[list[tuple[str, Hit]], dict[str, set[str]], Crashes]:
-    """As _part, package by package, where the rules end the process on one of them: that one is named."""
+) -> tuple[list[Yielded], dict[str, set[str]], Crashes]:
+    """As _run_part, package by package, to name the package on which the rules end the process."""
     place, at = task
     singles = [(place, each) for each in range(at, min(at + size, len(packages)))]
-    hits: list[tuple[str, Hit]] = []
+    hits: list[Yielded] = []
     unresolved: dict[str, set[str]] = {}
     crashed: Crashes = {}
-    found = dict(processes.forked(_part, singles, 1, opened, rules, packages, 1))
+    found = dict(processes.forked(_run_part, singles, 1, opened, rules, packages, 1))
     for single in singles:
         result = found[single]
         if isinstance(result, processes.Died):
@@ -149,83 +162,89 @@ def _one_by_one(
     return hits, unresolved, crashed
 
 
-def _all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[tuple[str, Hit]]:
+def _run_all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[Yielded]:
     for rule in rules:
-        for hit in _tried(rule, view.target.name, crashed, lambda rule=rule: rule.run(view)):
+        for hit in _run_safely(rule, view.target.name, crashed, lambda rule=rule: rule.run(view)):
             yield rule.name, hit
 
 
-def _of_flow(
+def _run_on_flow(
     opened: Opened, rules: Sequence[Rule], crashed: Crashes, before: Workspace | None
-) -> list[tuple[str, Hit]]:
-    """What rules say of the message flow: remembered by all that it rests on, since joining it is dear."""
+) -> list[Yielded]:
+    """What rules yield on the message flow: stored under the hash of its input, since linking the flow is slow."""
     if not rules:
         return []
     key = memo.flow_key(opened.workspace, before, [rule.name for rule in rules])
-    known = memo.recall_flow(opened.store, key)
+    known = memo.load_flow_results(opened.store, key)
     if known is not None:
         return known
     failed: Crashes = {}
-    said: list[tuple[str, Hit]] = []
+    yielded: list[Yielded] = []
     if processes.may_fork():
         opened.store.close()  # no other process may go on with a connection of this one
-        found = dict(processes.forked(_flow_part, [0], 1, opened, rules, before))[0]
+        found = dict(processes.forked(_run_flow_part, [0], 1, opened, rules, before))[0]
         if isinstance(found, processes.Died):
             failed[", ".join(rule.name for rule in rules), f"the check of the message flow {found.why}"] = []
         else:
-            said, failed = found
+            yielded, failed = found
     else:
-        said, failed = _flow_part(opened, rules, before, 0)
+        yielded, failed = _run_flow_part(opened, rules, before, 0)
     if not failed:
-        memo.remember_flow(opened.store, key, said)
+        memo.store_flow_results(opened.store, key, yielded)
     crashed.update(failed)
-    return said
+    return yielded
 
 
-def _flow_part(
+def _run_flow_part(
     opened: Opened, rules: Sequence[Rule], before: Workspace | None, _: int
-) -> tuple[list[tuple[str, Hit]], Crashes]:
-    """What rules say of the message flow, and the rules that failed."""
+) -> tuple[list[Yielded], Crashes]:
+    """What rules yield on the message flow, and the rules that failed."""
     packages = opened.workspace.packages
-    processes.begin_part(0, _bytes(opened.workspace, packages))
+    processes.begin_part(0, _estimate_bytes(opened.workspace, packages))
     processes.allow_memory(len(packages) * _PACKAGE_MEMORY)
     failed: Crashes = {}
-    said = [(rule.name, hit) for rule in rules for hit in _tried(rule, "", failed, _run(rule, opened, before))]
-    return said, failed
+    yielded = [
+        (rule.name, each) for rule in rules for each in _run_safely(rule, "", failed, _bind(rule, opened, before))
+    ]
+    return yielded, failed
 
 
-def _of_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Hit]]:
-    """What a rule says of the built files, machine by machine. What a machine has changes unseen, so it is not
-    remembered."""
+def _run_on_install(opened: Opened, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Diagnostic | Hit]]:
+    """What a rule yields for the built files, machine by machine. It is not stored, since a machine can change at any
+    time."""
     installed = opened.installed
     if installed is None:
         return
     views = {view.target.name: view for view in opened.views}
     for shelf in opened.shelves:
         view = views.get(shelf.target, opened.views[0])
-        hits = _tried(rule, shelf.target, crashed, lambda view=view, shelf=shelf: rule.run(view, installed, shelf))
-        yield from ((rule.name, shelf.target, hit) for hit in hits)
+        yielded = _run_safely(
+            rule, shelf.target, crashed, lambda view=view, shelf=shelf: rule.run(view, installed, shelf)
+        )
+        yield from ((rule.name, shelf.target, each) for each in yielded)
 
 
-def _run(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Hit]]:
+def _bind(rule: Rule, opened: Opened, before: Workspace | None) -> Callable[[], Iterable[Diagnostic | Hit]]:
     """The call of a rule that asks no target."""
-    if not rule.compares:
+    if not rule.has_base:
         return lambda: rule.run(opened.workspace)
     return lambda: rule.run(opened.workspace, before) if before is not None else ()
 
 
-def _tried(rule: Rule, target: str, crashed: Crashes, run: Callable[[], Iterable[Any]]) -> Iterator[Any]:
-    """The hits of a rule up to where it fails, if it does."""
+def _run_safely(rule: Rule, target: str, crashed: Crashes, run: Callable[[], Iterable[Any]]) -> Iterator[Any]:
+    """What a rule yields up to where it fails, if it does."""
     try:
-        yield from run()
+        for each in run():
+            rule.verify(each[1] if rule.scope == "targets" else each)
+            yield each
     except SnapshotError:
         raise  # no rule can do without the data
     except Exception as error:
-        # What the other rules say stays true; the failure is named and decides the exit status.
-        _note(crashed, (rule.name, unforeseen(error)), target)
+        # The results of the other rules stay valid; the failure is reported and decides the exit status.
+        _record_failure(crashed, (rule.name, unforeseen(error)), target)
 
 
-def _note(crashed: Crashes, failure: tuple[str, str], target: str) -> None:
+def _record_failure(crashed: Crashes, failure: tuple[str, str], target: str) -> None:
     targets = crashed.setdefault(failure, [])
     if target and target not in targets:
         targets.append(target)

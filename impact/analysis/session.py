@@ -98,11 +98,11 @@ def open_workspace(
     root = Path(path)
     if tree is None:
         tree = open_tree(root, options.rev, follow_links=options.follow_links)
-    config = settings_of(root, tree, options.config, follow_links=options.follow_links)
-    asks_flow = chosen is not None and any(rule.flow for rule in chosen(config).values())
+    config = load_settings(root, tree, options.config, follow_links=options.follow_links)
+    asks_flow = chosen is not None and any(rule.reads_flow for rule in chosen(config).values())
     with Store(options.cache) as store:
         second = code_kinds(tree) if asks_flow else None
-        watched = memo.watched(store)
+        watched = memo.load_tracked_names(store)
         gathered = gather(tree, store, jobs=options.jobs, progress=progress, second=second, along=watched.searches)
         workspace = link(tree, gathered, store, None, watched, options.jobs)
         gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
@@ -125,15 +125,15 @@ def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
     for place in workspace.hidden:
         other = shown(paths.get(place.name) or ".")
         yield PathProblem(
-            place.manifest_path, f"not analysed, since another package named `{place.name}` is in {other}"
+            place.manifest_path, f"not analysed, because another package named `{place.name}` is in {other}"
         )
 
 
-def settings_of(root: Path, tree: Tree, file: Path | None, *, follow_links: bool = False) -> Config:
-    """The configuration: the file given, else rosimpact.toml on disk, else that of the revision. Raises ConfigError."""
+def load_settings(root: Path, tree: Tree, file: Path | None, *, follow_links: bool = False) -> Config:
+    """The configuration: the file given, else rosimpact.toml on disk, else that of the tree. Raises ConfigError."""
     config = load(root, file, follow_links=follow_links)
     name = "rosimpact.toml"
-    if config.path is None and isinstance(tree, GitTree) and tree.exists(name) and not tree.is_dir(name):
+    if config.path is None and not isinstance(tree, WorkingTree) and tree.exists(name) and not tree.is_dir(name):
         try:
             data = tree.read(name, limits().settings)
         except OSError as error:
@@ -151,8 +151,8 @@ def open_tree(root: Path, rev: str, *, follow_links: bool = False) -> Tree:
     bare = (root / "objects").is_dir() and (root / "refs").is_dir() and (root / "HEAD").is_file()
     if not follow_links and (link := _leaving_link(root)):
         raise TreeError(
-            f"`{shown(link)}` is a link of the repository that leads out of it, and is not followed; give the folder "
-            "that it leads to, or --follow-links"
+            f"`{shown(link)}` is a link that leads out of its repository, and is not followed; give the folder that "
+            "it leads to, or --follow-links"
         )
     # A change can add all that makes a folder look like a bare repository, and show another workspace in it.
     bare = bare and enclosing_repository(os.path.realpath(root)) is None
@@ -184,7 +184,7 @@ def _leaving_link(root: Path) -> str:
     return ""
 
 
-def reader(tree: Tree) -> Callable[[str], bytes | None]:
+def make_reader(tree: Tree) -> Callable[[str], bytes | None]:
     """Bytes of a path, None when there are none to be had."""
 
     def read(path: str) -> bytes | None:
@@ -196,7 +196,7 @@ def reader(tree: Tree) -> Callable[[str], bytes | None]:
     return read
 
 
-def nothing_analysed(path: str | os.PathLike[str], opened: Opened) -> str:
+def explain_nothing_analysed(path: str | os.PathLike[str], opened: Opened) -> str:
     """Why there is no package, and what to do, for a workspace without any."""
     where = shown(os.fspath(path))
     ignored = [PathProblem(place.path or ".", place.ignored) for place in opened.workspace.discovered.ignored]
@@ -218,7 +218,7 @@ def nothing_analysed(path: str | os.PathLike[str], opened: Opened) -> str:
     return f"{where}: no package was found (no package.xml outside of ignored folders); give the folder of a workspace"
 
 
-def chosen_rules(options: Options, config: Config) -> dict[str, Rule]:
+def select_rules(options: Options, config: Config) -> dict[str, Rule]:
     """The rules to run. What is asked for on the command line goes over the configuration, list by list.
 
     Raises SettingsError for a name that is neither a rule nor a family.
@@ -226,7 +226,7 @@ def chosen_rules(options: Options, config: Config) -> dict[str, Rule]:
     rules = all_rules()
     select, ignore = options.select or config.select, options.ignore or config.ignore
     try:
-        return after.chosen(rules, select=select, ignore=ignore, preview=options.preview)
+        return after.choose_rules(rules, select=select, ignore=ignore, preview=options.preview)
     except after.SettingsError as error:
         option = "--select or --ignore" if options.select or options.ignore else f"{config.path}: [check]"
         raise after.SettingsError(f"{option}: {error}") from None

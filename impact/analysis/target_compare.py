@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 from ..rules.rule import Finding
-from .check import Checked, judged
+from .check import Checked, check_opened
 from .findings import rank
-from .session import CheckError, Opened, Options, chosen_rules, open_workspace
+from .session import CheckError, Opened, Options, open_workspace, select_rules
 
 
 class Sides(NamedTuple):
@@ -23,7 +23,7 @@ class Sides(NamedTuple):
 
 
 @contextmanager
-def sides(
+def open_sides(
     path: str | os.PathLike[str],
     first: str,
     second: str,
@@ -36,10 +36,10 @@ def sides(
     nothing could be analysed.
     """
     options = options._replace(targets=(first, second))
-    with open_workspace(path, options, progress, lambda config: chosen_rules(options, config)) as opened:
+    with open_workspace(path, options, progress, lambda config: select_rules(options, config)) as opened:
         if len(opened.targets) < 2:
             raise CheckError(f"{first} and {second} are the same target; give two")
-        one, other = (judged(path, options, alone) for alone in opened.one_by_one())
+        one, other = (check_opened(path, options, alone) for alone in opened.one_by_one())
         for checked in (one, other):
             if checked.report.failure:
                 raise CheckError(checked.report.failure)
@@ -53,7 +53,7 @@ class Compared(NamedTuple):
     both: list[Finding]
 
 
-def compared(findings: Iterable[Finding], other: Iterable[Finding]) -> Compared:
+def compare_findings(findings: Iterable[Finding], other: Iterable[Finding]) -> Compared:
     """Findings of one side against those of the other, by rule, package, path, line and subject."""
     there: dict[tuple, int] = {}
     for finding in other:
@@ -80,7 +80,7 @@ class Item(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def items(findings: Iterable[Finding], order: Sequence[str]) -> list[Item]:
+def group_items(findings: Iterable[Finding], order: Sequence[str]) -> list[Item]:
     """Findings as things to do, package by package in an order; in a package the gravest first, then by place.
 
     What belongs to no package comes first, and a package that the order does not name last.

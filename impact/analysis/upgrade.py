@@ -10,11 +10,12 @@ from typing import NamedTuple
 
 from ..model.build_order import build_order
 from ..rules.rule import Finding
+from ..rules.severity import Doubt
 from . import fix
 from .findings import rank
 from .report import Report, ReportedPackage, ReportedTarget
-from .session import CheckError, Options, reader
-from .target_compare import Item, compared, items, sides
+from .session import CheckError, Options, make_reader
+from .target_compare import Item, compare_findings, group_items, open_sides
 
 
 class Upgrade(NamedTuple):
@@ -66,7 +67,7 @@ def upgrade(
     CheckError for a package that is not there, or where both targets are the same.
     """
     started = time.perf_counter()
-    with sides(path, old, new, options, progress) as (opened, before, after):
+    with open_sides(path, old, new, options, progress) as (opened, before, after):
         order = build_order(opened.views[1])
     report = after.report
     folders = {package.name: package.path for package in report.packages}
@@ -74,19 +75,19 @@ def upgrade(
         if name not in folders:
             raise CheckError(f"--packages {name}: the workspace has no such package")
     wanted = set(packages or ("", *order))
-    warning = {rule.name for rule in report.rules if rule.deprecation}
+    warning = {rule.name for rule in report.rules if Doubt.DEPRECATED in rule.doubts}
     now, then = ([finding for finding in side.report.findings if finding.package in wanted] for side in (after, before))
-    told, lost = compared(now, then), compared(then, now)
+    told, lost = compare_findings(now, then), compare_findings(then, now)
     return Upgrade(
         old=before.report.targets[0],
         report=report,
         packages=tuple(ReportedPackage(name, folders[name]) for name in order if name in wanted),
-        breaks=tuple(items((f for f in told.new if _grave(f) and f.rule not in warning), order)),
-        deprecations=tuple(items((f for f in now if f.rule in warning), order)),
+        breaks=tuple(group_items((f for f in told.new if _grave(f) and f.rule not in warning), order)),
+        deprecations=tuple(group_items((f for f in now if f.rule in warning), order)),
         brought=tuple(f for f in told.new if _grave(f) or f.rule in warning),
         both=tuple(f for f in told.both if _grave(f) and f.rule not in warning),
         over=tuple(f for f in lost.new if _grave(f) and f.rule not in warning),
-        fixable=_fixable(report.findings, reader(after.tree)),
+        fixable=_fixable(report.findings, make_reader(after.tree)),
         # Of a revision, what would change is shown.
         command=_command(path, new, options, "--diff" if options.rev else "--fix"),
         check_old=_command(path, old, options),

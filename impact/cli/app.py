@@ -1,4 +1,4 @@
-"""The command line: thin, imports late, starts in a blink."""
+"""The command line: options and help; each command imports what it needs when it runs."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from ...classifier.cli import triage
 from ...corpus.cli import app as corpus_app
 from ...corpus.study_cli import app as study_app
 from ...edges.console import UserError, hold_streams, output_failed, say, visible, write
+from .dev import app as dev_app
 
 app = typer.Typer(
     name="rosimpact",
@@ -26,10 +27,12 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 env_app = typer.Typer(
-    help="Machines: capture this one as a target, compare two.", no_args_is_help=True, rich_markup_mode=None
+    help="Machines: capture this machine as a target, compare two machines.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
 )
 data_app = typer.Typer(
-    help="The shipped distro data: its date, rebuilding it, refreshing it.", no_args_is_help=True, rich_markup_mode=None
+    help="The shipped distro data: show its date, rebuild it, update it.", no_args_is_help=True, rich_markup_mode=None
 )
 surface_app = typer.Typer(
     help="What versions of packages offer, and what changed between them.", no_args_is_help=True, rich_markup_mode=None
@@ -41,9 +44,10 @@ app.add_typer(corpus_app, name="corpus")
 app.add_typer(classifier_app, name="classifier")
 app.command()(triage)
 app.add_typer(study_app, name="study")
+app.add_typer(dev_app, name="dev", hidden=True)
 
 
-_FOLLOW_LINKS = "Also read what links lead to that leave the workspace. Not for workspaces of people you do not know."
+_FOLLOW_LINKS = "Follow links that lead out of the workspace. Do not use it on workspaces that you do not trust."
 
 
 def _print_schema(value: bool) -> None:
@@ -80,50 +84,50 @@ def check(
     base: Annotated[
         list[str] | None,
         typer.Option(
-            help="Compare with the merge base with this revision (PATH=REV for one repository, or a pinned .repos "
-            "file): only what is new fails."
+            help="Compare with the merge base of this revision (PATH=REV for one repository, or a pinned .repos "
+            "file): only new findings fail."
         ),
     ] = None,
     install: Annotated[
         Path | None,
         typer.Option(
-            help="Also check the built files of this install space (or devel space, or prefix of a package): shared "
-            "libraries that are gone, here or on a target."
+            help="Also check the built files of this install space (or devel space, or prefix of a package) for shared "
+            "libraries that are missing, here or on a target."
         ),
     ] = None,
     select: Annotated[
         list[str] | None, typer.Option(help="Only these rules or families. May be repeated or comma-separated.")
     ] = None,
-    ignore: Annotated[list[str] | None, typer.Option(help="Not these rules or families.")] = None,
+    ignore: Annotated[list[str] | None, typer.Option(help="Skip these rules or families.")] = None,
     fail_on: Annotated[
-        str, typer.Option(help="Exit with 1 from this severity on: error (the default), warning, note, never.")
+        str, typer.Option(help="Lowest severity that gives exit status 1: error (the default), warning, note, never.")
     ] = "",
-    notes: Annotated[bool, typer.Option("--notes", help="Show notes in the text report too.")] = False,
+    notes: Annotated[bool, typer.Option("--notes", help="Also show notes in the text report.")] = False,
     preview: Annotated[
         bool, typer.Option("--preview", help="Also run rules whose precision is not measured yet.")
     ] = False,
-    baseline: Annotated[Path | None, typer.Option(help="Leave out what this file already holds.")] = None,
+    baseline: Annotated[Path | None, typer.Option(help="Leave out findings that this file contains.")] = None,
     write_baseline: Annotated[
-        Path | None, typer.Option(help="Write all of today's findings to this file, and exit with 0.")
+        Path | None, typer.Option(help="Write all current findings to this file, and exit with 0.")
     ] = None,
     prune_baseline: Annotated[
-        bool, typer.Option("--prune-baseline", help="Take what is cured out of the file given with --baseline.")
+        bool, typer.Option("--prune-baseline", help="Remove fixed findings from the file given with --baseline.")
     ] = False,
     fix: Annotated[
         bool,
-        typer.Option("--fix", help="Apply fixes that are right on every target asked for, and report what remains."),
+        typer.Option("--fix", help="Apply fixes that are correct on all targets, and report what remains."),
     ] = False,
     diff: Annotated[bool, typer.Option("--diff", help="Print what --fix would change; change nothing.")] = False,
     config: Annotated[Path | None, typer.Option(help="Another rosimpact.toml.")] = None,
     follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
     schema: Annotated[
         bool,
         typer.Option("--schema", callback=_print_schema, is_eager=True, help="Print the JSON schema of --format json."),
     ] = False,
 ) -> None:
-    """Say what breaks, on whose machine, where, and what to do.
+    """Report what breaks, on which machine, where, and what to do.
 
     Exit status: 0 nothing at or above --fail-on, 1 findings, 2 the tool failed or analysed nothing.
     """
@@ -148,8 +152,8 @@ def _print_upgrade_schema(value: bool) -> None:
 
 @app.command()
 def upgrade(
-    from_: Annotated[str, typer.Option("--from", help="The target that is left, in any form that --target takes.")],
-    to: Annotated[str, typer.Option("--to", help="The target that is moved to.")],
+    from_: Annotated[str, typer.Option("--from", help="The current target, in any form that --target accepts.")],
+    to: Annotated[str, typer.Option("--to", help="The new target.")],
     path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
     packages: Annotated[list[str] | None, typer.Option(help="Only these packages.")] = None,
     rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
@@ -158,7 +162,7 @@ def upgrade(
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, html.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
     fail_on: Annotated[
-        str, typer.Option(help="Exit with 1 from this severity on: error (the default), warning, note, never.")
+        str, typer.Option(help="Lowest severity that gives exit status 1: error (the default), warning, note, never.")
     ] = "",
     schema: Annotated[
         bool,
@@ -166,12 +170,12 @@ def upgrade(
             "--schema", callback=_print_upgrade_schema, is_eager=True, help="Print the JSON schema of --format json."
         ),
     ] = False,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
-    """Say what moving from one target to another breaks, package by package in build order.
+    """List what breaks when you move from one target to another, package by package in build order.
 
-    Exit status: 0 nothing that it brings is at or above --fail-on, 1 something breaks, 2 the tool failed.
+    Exit status: 0 no new finding at or above --fail-on, 1 something breaks, 2 the tool failed.
     """
     from . import run
 
@@ -190,13 +194,16 @@ def why(
     ],
     path: Annotated[
         Path | None,
-        typer.Argument(help="Workspace whose uses are shown; the current folder when it is one.", show_default=False),
+        typer.Argument(
+            help="Workspace whose uses are shown; default: the current folder, if it is a workspace.",
+            show_default=False,
+        ),
     ] = None,
     target: Annotated[list[str] | None, typer.Option("--target", "-t", help="As for check.")] = None,
     follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
 ) -> None:
-    """Say who provides a name on a target, since when, and who in the workspace uses it."""
+    """Show which package provides a name on a target, since when, and what uses it in the workspace."""
     from . import run
 
     raise typer.Exit(run.why(name, path, tuple(target or ()), format, follow_links=follow_links))
@@ -205,39 +212,44 @@ def why(
 @app.command()
 def graph(
     path: Annotated[Path, typer.Argument(help="Workspace, package or git repository.")] = Path("."),
-    launch: Annotated[str, typer.Option(help="Only what this launch file starts, under the names it gives.")] = "",
+    launch: Annotated[
+        str, typer.Option(help="Only what this launch file starts, with the names that it assigns.")
+    ] = "",
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="An argument of the launch file, NAME:=VALUE. May be repeated.")
     ] = None,
     node: Annotated[
-        list[str] | None, typer.Option(help="Only this node and what it talks to; `*` stands for any text.")
+        list[str] | None, typer.Option(help="Only this node and its neighbours; `*` matches any text.")
     ] = None,
     topic: Annotated[
-        list[str] | None, typer.Option(help="Only this topic, service or action, and who uses it.")
+        list[str] | None, typer.Option(help="Only this topic, service or action, and the nodes that use it.")
     ] = None,
     package: Annotated[list[str] | None, typer.Option(help="Only nodes of this package.")] = None,
     around: Annotated[str, typer.Option(help="Only what is near this node or topic.")] = "",
-    hops: Annotated[int, typer.Option(min=1, help="How near: steps from node to node.")] = 2,
+    hops: Annotated[int, typer.Option(min=1, help="With --around: the number of steps from node to node.")] = 2,
     rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
     base: Annotated[
-        list[str] | None, typer.Option(help="Mark what is new, gone and changed against this revision, as for check.")
+        list[str] | None,
+        typer.Option(help="Mark what was added, removed and changed since this revision, as for check."),
     ] = None,
     follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     format: Annotated[
         str, typer.Option("--format", "-f", help="One of text, json, graphml, dot, mermaid, html.")
     ] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the graph to this file.")] = None,
-    all: Annotated[bool, typer.Option("--all", help="Show what is hidden, and all that was not resolved.")] = False,
+    all: Annotated[
+        bool, typer.Option("--all", help="Also show hidden names and everything that was not resolved.")
+    ] = False,
     schema: Annotated[
         bool,
         typer.Option(
             "--schema", callback=_print_graph_schema, is_eager=True, help="Print the JSON schema of --format json."
         ),
     ] = False,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
-    """Show who talks to whom: nodes, topics, services and actions, without building or running anything."""
+    """Show which nodes are connected by topics, services and actions, without building or running anything."""
     from . import run
 
     raise typer.Exit(
@@ -262,34 +274,32 @@ def impact(
     base: Annotated[
         list[str] | None,
         typer.Option(
-            help="What changed since the merge base with this revision (PATH=REV for one repository, or a pinned "
+            help="What changed since the merge base of this revision (PATH=REV for one repository, or a pinned "
             ".repos file)."
         ),
     ] = None,
     rev: Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")] = "",
     package: Annotated[list[str] | None, typer.Option(help="Only changes in this package. May be repeated.")] = None,
     topic: Annotated[
-        list[str] | None, typer.Option(help="Only what goes through this topic; `*` stands for any text.")
+        list[str] | None, typer.Option(help="Only what goes through this topic; `*` matches any text.")
     ] = None,
     node: Annotated[
-        list[str] | None, typer.Option(help="Only changes in this node, or that reach it; `*` stands for any text.")
+        list[str] | None, typer.Option(help="Only changes in this node, or that affect it; `*` matches any text.")
     ] = None,
     follow_links: Annotated[bool, typer.Option("--follow-links", help=_FOLLOW_LINKS)] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
-    all: Annotated[
-        bool, typer.Option("--all", help="List every node that is reached, and all unresolved calls.")
-    ] = False,
+    all: Annotated[bool, typer.Option("--all", help="List every affected node and all unresolved calls.")] = False,
     schema: Annotated[
         bool,
         typer.Option(
             "--schema", callback=_print_impact_schema, is_eager=True, help="Print the JSON schema of --format json."
         ),
     ] = False,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
-    """Say which nodes the changes since a base reach: of messages, topics, publish conditions and callbacks."""
+    """Show which nodes are affected by changes since a base: of messages, topics, publish conditions and callbacks."""
     from . import run
 
     raise typer.Exit(
@@ -303,18 +313,18 @@ def impact(
 @app.command()
 def logic(
     repository: Annotated[Path, typer.Argument(help="Git repository, bare or not, or a folder in one.")] = Path("."),
-    range: Annotated[str, typer.Option(help="Commits A..B, or all up to B; all of HEAD's when left out.")] = "",
-    commits: Annotated[int | None, typer.Option(min=1, help="Only the newest so many of them.")] = None,
-    since: Annotated[str, typer.Option(help="Only those since this day, 2024-03-01.")] = "",
+    range: Annotated[str, typer.Option(help="Commits A..B, or all up to B; default: all up to HEAD.")] = "",
+    commits: Annotated[int | None, typer.Option(min=1, help="Only this many of the newest commits.")] = None,
+    since: Annotated[str, typer.Option(help="Only commits since this day, such as 2024-03-01.")] = "",
     package: Annotated[list[str] | None, typer.Option(help="Only this package. May be repeated.")] = None,
     topic: Annotated[list[str] | None, typer.Option(help="Only this topic. May be repeated.")] = None,
-    all: Annotated[bool, typer.Option("--all", help="Also list conditions that were merely reworded.")] = False,
+    all: Annotated[bool, typer.Option("--all", help="Also list conditions that were only reworded.")] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="text, json or html (a timeline).")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")] = None,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to work with.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
-    """Say at which commits the logic of publishing changed: which condition or trigger, how, and whom it reaches."""
+    """List the commits that changed when messages are published: which condition or trigger, and whom it affects."""
     from . import run
 
     raise typer.Exit(
@@ -327,9 +337,9 @@ def logic(
 
 @app.command()
 def explain(
-    rule: Annotated[str | None, typer.Argument(help="A rule's name; without one, all rules are listed.")] = None,
+    rule: Annotated[str | None, typer.Argument(help="Name of a rule or group; default: list all rules.")] = None,
 ) -> None:
-    """Say what a rule does, why it matters, and how to cure what it finds."""
+    """Explain what a rule does, why it matters, and how to fix its findings."""
     from . import run
 
     raise typer.Exit(run.explain(rule))
@@ -338,7 +348,7 @@ def explain(
 @env_app.command("capture")
 def env_capture(
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="File to write; standard output when left out.")
+        Path | None, typer.Option("--output", "-o", help="File to write; default: standard output.")
     ] = None,
 ) -> None:
     """Write this machine as a target."""
@@ -356,9 +366,9 @@ def _print_env_diff_schema(value: bool) -> None:
 
 @env_app.command("diff")
 def env_diff(
-    first: Annotated[str, typer.Argument(help="A target, in any form that --target takes.")],
+    first: Annotated[str, typer.Argument(help="A target, in any form that --target accepts.")],
     second: Annotated[str, typer.Argument(help="Another target.")],
-    path: Annotated[Path | None, typer.Argument(help="A workspace: say what matters to it.")] = None,
+    path: Annotated[Path | None, typer.Argument(help="A workspace: show which differences matter to it.")] = None,
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
     schema: Annotated[
@@ -368,14 +378,14 @@ def env_diff(
         ),
     ] = False,
 ) -> None:
-    """Say what differs between two machines; beside a workspace, what breaks on one of them alone."""
+    """Show the differences between two machines; with a workspace, also what breaks on only one of them."""
     from . import run
 
     raise typer.Exit(run.env_diff(first, second, path, format, output))
 
 
 _REPOS_HELP = "Folder of git clones with their tags, called OWNER+NAME or NAME."
-_REPOS_OR_SHIPPED = f"{_REPOS_HELP} Without it, what is shipped answers."
+_REPOS_OR_SHIPPED = f"{_REPOS_HELP} Default: the shipped data."
 
 
 @surface_app.command("show")
@@ -387,12 +397,12 @@ def surface_show(
         ),
     ],
     repos: Annotated[Path | None, typer.Option(help=_REPOS_OR_SHIPPED)] = None,
-    all: Annotated[bool, typer.Option("--all", help="Members of classes, constants and macros too.")] = False,
+    all: Annotated[bool, typer.Option("--all", help="Also show members of classes, constants and macros.")] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
 ) -> None:
-    """Say what a version of a package offers: headers, names, messages, targets, programs."""
+    """Show what a version of a package offers: headers, names, messages, targets, programs."""
     from . import run
 
     raise typer.Exit(run.surface_show(package, repos=repos, all_of_it=all, format=format, output=output, jobs=jobs))
@@ -402,17 +412,19 @@ def surface_show(
 def surface_diff(
     what: Annotated[str, typer.Argument(help="A package, or the path of a clone (then without --repos).")],
     old: Annotated[
-        str, typer.Argument(help="A version, a distro, an installed prefix or a .deb; of a clone a revision.")
+        str, typer.Argument(help="A version, a distro, an installed prefix or a .deb; for a clone, a revision.")
     ],
-    new: Annotated[str, typer.Argument(help="The same of what it is compared with.")],
+    new: Annotated[str, typer.Argument(help="The version to compare with, in the same forms.")],
     repos: Annotated[Path | None, typer.Option(help=_REPOS_OR_SHIPPED)] = None,
-    packages: Annotated[list[str] | None, typer.Option(help="Of a clone, only these packages.")] = None,
-    all: Annotated[bool, typer.Option("--all", help="Also list what is new and what still builds.")] = False,
+    packages: Annotated[list[str] | None, typer.Option(help="For a clone: only these packages.")] = None,
+    all: Annotated[
+        bool, typer.Option("--all", help="Also list additions, and changes that do not break builds.")
+    ] = False,
     format: Annotated[str, typer.Option("--format", "-f", help="One of text, json, markdown.")] = "text",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")] = None,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to parse with.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
 ) -> None:
-    """Say what changed between two versions: what is gone, moved, deprecated, called differently."""
+    """Show what changed between two versions: removed, moved and deprecated names, and changed signatures."""
     from . import run
 
     raise typer.Exit(
@@ -425,20 +437,21 @@ def surface_diff(
 
 @surface_app.command("build")
 def surface_build(
-    distro: Annotated[list[str], typer.Option(help="Read what this distro has. May be repeated.")],
+    distro: Annotated[list[str], typer.Option(help="Read the packages of this distro. May be repeated.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="File to write, such as surfaces.sqlite.")],
     repos: Annotated[Path, typer.Option(help=_REPOS_HELP)] = Path("."),
     packages: Annotated[list[str] | None, typer.Option(help="Only these packages.")] = None,
     all_versions: Annotated[
-        bool, typer.Option("--all-versions", help="All that the distros ever had, not only what they have now.")
+        bool,
+        typer.Option("--all-versions", help="Read all versions that the distros ever had, not only the current ones."),
     ] = False,
-    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes to work with.")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes.")] = None,
     dask: Annotated[
-        str | None, typer.Option(help="Work on the cluster of this Dask scheduler, such as tcp://host:8786.")
+        str | None, typer.Option(help="Use the cluster of this Dask scheduler, such as tcp://host:8786.")
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
-    """Write what the released versions of packages offer to a file. A run that is stopped goes on the next time."""
+    """Write what the released versions of packages offer to a file. A stopped run continues the next time."""
     from . import run
 
     raise typer.Exit(
@@ -453,7 +466,7 @@ def surface_build(
 def data_status(
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
 ) -> None:
-    """Say how old the distro data is, and where it is from."""
+    """Show the age and the sources of the distro data."""
     from . import run
 
     raise typer.Exit(run.data_status(format))
@@ -466,13 +479,13 @@ def data_build(
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write the snapshot to.")],
     work: Annotated[
-        Path | None, typer.Option(help="Folder for what was read so far; another run continues from it.")
+        Path | None, typer.Option(help="Folder for intermediate results; the next run continues from it.")
     ] = None,
     meta_ros: Annotated[
         Path | None, typer.Option(help="Clone of ros/meta-ros, for the dependencies of released packages.")
     ] = None,
 ) -> None:
-    """Build the snapshot anew from git repositories."""
+    """Rebuild the snapshot from git repositories."""
     from . import run
 
     raise typer.Exit(run.data_build(rosdistro, output, work, meta_ros))
@@ -480,7 +493,7 @@ def data_build(
 
 @data_app.command("update")
 def data_update() -> None:
-    """Refresh the snapshot over the network, through the rosdistro library."""
+    """Update the snapshot over the network, with the rosdistro library."""
     from . import run
 
     raise typer.Exit(run.data_update())
@@ -532,7 +545,7 @@ def main() -> None:
     for argument in sys.argv[1:]:
         if "\0" in argument:
             # No shell can pass one; who calls from Python can, and the system's calls would end in a ValueError.
-            say(f"rosimpact: {argument!r}: holds a null byte, which no path or name can; leave it out")
+            say(f"rosimpact: {argument!r}: contains a null byte, which no path or name can contain; remove it")
             raise SystemExit(2)
     # What a command reads it keeps, and there are no cycles in it: looking for some often costs a tenth of the time.
     gc.set_threshold(200_000, 20, 100)

@@ -39,8 +39,8 @@ FAIL_ON = ("error", "warning", "note", "never")
 _TEXT_OR_JSON = ("text", "json")
 
 
-_READ_SO_FAR = "interrupted; what was read is kept, and the next run goes on from there"
-_PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run goes on from there"
+_READ_SO_FAR = "interrupted; what was read is kept, and the next run continues from there"
+_PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run continues from there"
 
 
 def _fail(message: str, format: str, output: Path | None, path: object) -> int:
@@ -80,7 +80,7 @@ def _deliver_answer(
 
 
 def _one_of(option: str, given: str, known: Sequence[str]) -> None:
-    """Raises UserError where an option is given a word that it does not know."""
+    """Raises UserError when an option has a value that it does not know."""
     if given not in known:
         raise UserError(f"{option} {given}: unknown; choose one of {', '.join(known)}")
 
@@ -101,7 +101,7 @@ def check(
         _one_of("--format", format, FORMATS)
         _one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
         if prune_baseline and baseline is None:
-            raise UserError("--prune-baseline: needs the baseline to prune; give it with --baseline")
+            raise UserError("--prune-baseline: no baseline was given; name it with --baseline")
         known = _baseline(baseline)
         for file in (output, write_baseline, baseline if prune_baseline else None):
             _check_output(file, path)
@@ -142,18 +142,18 @@ def _write_step_summary(report: Report) -> None:
     try:
         write_step_summary(report, os.environ)
     except OSError as error:
-        say(f"rosimpact: the step summary cannot be written: {error.strerror}; check what GITHUB_STEP_SUMMARY names")
+        say(f"rosimpact: the step summary cannot be written: {error.strerror}; check GITHUB_STEP_SUMMARY")
 
 
 def _baseline(file: Path | None) -> str:
     """The text of a baseline file, checked, so that a wrong one is named before the work starts."""
     if file is None:
         return ""
-    from ..analysis.findings import known_from
+    from ..analysis.findings import read_baseline
 
     try:
         text = read_file(file, limits().baseline)
-        known_from(text)
+        read_baseline(text)
         return text.decode("utf-8-sig")
     except OSError as error:
         raise UserError(f"{file}: {error.strerror}; write a baseline with --write-baseline {file}") from None
@@ -163,24 +163,24 @@ def _baseline(file: Path | None) -> str:
 
 def _new_baseline(file: Path, report: Report, path: Path) -> int:
     """Writes all of today's findings, those that an older baseline knows included."""
-    from ..analysis.findings import baseline, in_order
+    from ..analysis.findings import format_baseline, sort_findings
 
     if not report.packages:
-        raise UserError(f"{file}: not written, since nothing was analysed")
-    found = in_order([*report.findings, *report.known])
-    _save(file, baseline(found), path)
+        raise UserError(f"{file}: not written, because nothing was analysed")
+    found = sort_findings([*report.findings, *report.known])
+    _save(file, format_baseline(found), path)
     say(f"rosimpact: {file}: {counted(len(found), 'finding')}")
     return 2 if report.failure else 0
 
 
 def _prune(file: Path, known: str, report: Report, path: Path) -> None:
     """Takes what is cured out of a baseline file."""
-    from ..analysis.findings import known_from, pruned
+    from ..analysis.findings import prune_baseline, read_baseline
 
-    text, gone = pruned(known_from(known), [*report.findings, *report.known])
+    text, gone = prune_baseline(read_baseline(known), [*report.findings, *report.known])
     if gone:
         _save(file, text, path)
-    say(f"rosimpact: {file}: {gone} cured, taken out")
+    say(f"rosimpact: {file}: {gone} fixed, removed")
 
 
 def _fixed(path: Path, checked: Checked) -> bool:
@@ -188,7 +188,7 @@ def _fixed(path: Path, checked: Checked) -> bool:
     from ..analysis import fix
 
     if not isinstance(checked.tree, WorkingTree):
-        raise UserError("--fix: a revision cannot be changed; leave --rev out, or print the changes with --diff")
+        raise UserError("--fix: a revision cannot be changed; remove --rev, or print the changes with --diff")
     applied = _applied(checked)
     done = 0
     for name, data in applied.files.items():
@@ -224,8 +224,8 @@ def _patch(checked: Checked, output: Path | None) -> tuple[str, bool]:
         if output is None and is_obeyed(part):
             incomplete = True
             say(
-                f"rosimpact: {shown(name)}: its changes are not printed, since the lines around them hold what a "
-                "terminal or CI would obey; write them to a file with --output"
+                f"rosimpact: {shown(name)}: its changes are not printed, because the lines around them contain "
+                "control sequences or CI commands; write them to a file with --output"
             )
         else:
             parts.append(part)
@@ -418,7 +418,7 @@ def impact(
 
     def answer() -> str:
         if not base:
-            raise UserError("--base: needed, the revision that the change is compared with, such as origin/main")
+            raise UserError("--base: missing; give the revision to compare with, such as origin/main")
         from ..analysis.downstream import chosen
         from ..analysis.impact import reached
         from ..report import impact as impact_report
@@ -572,9 +572,9 @@ def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask,
         from ..model.surface.clones import Clones
 
         if not distros:
-            raise UserError("--distro: say which distros' versions are read, such as --distro humble --distro jazzy")
+            raise UserError("--distro: missing; name the distros to read, such as --distro humble --distro jazzy")
         if dask is not None and jobs is not None:
-            raise UserError("--jobs: is for this machine, and with --dask the cluster works; give one of the two")
+            raise UserError("--jobs: has no effect with --dask, which uses a cluster; give only one of the two")
         _check_output(output, "")
         report = None if quiet else steps()
         versions = "all" if all_versions else "newest"
@@ -652,29 +652,18 @@ def _of_surfaces(answer: Callable, format: str, output: Path | None) -> int:
 
 
 def explain(name: str | None) -> int:
-    """Prints a rule's documentation, or the list of rules."""
+    """Prints the documentation of a rule or group, or the list of them. Returns the exit status: 0, or 2 (no such
+    rule)."""
+    from ..rules import explain as pages
     from ..rules.rule import all_rules
 
     rules = all_rules()
-    if name is None:
-        family, lines = "", []
-        for rule in sorted(rules.values(), key=lambda r: (r.family, r.name)):
-            if rule.family != family:
-                family = rule.family
-                lines.append(f"{family}:")
-            first = rule.documentation.splitlines()[0].split(": ", 1)[-1]
-            lines.append(f"  {rule.name:26s} {rule.severity:8s} {first}")
-        return _deliver_answer(lambda: "\n".join(lines))
-    if name not in rules:
-        from difflib import get_close_matches
-
-        close = get_close_matches(name, rules, 1)
-        say(
-            f"rosimpact: no rule is called `{name}`; "
-            + (f"did you mean `{close[0]}`?" if close else "`rosimpact explain` lists them")
-        )
+    try:
+        text = pages.list_rules(rules) if name is None else pages.explain(name, rules)
+    except KeyError as error:
+        say(f"rosimpact: {error.args[0]}")
         return 2
-    return _deliver_answer(rules[name].documentation.rstrip)
+    return _deliver_answer(lambda: text)
 
 
 def env_capture(output: Path | None) -> int:
@@ -687,7 +676,7 @@ def env_capture(output: Path | None) -> int:
         machine = capture()
         _deliver(to_json(machine), output, "json")
         if not machine.distro:
-            say("rosimpact: no ROS distro was found here: set `distro` in the file before it is used as a target")
+            say("rosimpact: no ROS distro was found here; set `distro` in the file before you use it as a target")
         if output is not None:
             say(f"rosimpact: {output}: written; use it with --target {output}")
         return 0

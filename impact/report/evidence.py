@@ -1,4 +1,4 @@
-"""What a finding rests on, as the reports show it: a few lines for a person, an object for programs."""
+"""The evidence of a finding as the reports show it: a few lines for a person, an object for programs."""
 
 from __future__ import annotations
 
@@ -7,14 +7,13 @@ from typing import Any
 from ..rules.rule import Finding
 from ..targets.evidence import Evidence, OnTarget
 
-_WORDS = {"removed": "gone", "added": "there", "changed": "changed", "deprecated": "deprecated"}
 _MOST_DECLARATIONS = 2
 _MOST_TARGETS = 5
 
 
 def lines(finding: Finding) -> list[tuple[str, str]]:
-    """(label, text) of what the message does not say: the declarations `was` and `now`, and `when` each target got the
-    change. Empty where nothing more is known."""
+    """(label, text) of what the message does not contain: the declarations `was` and `now`, and `when` each target got
+    the change. Empty when nothing more is known."""
     evidence = finding.evidence
     if evidence is None:
         return []
@@ -55,19 +54,19 @@ def _declarations(label: str, declarations: tuple[str, ...]) -> list[tuple[str, 
 
 
 def _when(evidence: Evidence) -> str:
-    """`gone between rclcpp 28.3.1 and 28.3.2: rolling since 2024-08-21, still on humble (16.0.20)`; empty where neither
-    a version nor a day is known, or nobody asked for differs from what it says."""
+    """`removed between rclcpp 28.3.1 and 28.3.2: rolling since 2024-08-21, still on humble (16.0.20)`; empty when
+    neither a version nor a date is known, or no target differs from the message."""
     got = [f"{one.target} since {one.since}" for one in evidence.targets if one.holds and one.since]
     others = [one for one in evidence.targets if not one.holds]
     if not got and not others and not evidence.first[:1].isdigit():
         return ""
-    word = _WORDS.get(evidence.change, evidence.change)
+    word = evidence.change
     if evidence.last and evidence.first:
         head = f"{word} between {evidence.package} {evidence.last} and {evidence.first}"
     elif evidence.first == "ros2":
-        head = f"{word} since ROS 2"
+        head = f"{word} in ROS 2"
     elif evidence.first:
-        head = f"{word} since " + (f"{evidence.package} " if evidence.first[0].isdigit() else "") + evidence.first
+        head = f"{word} in " + (f"{evidence.package} " if evidence.first[0].isdigit() else "") + evidence.first
     else:
         head = word
     lasting = "still on" if evidence.change == "removed" else "not on"

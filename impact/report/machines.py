@@ -94,13 +94,13 @@ def _summary(found: Machines, style: Style) -> str:
     if found.report is None:
         return counted(len(found.machine) + len(found.versions), "difference")
     parts = [
-        f"{alone} on {visible(target.name)} alone"
+        f"{alone} only on {visible(target.name)}"
         for target in _targets(found)
         if (alone := _counts([item for item in found.harms if target.name in item.findings[0].targets]))
     ]
-    told = ", ".join(parts) or "nothing breaks on one of them alone"
+    told = ", ".join(parts) or "nothing breaks on only one of them"
     both = f"{counted(found.both, 'finding')} on both" if found.both else ""
-    versions = f"{len(found.versions):,} versions differ of what it uses, {found.others:,} of what it does not"
+    versions = f"different versions: {len(found.versions):,} of what it uses, {found.others:,} others"
     return f" {style.symbols[4]} ".join(part for part in (told, both, versions) if part)
 
 

@@ -31,7 +31,7 @@ def render(report: Report, style: Style = PLAIN) -> str:
 
         lines += [
             "",
-            painted(style, "bold", "what this change reaches"),
+            painted(style, "bold", "affected by this change"),
             *short(report.impact, style, visible(report.base)),
         ]
     table = _matrix(report, style)

@@ -26,17 +26,17 @@ SCHEMA = 1
 def verdict(found: Upgrade) -> str:
     """One line: safe, or what breaks.
 
-    `humble → jazzy breaks 3 of 46 packages: 3 errors and 1 warning to work off, in 9 places`
+    `humble → jazzy breaks 3 of 46 packages: 3 errors and 1 warning to fix, in 9 places`
     """
     way = f"{visible(found.old.name)} → {visible(found.new.name)}"
     total = counted(len(found.packages), "package")
     if not found.breaks:
-        return f"{way} is safe: nothing that is known breaks in {total}"
+        return f"{way} is safe: no known break in {total}"
     broken = {item.package for item in found.breaks if item.severity == "error"}
     touched = broken or {item.package for item in found.breaks}
     what = " and ".join(counted(n, severity) for severity, n in by_severity(found.breaks).items() if n)
     places = counted(sum(len(item.findings) for item in found.breaks), "place")
-    return f"{way} {'breaks' if broken else 'may break'} {len(touched):,} of {total}: {what} to work off, in {places}"
+    return f"{way} {'breaks' if broken else 'may break'} {len(touched):,} of {total}: {what} to fix, in {places}"
 
 
 def by_fixes(found: Upgrade) -> str:
@@ -51,15 +51,15 @@ def by_fixes(found: Upgrade) -> str:
 
 
 def rest(found: Upgrade) -> list[str]:
-    """What is not the upgrade's, as clauses."""
+    """The findings that the upgrade does not cause, as clauses."""
     old, new = visible(found.old.name), visible(found.new.name)
-    told = []
+    clauses = []
     if found.both:
         them = "it" if len(found.both) == 1 else "them"
-        told.append(f"{_counts(found.both)} on {old} already: {found.check_old} lists {them}")
+        clauses.append(f"{_counts(found.both)} already on {old}: {found.check_old} lists {them}")
     if found.over:
-        told.append(f"{_counts(found.over)} of {old} {'is' if len(found.over) == 1 else 'are'} not there on {new}")
-    return told
+        clauses.append(f"{_counts(found.over)} only on {old}, not on {new}")
+    return clauses
 
 
 def _counts(findings: Sequence[Finding]) -> str:

@@ -1,17 +1,50 @@
-"""What a rule is, what it yields, and how rules are found."""
+"""What a rule is, what it yields, and how rules are found.
+
+A rule is one check, in one module. Its name is the module's, with dashes, and its documentation is the module's
+docstring. It is a generator, registered by `@rule`:
+
+    @rule(
+        scope="change",
+        severity="error",
+        texts=Text("the field `{subject}` of `{definition}` was removed", help="keep the field for one release"),
+    )
+    def removed_field(workspace: Workspace, base: Workspace):
+        ...
+        yield Diagnostic(at, field.name, package.name, data={"definition": name})
+
+Its scope says what it is called with, and how often:
+
+    scope          called with                    when
+    target         view                           once for each target; it reports on the packages that the view
+                                                  iterates over, which may be a part of the workspace
+    workspace      workspace                      once: no target has a say in it
+    change         workspace, base                once, and only when there is a base to compare with
+    flow           workspace                      once; it rests on the message flow, and on nothing that is not
+                                                  remembered with the flow
+    flow_change    workspace, base                as `flow`, and only when there is a base
+    install_space  view, installed, shelf         once for each machine that built files are checked on, and only
+                                                  when there is an install space
+    targets        views                          once, with all targets together; it yields (view, diagnostic)
+
+It yields diagnostics: data, not text. What differs between targets (a version, a date) is data of one diagnostic for
+each target; they become one finding, and its text is rendered from the templates of the rule when all are known.
+"""
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from ..targets.evidence import Evidence
 from .fix_actions import Declare, Insert, Remove, Replace
+from .severity import Doubt, severity
+from .text import Text, Value
 
 SEVERITIES = ("note", "warning", "error")
+Scope = Literal["target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
 
 
 class Edit(NamedTuple):
@@ -26,12 +59,43 @@ class Edit(NamedTuple):
 Cure = Edit | Declare | Remove | Replace | Insert
 
 
-class Hit(NamedTuple):
-    """What a rule yields for one target. check.py merges equal hits of several targets into one Finding.
+class Diagnostic(NamedTuple):
+    """What a rule yields: one fact on one target, as data. findings.py merges those of several targets into a Finding.
 
-    at: anything with path, line, column. message: one clause, code in backticks. help: the cure, or empty.
-    severity: empty for the rule's own. fix: what cures it, see cure.py; kept only when every target asked for yields
-    the same. evidence: the change that it rests on, without targets; check.py adds how each stands to it.
+    at: anything with path, line, column. subject: one name, the thing at fault, as a person would type it. package:
+    the package of the place. data: the values that the rule's texts name, beside subject and package; every rule calls
+    a version `version`, the first version with a change `since`, and what to write instead `replacement`. kind: which
+    of the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity.
+    severity: where the policy was asked already; else empty. fix: actions that repair it, see fix_actions.py; kept only
+    when every target asked for yields the same. evidence: the change that it rests on, without targets; check.py adds
+    how each target stands to it.
+    """
+
+    at: object
+    subject: str
+    package: str = ""
+    data: Mapping[str, Value] = {}
+    kind: str = ""
+    doubts: tuple[Doubt, ...] = ()
+    severity: str = ""
+    fix: tuple[Cure, ...] = ()
+    evidence: Evidence | None = None
+
+    @property
+    def fact(self) -> object:
+        """What is said of a target: two diagnostics with equal facts are one."""
+        return self.kind, self.data
+
+    @property
+    def values(self) -> dict[str, Value]:
+        """The values that a text can name."""
+        return {"subject": self.subject, "package": self.package, **self.data}
+
+
+class Hit(NamedTuple):
+    """A diagnostic whose text is written by the rule, for rules that have no templates yet. See Diagnostic.
+
+    message: one clause, code in backticks. help: what to do, or empty. severity: empty for the rule's own.
     """
 
     at: object
@@ -42,6 +106,11 @@ class Hit(NamedTuple):
     severity: str = ""
     fix: tuple[Cure, ...] = ()
     evidence: Evidence | None = None
+
+    @property
+    def fact(self) -> object:
+        """What is said of a target."""
+        return self.message
 
 
 class Finding(NamedTuple):
@@ -64,25 +133,60 @@ class Finding(NamedTuple):
 
 
 class Rule(NamedTuple):
-    """A registered rule: name, family (folder), severity, whether it is a preview, function, documentation.
+    """A registered rule.
 
-    per_target: asked once for each target. compares: asked about a workspace and its base, and silent without one.
-    flow: rests on the message flow, and on nothing that is not remembered with it. installed: asked about the built
-    files of an install space, on each machine, and silent without one. deprecation: warns of what will go. across:
-    asked once about all targets together."""
+    family: its folder. severity: the usual one. scope: see the module. preview: its precision is not measured yet.
+    doubts: what speaks against an error in all of its diagnostics. group: the rule that it was a part of once, empty
+    otherwise. texts: templates by kind of diagnostic; empty while the rule writes its texts itself.
+    """
 
     name: str
     family: str
     severity: str
-    preview: bool
-    per_target: bool
-    run: Callable[..., Iterator[Hit]]
-    documentation: str
-    compares: bool = False
-    flow: bool = False
-    installed: bool = False
-    deprecation: bool = False
-    across: bool = False
+    run: Callable[..., Iterator]
+    documentation: str = ""
+    scope: Scope = "target"
+    preview: bool = False
+    doubts: tuple[Doubt, ...] = ()
+    group: str = ""
+    texts: Mapping[str, Text] = {}
+
+    @property
+    def names(self) -> tuple[str, str, str]:
+        """The names that mean this rule in settings and comments, the most specific first: its own, that of its group
+        (its own again where it is in none), that of its family."""
+        return self.name, self.group or self.name, self.family
+
+    @property
+    def has_base(self) -> bool:
+        """Whether it compares with a base."""
+        return self.scope in ("change", "flow_change")
+
+    @property
+    def reads_flow(self) -> bool:
+        """Whether it rests on the message flow."""
+        return self.scope in ("flow", "flow_change")
+
+    def severity_of(self, diagnostic: Diagnostic | Hit) -> str:
+        """How severe a diagnostic is: as it says itself, else the usual severity, lowered by its doubts."""
+        if diagnostic.severity or isinstance(diagnostic, Hit) or not diagnostic.doubts:
+            return diagnostic.severity or self.severity
+        return min(self.severity, severity(*diagnostic.doubts), key=SEVERITIES.index)
+
+    def verify(self, diagnostic: Diagnostic | Hit) -> None:
+        """Raises ValueError when the rule has no text for a diagnostic, or the text cannot be rendered from its data: a
+        value is missing, or has another type than the text expects."""
+        if isinstance(diagnostic, Diagnostic):
+            text = self.texts.get(diagnostic.kind)
+            if text is None:
+                raise ValueError(f"{self.name} has no text for diagnostics of the kind `{diagnostic.kind}`")
+            lacking = text.fields - diagnostic.values.keys()
+            if lacking:
+                raise ValueError(f"{self.name}: the data of `{diagnostic.subject}` lacks {', '.join(sorted(lacking))}")
+            try:
+                text.render([("", diagnostic.values)])
+            except (ValueError, TypeError) as error:
+                raise ValueError(f"{self.name}: the data of `{diagnostic.subject}`: {error}") from None
 
 
 _RULES: dict[str, Rule] = {}
@@ -90,40 +194,60 @@ _RULES: dict[str, Rule] = {}
 
 def rule(
     *,
-    severity: str,
+    scope: Scope = "target",
+    severity: Literal["note", "warning", "error"] = "error",
+    doubts: tuple[Doubt, ...] = (),
+    texts: Text | Mapping[str, Text] | None = None,
+    group: str = "",
     preview: bool = False,
-    per_target: bool = True,
-    compares: bool = False,
-    flow: bool = False,
-    installed: bool = False,
-    deprecation: bool = False,
-    across: bool = False,
 ):
-    """Registers the decorated generator as a rule. It is called as f(view), a workspace as one target sees it, and
-    reports on the packages that the view iterates over, which may be a part of the workspace; or as f(workspace) when
-    per_target is False or it asks for the flow; or as f(workspace, base) when it compares; or as f(view, installed,
-    shelf) when it is about built files; or as f(views) across targets, and then yields each hit with its view. The name
-    is the module's, with dashes."""
+    """Registers the decorated generator as a rule; the module's docstring tells how it is called.
+
+    severity: the highest that a finding of the rule can have, for what stops no build and no run however sure it is.
+    doubts: what speaks against that in every finding. texts: one template, or several by the kind of diagnostic.
+    group: the name of the rule that this check was a part of, so that settings, comments, baselines and fingerprints
+    which name that one go on to hold for this one. preview: it runs only when asked for, since its precision is not
+    measured yet.
+    """
+    if texts is None:
+        texts = {}
+    elif isinstance(texts, Text):
+        texts = {"": texts}
 
     def register(function):
         parts = function.__module__.split(".")
         module = importlib.import_module(function.__module__)
         name = parts[-1].replace("_", "-")
-        per = per_target and not (compares or flow or installed or across)
-        documentation = module.__doc__ or ""
+        usual = _lowest(severity, doubts)
         _RULES[name] = Rule(
-            name, parts[-2], severity, preview, per, function, documentation, compares, flow, installed, deprecation,
-            across,
-        )  # fmt: skip
+            name, parts[-2], usual, function, module.__doc__ or "", scope, preview, doubts, group, texts
+        )
         return function
 
     return register
+
+
+def _lowest(most: str, doubts: tuple[Doubt, ...]) -> str:
+    return min(most, severity(*doubts), key=SEVERITIES.index)
 
 
 def all_rules() -> dict[str, Rule]:
     """Every rule by name, importing the families on first use."""
     _import_families()
     return dict(sorted(_RULES.items()))
+
+
+def groups(rules: Mapping[str, Rule]) -> dict[str, list[Rule]]:
+    """The rules that every group stands for, by the group's name. A rule of that very name comes first: it is what
+    is left of the rule that the others were a part of."""
+    found: dict[str, list[Rule]] = {}
+    for rule in sorted(rules.values(), key=lambda rule: (rule.name != rule.group, rule.name)):
+        if rule.group:
+            found.setdefault(rule.group, []).append(rule)
+    for name, members in found.items():
+        if name in rules and rules[name] not in members:
+            members.insert(0, rules[name])
+    return dict(sorted(found.items()))
 
 
 @cache

@@ -120,7 +120,7 @@ BAD: dict[str, str | bytes] = {
 }
 # What each command says of the healthy package, whatever else is in the workspace, in every format.
 FOUND = {
-    "check": "OpenCV is 4.6.0, and CMake asks for 9",
+    "check": "CMake asks for OpenCV 9, but the target has 4.6.0",
     "graph": "healthy_topic",
     "impact": "healthy_topic",
     "logic": "healthy_topic",

@@ -26,7 +26,7 @@ NAMES = ("humble", "jazzy", "rolling", "robot")
 PLATFORMS = {"humble": "ubuntu jammy", "jazzy": "ubuntu noble", "rolling": "ubuntu noble", "robot": "ubuntu jammy"}
 
 RULES = {
-    name: Rule(name, family, severity, False, True, lambda: iter(()), f"{name}: {short}.\n\nWhat it does\n    {what}\n")
+    name: Rule(name, family, severity, lambda: iter(()), f"{name}: {short}.\n\nWhat it does\n    {what}\n")
     for name, family, severity, short, what in (
         ("removed-header", "api", "error", "an included header is gone on a target", "Reports `#include` lines."),
         ("undeclared-package", "packages", "error", "a package is used and not declared", "Reports uses."),

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from rosimpact.impact.analysis.findings import baseline
+from rosimpact.impact.analysis.findings import format_baseline
 from rosimpact.impact.report import evidence, github, html, markdown, sarif, text
 from rosimpact.impact.report import json as json_report
 from rosimpact.impact.report.style import PLAIN
@@ -37,14 +37,14 @@ ON = PAIR.targets
               "when: changed between rclcpp 27.0.0 and 28.0.0: jazzy since 2024-05-23, rolling since 2024-02-12, "
               "not on humble (16.0.20)"]),
         ({"change": "removed", "new": ()}, ["was: void rclcpp::Node::create(int)",
-              "when: gone between rclcpp 27.0.0 and 28.0.0: jazzy since 2024-05-23, rolling since 2024-02-12, "
+              "when: removed between rclcpp 27.0.0 and 28.0.0: jazzy since 2024-05-23, rolling since 2024-02-12, "
               "still on humble (16.0.20)"]),
         ({"change": "added", "old": (), "last": "", "targets": (OnTarget("humble@2024-01-01", "16.0.1", False,
               "2024-03-01"),)},
          ["new: void rclcpp::Node::create(int, int)",
-          "when: there since rclcpp 28.0.0: not on humble@2024-01-01 (16.0.1, until 2024-03-01)"]),
+          "when: added in rclcpp 28.0.0: not on humble@2024-01-01 (16.0.1, until 2024-03-01)"]),
         ({"change": "deprecated", "old": (), "new": (), "last": "", "first": "lyrical", "targets": ON[:1]},
-         ["when: deprecated since lyrical: not on humble (16.0.20)"]),
+         ["when: deprecated in lyrical: not on humble (16.0.20)"]),
         # A distro as a bound says nothing that the message does not, where all are alike.
         ({"change": "removed", "old": (), "new": (), "last": "", "first": "jazzy", "targets": ()}, []),
         ({"change": "removed", "old": (), "new": (), "last": "", "first": "", "targets": ()}, []),
@@ -121,4 +121,4 @@ def test_the_page_has_it_with_its_source_and_the_comment_is_as_short_as_before(t
 
 
 def test_baselines_do_not_know_it(told, team):
-    assert baseline(told.findings) == baseline(team.findings)
+    assert format_baseline(told.findings) == format_baseline(team.findings)

@@ -1,18 +1,16 @@
 """What is known only when all targets are looked at together: other behaviour, and spellings that part them."""
 
-from pathlib import Path
-
 import pytest
+import rule_cases
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
-
-CASES = Path(__file__).parent / "api"
 
 
 @pytest.fixture
 def told(tmp_path):
     def run(case, *targets):
-        findings = check(CASES / case / "before", Options(targets=targets, cache=tmp_path / "cache", jobs=1)).findings
+        options = Options(targets=targets, cache=tmp_path / "cache")
+        findings = rule_cases.check_files(rule_cases.read_changed_files(f"api/{case}"), options).findings
         rule = case.replace("_", "-")
         return [(f.targets, [one[:3] for one in f.evidence.targets] if f.evidence else []) for f in findings
                 if f.rule == rule]  # fmt: skip
@@ -44,29 +42,22 @@ def test_spellings_part_only_targets_that_need_different_ones(told, targets, par
 
 
 def test_an_allow_comment_silences_what_is_said_last(tmp_path):
-    source = tmp_path / "winch/src/winch.cpp"
-    for path in (CASES / "unguarded_split/before").rglob("*"):
-        if path.is_file():
-            copy = tmp_path / path.relative_to(CASES / "unguarded_split/before")
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            copy.write_bytes(path.read_bytes())
-    code = source.read_text()
-    source.write_text(code.replace("cv_bridge.h>", "cv_bridge.h>  // rosimpact: allow(unguarded-split)", 1))
-    found = check(tmp_path, Options(targets=("humble", "jazzy"), cache=tmp_path / "cache", jobs=1)).findings
+    files = dict(rule_cases.read_changed_files("api/unguarded_split"))
+    code = files["winch/src/winch.cpp"]
+    comment = "  // rosimpact: allow(unguarded-split)"
+    files["winch/src/winch.cpp"] = code.replace("cv_bridge.h>", f"cv_bridge.h>{comment}", 1)
+    options = Options(targets=("humble", "jazzy"), cache=tmp_path / "cache")
+    found = rule_cases.check_files(files, options).findings
     assert [finding.rule for finding in found] == ["removed-header"]
 
 
 def test_a_name_in_a_module_that_is_gone_is_not_called_deprecated(tmp_path):
-    for path in (CASES / "removed_python_name/before").rglob("*"):
-        if path.is_file():
-            copy = tmp_path / path.relative_to(CASES / "removed_python_name/before")
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            copy.write_bytes(path.read_bytes())
+    files = dict(rule_cases.read_changed_files("api/removed_python_name"))
     # Deprecated since rclpy 4.0.0; rclpy 10.0.0 has no such module.
-    (tmp_path / "arm/arm/node.py").write_text(
+    files["arm/arm/node.py"] = (
         "from rclpy.qos_event import PublisherEventCallbacks\nfrom rclpy.qos_event import UnsupportedEventTypeError\n"
     )
-    found = check(tmp_path, Options(targets=("jazzy", "lyrical"), cache=tmp_path / "cache", jobs=1)).findings
+    found = rule_cases.check_files(files, Options(targets=("jazzy", "lyrical"), cache=tmp_path / "cache")).findings
     assert [(f.rule, f.line, f.targets) for f in found if f.rule in ("deprecated-name", "removed-python-name")] == [
         ("removed-python-name", 1, ("lyrical",)),
         ("deprecated-name", 1, ("jazzy",)),

@@ -1,13 +1,9 @@
 """What a target has in the place of what is gone, where its name shows it or the last version said so."""
 
-import shutil
-from pathlib import Path
-
 import pytest
+import rule_cases
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
-
-CASE = Path(__file__).parent / "api/removed_executable/before"
 
 
 @pytest.mark.parametrize(
@@ -19,15 +15,13 @@ CASE = Path(__file__).parent / "api/removed_executable/before"
     ],
 )
 def test_a_program_with_a_similar_name_is_named(package, program, help_, tmp_path):
-    workspace = tmp_path / "ws"
-    shutil.copytree(CASE, workspace)
-    launch = workspace / "arm_bringup/launch/arm.launch.py"
-    code = launch.read_text()
-    assert "package='controller_manager', executable='spawner.py'" in code
-    launch.write_text(
-        code.replace("'controller_manager', executable='spawner.py'", f"'{package}', executable='{program}'")
+    files = dict(rule_cases.read_changed_files("api/removed_executable"))
+    launch = "arm_bringup/launch/arm.launch.py"
+    assert "package='controller_manager', executable='spawner.py'" in files[launch]
+    files[launch] = files[launch].replace(
+        "'controller_manager', executable='spawner.py'", f"'{package}', executable='{program}'"
     )
-    found = check(workspace, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1)).findings
+    found = rule_cases.check_files(files, Options(targets=("jazzy",), cache=tmp_path / "cache")).findings
     assert [f.help for f in found if f.rule == "removed-executable" and f.subject == program] == [help_]
 
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import rule_cases
 from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
 
-HERE = Path(__file__).parent
-# Cases whose cure is known on every target that they ask for: `before` becomes `after`, to the byte.
+# Cases whose cure is known on every target that they ask for: it undoes the change that they make, to the byte.
 CURED = (
     "api/moved_header",
     "api/removed_header",
@@ -50,21 +49,13 @@ def files_of(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def written(folder: Path, files: dict[str, str]) -> Path:
-    for name, text in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(text.encode())
-    return folder
-
-
 @pytest.mark.parametrize("case", CURED)
-def test_a_cure_makes_before_what_is_after(case: str, fix: Fix, tmp_path: Path):
-    workspace = shutil.copytree(HERE / case / "before", tmp_path / "ws")
-    output = fix(workspace, *(HERE / case / "targets").read_text().split())
-    assert files_of(workspace) == files_of(HERE / case / "after")
-    rule = Path(case).name.partition("__")[0].replace("_", "-")
-    assert f"[{rule}]" not in output
+def test_a_cure_undoes_the_change_of_a_case(case: str, fix: Fix, tmp_path: Path):
+    (broken,) = (one for one in rule_cases.read_cases(rule_cases.HERE / f"{case}.md") if one.findings)
+    workspace = rule_cases.write_files(tmp_path / "ws", broken.files)
+    output = fix(workspace, *broken.targets)
+    assert files_of(workspace) == {path: text.encode() for path, text in broken.unchanged.items()}
+    assert f"[{broken.rule}]" not in output
 
 
 MANIFEST = """<?xml version="1.0"?>
@@ -175,7 +166,7 @@ UNTOUCHED = {
 
 @pytest.mark.parametrize(("rule", "targets", "files"), UNTOUCHED.values(), ids=UNTOUCHED)
 def test_what_is_not_surely_right_is_left_to_a_person(rule, targets, files, fix: Fix, tmp_path: Path):
-    workspace = written(tmp_path / "ws", files)
+    workspace = rule_cases.write_files(tmp_path / "ws", files)
     before = files_of(workspace)
     output = fix(workspace, *targets)
     assert files_of(workspace) == before
@@ -243,7 +234,7 @@ EDITED = {
 
 @pytest.mark.parametrize(("targets", "files", "path", "edit"), EDITED.values(), ids=EDITED)
 def test_a_cure_changes_what_it_says_and_nothing_else(targets, files, path, edit, fix: Fix, tmp_path: Path):
-    workspace = written(tmp_path / "ws", files)
+    workspace = rule_cases.write_files(tmp_path / "ws", files)
     fix(workspace, *targets)
     assert files[path].count(edit[0]) == 1
     expected = {name: text.encode() for name, text in files.items()}

@@ -71,5 +71,5 @@ def test_pairs_beyond_the_limit_are_named(tmp_path, monkeypatch, each, in_all, l
     )
     options = Options(("jazzy",), preview=True, cache=tmp_path / "cache", select=("topic-type-mismatch",))
     noted = [f.message for f in check(tmp_path / "ws", options).findings]
-    more = [f"too many meet at the topic `/t`: {left} pairs were not compared"] if left else []
+    more = [f"too many nodes use the topic `/t`: {left} pairs were not compared"] if left else []
     assert noted == more

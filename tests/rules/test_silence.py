@@ -5,19 +5,19 @@ changed.
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from rosimpact.impact.analysis.check import check, compare
+import rule_cases
+from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.cli.app import app
 from rosimpact.impact.rules.rule import all_rules
+from rule_cases import Case
 from typer.testing import CliRunner
 
-HERE = Path(__file__).parent
-CASES = sorted(path.parent for path in HERE.glob("*/*/before"))
+CASES = [case for case in rule_cases.find_cases() if case.findings]
 Files = dict[str, str]
 
 
@@ -567,7 +567,7 @@ SILENT = {
         ("package.xml", "== jazzy", "== humble"),
     ),
     "a module that Python lost, with an except branch": Silent(
-        "python-version",
+        "removed-python-module",
         ("jazzy",),
         ament(
             "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
@@ -578,7 +578,7 @@ SILENT = {
         ("run.py", "try:\n    import imp\nexcept ImportError:\n    import importlib as imp\n", "import imp\n"),
     ),
     "a module that Python lost, under a version test": Silent(
-        "python-version",
+        "removed-python-module",
         ("jazzy",),
         ament(
             "install(PROGRAMS run.py DESTINATION lib/${PROJECT_NAME})",
@@ -906,36 +906,24 @@ def store(tmp_path_factory) -> Path:
     return tmp_path_factory.mktemp("cache")
 
 
-@pytest.fixture
-def said(tmp_path: Path, store: Path) -> Callable[[Files, tuple[str, ...], str], bool]:
-    """Writes files, and tells whether a rule says something about the workspace, for most rules above a note."""
-
-    def said_by(files: Files, targets: tuple[str, ...], rule: str) -> bool:
-        for name, text in files.items():
-            path = tmp_path / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text)
-        report = check(tmp_path, Options(targets=targets, preview=True, cache=store, jobs=1))
-        quiet = () if all_rules()[rule].severity == "note" else ("note",)
-        return any(f.rule == rule and f.severity not in quiet for f in report.findings)
-
-    return said_by
-
-
 @pytest.mark.parametrize("row", SILENT.values(), ids=SILENT)
-def test_what_is_left_alone(row: Silent, said):
-    assert not said(row.files, row.targets, row.rule)
+def test_what_is_left_alone(row: Silent, store: Path):
+    def reports(files: Files) -> bool:
+        """Whether the rule reports something, for most rules above a note."""
+        options = Options(targets=row.targets, preview=True, cache=store, select=(row.rule,))
+        quiet = () if all_rules()[row.rule].severity == "note" else ("note",)
+        return any(finding.severity not in quiet for finding in rule_cases.check_files(files, options).findings)
+
+    assert not reports(row.files)
     path, old, new = row.spoilt
     assert row.files[path].count(old) >= 1
-    assert said({path: row.files[path].replace(old, new)}, row.targets, row.rule)
+    assert reports({**row.files, path: row.files[path].replace(old, new)})
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.parent.name}/{case.name}")
-def test_where_nothing_changed_nothing_is_new(case: Path, store: Path):
-    targets = case / "targets"
-    asked = tuple(targets.read_text().split()) if targets.exists() else ()
-    report = compare(case / "before", case / "before", Options(targets=asked, preview=True, cache=store, jobs=1))
-    comparing = {name for name, rule in all_rules().items() if rule.compares}
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_where_nothing_changed_nothing_is_new(case: Case, store: Path):
+    report = rule_cases.check_files(case.files, Options(targets=case.targets, preview=True, cache=store), case.files)
+    comparing = rule_cases.rules_that_compare()
     assert [f for f in report.findings if f.new or f.rule in comparing] == []
 
 
@@ -961,4 +949,5 @@ def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path):
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
-    assert [(f.severity, f.subject) for f in report.findings if f.rule == "python-version"] == [(severity, module)]
+    found = [(f.severity, f.subject) for f in report.findings if f.rule == "removed-python-module"]
+    assert found == [(severity, module)]

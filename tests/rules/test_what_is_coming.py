@@ -1,12 +1,11 @@
 """What only the newest distro's libraries refuse: a warning where that distro is near, a note where it is far."""
 
-from pathlib import Path
-
 import pytest
+import rule_cases
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
 
-CASE = Path(__file__).parent / "api/changed_signature/before"
+FILES = rule_cases.read_changed_files("api/changed_signature")
 
 
 @pytest.mark.parametrize(
@@ -19,14 +18,14 @@ CASE = Path(__file__).parent / "api/changed_signature/before"
     ],
 )
 def test_floating_point_durations_of_boost(target, expected, tmp_path):
-    report = check(CASE, Options(targets=(target,), cache=tmp_path, jobs=1))
+    report = rule_cases.check_files(FILES, Options(targets=(target,), cache=tmp_path))
     told = {f.severity for f in report.findings if f.subject.startswith("boost::posix_time::milliseconds")}
     assert told == expected
 
 
 def test_nothing_is_coming_where_the_newest_distro_is_asked_for_itself(tmp_path):
     def told(*targets):
-        report = check(CASE, Options(targets=targets, cache=tmp_path, jobs=1))
+        report = rule_cases.check_files(FILES, Options(targets=targets, cache=tmp_path))
         return {(f.severity, f.targets) for f in report.findings if f.subject.startswith("boost::posix_time::millis")}
 
     assert told("melodic") == {("warning", ("melodic",))}

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from rosimpact.impact.analysis.check import check
+import rule_cases
 from rosimpact.impact.analysis.session import Options
 
 Files = dict[str, str]
@@ -673,12 +673,8 @@ def said(tmp_path: Path, store: Path) -> Said:
     """Writes files, and gives severity and subject of what a rule says of the workspace above a note."""
 
     def said_by(files: Files, target: str, rule: str) -> list[tuple[str, str]]:
-        for name, text in files.items():
-            path = tmp_path / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text)
-        report = check(tmp_path, Options(targets=(target,), cache=store, jobs=1))
-        return [(f.severity, f.subject) for f in report.findings if f.rule == rule and f.severity != "note"]
+        report = rule_cases.check_files(files, Options(targets=(target,), cache=store, select=(rule,)))
+        return [(f.severity, f.subject) for f in report.findings if f.severity != "note"]
 
     return said_by
 
@@ -688,7 +684,7 @@ def test_the_rule_is_content_until_it_is_spoilt(row: Row, said: Said):
     assert said(row.files, row.target, row.rule) == []
     path, old, new = row.spoilt
     assert old in row.files[path]
-    assert row.told in said({path: row.files[path].replace(old, new)}, row.target, row.rule)
+    assert row.told in said({**row.files, path: row.files[path].replace(old, new)}, row.target, row.rule)
 
 
 @pytest.mark.parametrize(("files", "old", "new"), UNSURE.values(), ids=UNSURE)

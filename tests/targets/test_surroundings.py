@@ -88,7 +88,7 @@ def test_an_edited_rosdep_file_is_read_again(tmp_path):
         ('index = "https://company/index-v4.yaml"\n', "is not fetched; clone the repository"),
         ('index = "missing/index-v4.yaml"\n', "there is no such file"),
         ('index = "list.yaml"\n', "cannot be read"),
-        ('underlays = ["a\\u0000b"]\n', "holds a null byte"),
+        ('underlays = ["a\\u0000b"]\n', "contains a null byte"),
     ],
 )
 def test_what_cannot_be_read_is_named(tmp_path, settings, says):

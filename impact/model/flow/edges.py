@@ -45,11 +45,6 @@ class Pair(NamedTuple):
     taker: Sure
     launch: str = ""
 
-    @property
-    def together(self) -> str:
-        """A clause that says why both run together, empty where nothing tells."""
-        return f", and `{self.launch}` starts both" if self.launch else ""
-
 
 class Flow:
     """A graph, asked for what is sure in it. surely: ids of nodes that surely run under their names, all when None.
@@ -262,6 +257,6 @@ def begins(endpoint: Endpoint, with_: str) -> bool:
     return endpoint.written.startswith(f'"{with_}')
 
 
-def said(node: Node) -> str:
+def display_name(node: Node) -> str:
     """A node as a message names it: its name in a running system where a launch tells it, else what is started."""
     return node.name if node.started else node.executable or node.plugin or node.id

@@ -35,7 +35,7 @@ from ..rule import Hit, rule
 from .build_api import of_another_distro
 
 
-@rule(severity="note", across=True)
+@rule(scope="targets", severity="note")
 def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Hit]]:
     if not views:
         return

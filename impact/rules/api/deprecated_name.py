@@ -26,12 +26,13 @@ from collections.abc import Iterator
 from ...model.view import View
 from ...targets.evidence import evidence_of, of_offered
 from ..rule import Hit, rule
+from ..severity import Doubt
 from .cpp_api import line_of, uses_judged
 from .python_api import evidence_of as told_by
 from .python_api import uses_lost
 
 
-@rule(severity="note", deprecation=True)
+@rule(doubts=(Doubt.DEPRECATED,))
 def deprecated_name(view: View):
     told = set()
     for hit in _reviewed(view):

@@ -28,9 +28,10 @@ from ...targets.surface.offers import Offered
 from ...targets.target import Change
 from ..fix_actions import Replace
 from ..rule import Hit, rule
+from ..severity import Doubt
 
 
-@rule(severity="note", deprecation=True)
+@rule(doubts=(Doubt.DEPRECATED,))
 def moved_header(view: View):
     moved = {
         c.old: c

@@ -33,7 +33,7 @@ from ...targets.evidence import Evidence
 from ..rule import Finding, Hit, rule
 
 
-@rule(severity="note", per_target=False)
+@rule(scope="workspace", severity="note")
 def unguarded_split(workspace):
     """What splits is known only after all targets were judged, so check.py calls split()."""
     return iter(())

@@ -1,10 +1,10 @@
 """nothing-analysed: no package was found.
 
 What it does
-    Says so when a tree holds no package.xml outside ignored folders, and the run exits with status 2.
+    Reports a folder that has no package.xml outside of ignored folders. The run exits with status 2.
 
 Why it matters
-    A check that looked at nothing must not pass for one that found nothing.
+    A check that analysed nothing must not look like a check that found nothing.
 
 Severity
     error, and the exit status is 2 whatever --fail-on says.
@@ -12,15 +12,18 @@ Severity
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 
-@rule(severity="error", per_target=False)
+@rule(
+    scope="workspace",
+    severity="error",
+    texts=Text(
+        "no package was found",
+        help="give the folder that contains the packages, or remove its COLCON_IGNORE",
+    ),
+)
 def nothing_analysed(workspace: Workspace):
     if not workspace.packages:
-        yield Hit(
-            At("", 0),
-            "package.xml",
-            "no package was found",
-            "give the folder that holds the packages, or remove its COLCON_IGNORE",
-        )
+        yield Diagnostic(At("", 0), "package.xml")

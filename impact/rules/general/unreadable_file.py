@@ -4,51 +4,30 @@ What it does
     Names every file whose facts are incomplete, and why.
 
 Why it matters
-    What stands in such a file was not checked; silence about it means nothing.
+    The contents of such a file were not checked; that nothing is reported in it means nothing.
 
 Severity
-    note: what else is wrong with the file is for its own reader to say; the coverage line counts it too. warning for
-    CMake whose blocks do not match, where CMake itself stops, and for a package that another of the same name stands
-    for, since build tools refuse such a workspace.
+    note: other tools report what else is wrong with the file; the coverage line counts it too.
 """
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 
-@rule(severity="note", per_target=False)
+@rule(scope="workspace", severity="note", texts=Text("{problem}"))
 def unreadable_file(workspace: Workspace):
-    hidden = {place.manifest_path for place in workspace.hidden}
+    duplicates = {place.manifest_path for place in workspace.hidden}
     for problem in workspace.gathered.problems:
-        owner = workspace.discovered.owner(problem.path)
-        severity = "warning" if problem.path in hidden else ""
-        yield Hit(At(problem.path, 1), problem.path, problem.message, "", owner.name if owner else "", severity)
+        if problem.path not in duplicates:
+            owner = workspace.discovered.owner(problem.path)
+            package = owner.name if owner else ""
+            yield Diagnostic(At(problem.path, 1), problem.path, package, {"problem": problem.message})
     for package in workspace:
-        told = set()
+        reported = set()
         for path, line, message in package.digest.problems:
-            if path in told or (path == package.digest.manifest_path and line):
-                continue
-            told.add(path)
-            yield Hit(At(path, max(1, line)), path.rsplit("/", 1)[-1], message, "", package.name)
-        for at, reason in package.build.unresolved:
-            if at.path not in told and reason.endswith(
-                (
-                    "is never closed",
-                    "without if()",
-                    "without foreach()",
-                    "without while()",
-                    "without function()",
-                    "without macro()",
-                    "without block()",
-                )
-            ):
-                told.add(at.path)
-                yield Hit(
-                    at,
-                    at.path.rsplit("/", 1)[-1],
-                    f"{reason}, and CMake stops here",
-                    "close the block",
-                    package.name,
-                    severity="warning",
-                )
+            if path not in reported and not (path == package.digest.manifest_path and line):
+                reported.add(path)
+                subject = path.rpartition("/")[2]
+                yield Diagnostic(At(path, max(1, line)), subject, package.name, {"problem": message})

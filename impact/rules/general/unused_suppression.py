@@ -1,10 +1,10 @@
-"""unused-suppression: an allow comment silences nothing.
+"""unused-suppression: an allow comment does not suppress any finding.
 
 What it does
-    Reports names in `rosimpact: allow(...)` comments that no finding answers to.
+    Reports names in `rosimpact: allow(...)` comments that do not match any finding.
 
 Why it matters
-    A comment that outlives its reason hides the next finding of that kind.
+    A comment that is no longer needed hides the next finding of that kind.
 
 Severity
     note.
@@ -20,20 +20,25 @@ from collections.abc import Iterable, Iterator
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 
-@rule(severity="note", per_target=False)
+@rule(
+    scope="workspace",
+    severity="note",
+    texts=Text("`allow({subject})` does not suppress any finding", help="remove it"),
+)
 def unused_suppression(workspace: Workspace):
-    """What is unused is known only after all other rules have spoken, so check.py calls unused()."""
+    """What is unused is known only after all other rules have run, so check.py calls find_unused()."""
     return iter(())
 
 
-def unused(workspace: Workspace, comments: Iterable[tuple[str, int, str]]) -> Iterator[Hit]:
-    """Hits for (path, line, rule name) of comments without effect."""
+def find_unused(workspace: Workspace, comments: Iterable[tuple[str, int, str]]) -> Iterator[Diagnostic]:
+    """Diagnostics for (path, line, rule name) of comments without effect."""
     last, owner = "", None
     for path, line, name in comments:
         if path != last:
             last = path
             owner = max((p for p in workspace if path.startswith(p.path)), key=lambda p: len(p.path), default=None)
-        yield Hit(At(path, line), name, f"`allow({name})` silences nothing", "remove it", owner.name if owner else "")
+        yield Diagnostic(At(path, line), name, owner.name if owner else "")

@@ -1,12 +1,12 @@
 """dead-remap: a launch file remaps a name that the node does not use.
 
 What it does
-    Reports remappings of launch files whose old name is none that the node's code uses: no topic, service, action or,
-    in ROS 1, parameter, no namespace of them, and nothing that goes by one of them (`image/compressed`, `move/goal`).
-    All names of the node have to be known.
+    Reports remappings in launch files whose old name does not occur in the node's code: not as a topic, service, action
+    or (in ROS 1) parameter, not as a namespace of them, and not as a name derived from them (`image/compressed`,
+    `move/goal`). All names of the node have to be known.
 
 Why it breaks
-    The remapping does nothing, and nothing says so: the node goes on under the name that was to be changed.
+    The remapping has no effect and ROS prints no warning: the node keeps the old name.
 
 Severity
     warning.
@@ -20,16 +20,17 @@ Use instead
     <remap from="cmd_vel" to="safe/cmd_vel"/>
 
 Not reported
-    Nodes that hand themselves to code outside of the workspace, load plugins, or make names from what is not known;
-    remappings given to several nodes, one of which uses the name, or is not in the workspace; /tf, /clock and others
-    that nearly every node has.
+    Nodes that pass themselves to code outside of the workspace, load plugins, or compute names; remappings that apply
+    to several nodes, if one of them uses the name or is not in the workspace; /tf, /clock and other names that nearly
+    every node has.
 """
 
 from ...model.cmake.build import At
 from ...model.flow.launches import Renamed, Start
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .given import given
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .launch_settings import group_by_line
 
 _COMMON = frozenset(("/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/diagnostics"))
 
@@ -41,26 +42,27 @@ _BELOW = frozenset(
 )  # fmt: skip
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="warning",
+    preview=True,
+    texts=Text(
+        "the remapping of `{subject}` has no effect: it matches no topic, service or action of {programs}",
+        help="remap a name that exists ({names:none is known}), or remove the remapping",
+    ),
+)
 def dead_remap(workspace: Workspace):
-    for (path, line, written), rows in given(workspace, lambda start: start.renamed, lambda each: each.written):
-        if any(_lives(start, renamed, workspace.ros) for start, renamed in rows):
+    remappings = group_by_line(workspace, lambda start: start.renamed, lambda renamed: renamed.written)
+    for (path, line, written), rows in remappings:
+        if any(_may_apply(start, renamed, workspace.ros) for start, renamed in rows):
             continue
-        start, _ = rows[0]
-        programs = {each.program.partition("/")[2] for each, _ in rows}
-        who = " and ".join(f"`{program}`" for program in sorted(programs))
-        near = ", ".join(f"`{name}`" for name in start.names[:6]) or "none"
-        yield Hit(
-            At(path, line),
-            written,
-            f"the remapping of `{written}` does nothing: {who} {'has' if len(programs) == 1 else 'have'} no such name",
-            f"remap a name that it has ({near}), or remove the remapping",
-            _package(workspace, path),
-        )
+        programs = sorted({start.program.partition("/")[2] for start, _ in rows})
+        data = {"programs": tuple(programs), "names": rows[0][0].names}
+        yield Diagnostic(At(path, line), written, _package(workspace, path), data)
 
 
-def _lives(start: Start, renamed: Renamed, ros: int) -> bool:
-    """Whether a remapping may do something for a node."""
+def _may_apply(start: Start, renamed: Renamed, ros: int) -> bool:
+    """Whether a remapping may change a name of a node."""
     if start.hidden or renamed.old in _COMMON:
         return True
     if ros == 1 and (start.hidden_parameters or renamed.old.rpartition("/")[2] in _last_parts(start.parameters)):

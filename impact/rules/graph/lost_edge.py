@@ -1,15 +1,15 @@
-"""lost-edge: a publisher and a subscriber of the base no longer meet.
+"""lost-edge: a publisher and a subscriber that were connected at the base are no longer connected.
 
 What it does
-    Compares the message flow with the base. Reports a topic that had a publisher and a subscriber, and of which only
-    one side is left: the other was removed, or goes by another name.
+    Compares the message flow with the base. Reports topics that had a publisher and a subscriber, and have only one of
+    them now: the other was removed, or uses another name.
 
 Why it breaks
-    The subscriber's callback no longer runs, or what is published reaches nobody; nothing says so.
+    The subscriber's callback no longer runs, or nothing receives the messages. ROS prints no warning.
 
 Severity
-    warning when the subscriber is left, or when the side that is gone goes on under another name; note when the
-    subscriber was removed and the publisher is left.
+    warning when the subscriber is left, or when the removed side now uses another name; note when the subscriber was
+    removed and the publisher is left.
 
 Example
     self.create_publisher(LaserScan, "scan_front", 10)           # was: scan; the planner still reads scan
@@ -18,8 +18,8 @@ Use instead
     self.create_publisher(LaserScan, "scan", 10)
 
 Not reported
-    Topics of which both sides are gone, or got the same new name; topics that something of an unknown name may go on
-    with; what an unknown name had at the base.
+    Topics of which both sides were removed, or got the same new name; topics that an endpoint whose name is not known
+    may use; endpoints whose name was not known at the base.
 """
 
 from __future__ import annotations
@@ -30,13 +30,36 @@ from ...model.cmake.build import At
 from ...model.flow.edges import Flow
 from ...model.flow.graph import Endpoint
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
-_DOES = {"publisher": "publishes", "subscriber": "reads"}
 
 
-@rule(severity="warning", preview=True, compares=True, flow=True)
+@rule(
+    scope="flow_change",
+    severity="warning",
+    preview=True,
+    texts={
+        "no publisher": Text(
+            "nothing publishes `{subject}` any more; `{node}` did at the base",
+            help="publish `{subject}`, or remove the subscriber",
+        ),
+        "publisher renamed": Text(
+            "nothing publishes `{subject}` any more; `{node}` did at the base, and now publishes `{replacement}`",
+            help="subscribe to `{replacement}`",
+        ),
+        "no subscriber": Text(
+            "nothing subscribes to `{subject}` any more; `{node}` did at the base",
+            help="subscribe to `{subject}`, or remove the publisher",
+        ),
+        "subscriber renamed": Text(
+            "nothing subscribes to `{subject}` any more; `{node}` did at the base, and now reads `{replacement}`",
+            help="publish `{replacement}`",
+        ),
+    },
+)
 def lost_edge(workspace: Workspace, base: Workspace):
     now, before = (Flow(each.flow, {}) for each in (workspace, base))
     for topic in sorted({topic for kind, topic in before.known if kind == "topic"}):
@@ -49,16 +72,15 @@ def lost_edge(workspace: Workspace, base: Workspace):
                 continue
             at, old = left[0], had[gone][0]
             successors = sorted({one.topic for one in _successors(now, before, old)})
-            severity = "note" if role == "publisher" and not successors else "warning"
-            went = f", which {_DOES[gone]} `{successors[0]}` now" if len(successors) == 1 else ""
-            who = now.nodes[old.node].executable if went and old.node in now.nodes else old.node.rpartition("/")[2]
-            yield Hit(
+            renamed = len(successors) == 1
+            node = now.nodes[old.node].executable if renamed and old.node in now.nodes else old.node.rpartition("/")[2]
+            yield Diagnostic(
                 At(at.path, at.line),
                 topic,
-                f"nothing {_DOES[gone]} `{topic}` any more; at the base `{who or old.node}` did{went}",
-                _cure(role, topic, successors),
                 now.nodes[at.node].package if at.node in now.nodes else "",
-                severity=severity,
+                {"node": node or old.node, "replacement": successors[0] if renamed else ""},
+                kind=f"{gone} renamed" if renamed else f"no {gone}",
+                doubts=(Doubt.CHANGED,) if role == "publisher" and not successors else (),
             )
 
 
@@ -80,9 +102,3 @@ def _successors(now: Flow, before: Flow, old: Endpoint) -> Iterator[Endpoint]:
             known = before.known.get(("topic", one.topic), ())
             if not any(each.node == one.node and each.role == one.role for each in known):
                 yield one
-
-
-def _cure(role: str, topic: str, successors: list[str]) -> str:
-    if role == "subscriber":
-        return f"subscribe to `{successors[0]}`" if len(successors) == 1 else f"publish `{topic}`, or stop reading it"
-    return f"publish `{successors[0]}`" if len(successors) == 1 else f"subscribe to `{topic}`, or stop publishing it"

@@ -1,13 +1,13 @@
-"""near-miss-name: a subscriber that nobody feeds listens to nearly the name that somebody publishes.
+"""near-miss-name: a subscriber without a publisher uses nearly the name of a topic that is published.
 
 What it does
-    Reports a subscriber without a publisher whose topic differs from one that is published, and that nobody reads, by a
-    slip: a letter, a plural, an underscore, upper and lower case. Both have the same type and certain names. Where a
-    launch file starts both, and nothing whose code is not in the workspace, a namespace that one of them lacks counts
+    Reports a subscriber without a publisher if a publisher without a subscriber uses nearly the same name: it differs
+    by a letter, a plural, an underscore, or upper and lower case. Both have the same type, and both names are known. If
+    a launch file starts both, and only nodes whose code is in the workspace, a namespace that one of them lacks counts
     too.
 
 Why it breaks
-    The subscriber waits for ever; nothing says so.
+    The subscriber never receives a message. ROS prints no warning.
 
 Severity
     warning.
@@ -20,35 +20,44 @@ Use instead
     self.create_subscription(Odometry, "wheel_odom", self.on_odom, 10)
 
 Not reported
-    Names that differ in digits or sides (`camera1`, `left`); topics that something of an unknown name may feed.
+    Names that differ in digits or sides (`camera1`, `left`); topics that a publisher whose name is not known may
+    publish.
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import Flow, Sure, flows, said, unstarted
+from ...model.flow.edges import Flow, Sure, display_name, flows, unstarted
 from ...model.flow.misspelling import NearNames
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="warning",
+    preview=True,
+    texts=Text(
+        "nothing in {launch:the workspace} publishes `{subject}`, but `{node}` publishes `{replacement}` ({place}), "
+        "which has no subscriber",
+        help="subscribe to `{replacement}`, or publish `{subject}`",
+    ),
+)
 def near_miss_name(workspace: Workspace):
     closed = {launch.path for launch in workspace.launches if not launch.missing}
-    told = set()
+    reported = set()
     for path, flow in flows(workspace):
         for taker, giver in _near(flow if path else unstarted(workspace), path in closed):
             one, other = taker.endpoint, giver.endpoint
-            if (one.path, one.line) in told:
+            if (one.path, one.line) in reported:
                 continue
-            told.add((one.path, one.line))
-            where = f" in `{path}`" if path else " in the workspace"
-            yield Hit(
-                At(one.path, one.line),
-                one.topic,
-                f"nothing{where} publishes `{one.topic}`, but `{said(giver.node)}` publishes `{other.topic}` "
-                f"({other.path}:{other.line}), which nobody reads",
-                f"subscribe to `{other.topic}`, or publish `{one.topic}`",
-                taker.node.package,
-            )
+            reported.add((one.path, one.line))
+            data = {
+                "launch": (path,) if path else (),
+                "node": display_name(giver.node),
+                "replacement": other.topic,
+                "place": f"{other.path}:{other.line}",
+            }
+            yield Diagnostic(At(one.path, one.line), one.topic, taker.node.package, data)
 
 
 def _near(flow: Flow, closed: bool):

@@ -1,15 +1,15 @@
-"""topic-type-mismatch: one side of a topic, service or action has another type than the other.
+"""topic-type-mismatch: the two sides of a topic, service or action have different types.
 
 What it does
     Reports a publisher and a subscriber (a server and a client) of one name whose types differ. Both names have to be
-    certain: written in the source, or told by the launch file that starts the nodes.
+    known: from the source, or from the launch file that starts the nodes.
 
 Why it breaks
-    ROS 2 does not match them, and says nothing; ROS 1 prints an error and closes the connection. No message arrives.
+    ROS 2 does not connect them and prints nothing; ROS 1 prints an error and closes the connection. No message arrives.
 
 Severity
-    error when a launch file of the workspace starts both; warning when nothing tells that both run together, and
-    neither has anybody else in the workspace to talk to.
+    error when a launch file of the workspace starts both; warning when it is not known that both run together, and
+    neither has another partner in the workspace.
 
 Example
     self.create_publisher(Twist, "cmd_vel", 10)                  # teleop
@@ -19,44 +19,56 @@ Use instead
     self.create_publisher(TwistStamped, "cmd_vel", 10)
 
 Not reported
-    Nodes that have several types for one name, of which one fits; types that are not messages by themselves (type
-    adapters).
+    Nodes that use several types for one name, if one of them fits; type adapters.
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import met, said, uncompared
+from ...model.flow.edges import Pair, display_name, met, uncompared
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 _WHAT = {"subscriber": "topic", "client": "service", "action client": "action"}
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="error",
+    preview=True,
+    texts={
+        "mismatch": Text(
+            "the type of the {what} `{subject}` is `{type}` here, but `{other}` in `{node}` ({place})"
+            "[[; `{launch}` starts both]]",
+            help="use one type on both sides of `{subject}`",
+        ),
+        "uncompared": Text("too many nodes use the {what} `{subject}`: {count:,} pairs were not compared"),
+    },
+)
 def topic_type_mismatch(workspace: Workspace):
     for taker, number in uncompared(workspace):
-        yield Hit(
-            At(taker.path, taker.line),
-            taker.topic,
-            f"too many meet at the {_WHAT[taker.role]} `{taker.topic}`: {number:,} pairs were not compared",
-            severity="note",
-        )
+        data = {"what": _WHAT[taker.role], "count": number}
+        yield Diagnostic(At(taker.path, taker.line), taker.topic, "", data, kind="uncompared", severity="note")
     for pair in met(workspace):
         giver, taker = pair.giver.endpoint, pair.taker.endpoint
-        given, taken = pair.flow.type_of(giver), pair.flow.type_of(taker)
-        if not given or not taken or given == taken:
-            continue
-        if {one.type for one in pair.flow.of_node(giver)} & {one.type for one in pair.flow.of_node(taker)}:
-            continue
-        if any("" in (one.type, pair.flow.type_of(one)) for one in pair.flow.of_node(giver) + pair.flow.of_node(taker)):
-            continue
-        verb = "publishes" if giver.role == "publisher" else "serves"
-        what = _WHAT[taker.role]
-        yield Hit(
-            At(taker.path, taker.line),
-            taker.topic,
-            f"the {what} `{taker.topic}` is `{taken}` here, but `{said(pair.giver.node)}` {verb} it as `{given}` "
-            f"({giver.path}:{giver.line}){pair.together}",
-            f"use one type on both sides of `{taker.topic}`",
-            pair.taker.node.package,
-            severity="error" if pair.launch else "warning",
-        )
+        other, type = pair.flow.type_of(giver), pair.flow.type_of(taker)
+        if other and type and other != type and not _may_have_another_type(pair):
+            data = {
+                "what": _WHAT[taker.role],
+                "type": type,
+                "other": other,
+                "node": display_name(pair.giver.node),
+                "place": f"{giver.path}:{giver.line}",
+                "launch": pair.launch,
+            }
+            doubts = () if pair.launch else (Doubt.CONDITIONAL,)
+            at = At(taker.path, taker.line)
+            yield Diagnostic(at, taker.topic, pair.taker.node.package, data, kind="mismatch", doubts=doubts)
+
+
+def _may_have_another_type(pair: Pair) -> bool:
+    """Whether a side has several types for the name, of which one may fit."""
+    giver, taker = (pair.flow.of_node(side.endpoint) for side in (pair.giver, pair.taker))
+    if {one.type for one in giver} & {one.type for one in taker}:
+        return True
+    return any("" in (one.type, pair.flow.type_of(one)) for one in giver + taker)

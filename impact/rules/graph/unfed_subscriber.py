@@ -1,42 +1,45 @@
-"""unfed-subscriber: a node listens to what nothing publishes.
+"""unfed-subscriber: a node subscribes to a message that nothing publishes.
 
 What it does
-    Reports subscribers of messages that the workspace itself defines, and that nothing in the workspace publishes,
-    whatever the topic. One note a topic.
+    Reports subscribers of messages that the workspace itself defines and that nothing in the workspace publishes, on
+    any topic. One note for each topic.
 
 Why it matters
-    Its callback never runs: the publisher was renamed, is missing, or was never written.
+    Its callback never runs: the publisher was renamed or removed, or was never written.
 
 Severity
     note.
 
 Example
-    self.create_subscription(BatteryReport, "battery", self.on_battery, 10)      # nobody publishes battery
+    self.create_subscription(BatteryReport, "battery", self.on_battery, 10)      # nothing publishes battery
 
 Use instead
     Remove the subscriber, or publish the topic.
 
 Not reported
-    Topics of types from other packages, which drivers, simulators and other workspaces publish as well; private topics
-    and those for debugging; types that something in the workspace publishes under another name.
+    Topics whose types come from other packages, since drivers, simulators and other workspaces may publish them;
+    private topics and topics for debugging; types that something in the workspace publishes on another topic.
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import said
+from ...model.flow.edges import display_name
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .own_topics import one_sided
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .one_sided import find_one_sided
 
 
-@rule(severity="note", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="note",
+    preview=True,
+    texts=Text(
+        "nothing in the workspace publishes `{type}`, which `{node}` expects on `{subject}`",
+        help="publish `{subject}`, or remove the subscriber",
+    ),
+)
 def unfed_subscriber(workspace: Workspace):
-    for one in one_sided(workspace, "subscriber"):
+    for one in find_one_sided(workspace, "subscriber"):
         endpoint = one.endpoint
-        yield Hit(
-            At(endpoint.path, endpoint.line),
-            endpoint.topic,
-            f"nothing in the workspace publishes `{endpoint.type}`, which `{said(one.node)}` reads on "
-            f"`{endpoint.topic}`",
-            f"publish `{endpoint.topic}`, or stop subscribing to it",
-            one.node.package,
-        )
+        data = {"type": endpoint.type, "node": display_name(one.node)}
+        yield Diagnostic(At(endpoint.path, endpoint.line), endpoint.topic, one.node.package, data)

@@ -1,11 +1,11 @@
-"""unmatched-client: a client calls a service or action under a name that nobody serves, while another name is served.
+"""unmatched-client: a client uses a service or action that nothing serves, while a similar name is served.
 
 What it does
-    Reports clients of services and actions with a certain name that no node of the workspace serves, where a node
-    serves the same type under a name that ends alike or differs by a slip.
+    Reports clients of services and actions whose name is known and that no node of the workspace serves, if a node
+    serves the same type under a name with the same ending, or with a small difference in spelling.
 
 Why it breaks
-    The client waits for a server that never comes, or its calls fail.
+    The client waits forever for the server, or its calls fail.
 
 Severity
     warning.
@@ -18,15 +18,16 @@ Use instead
     self.create_client(SetCargo, "gripper/set_cargo")
 
 Not reported
-    Clients of what nobody in the workspace serves under any name; services that every node of ROS has; servers whose
-    name is not known, is that of a node which a launch file may rename, or may get the client's namespace when started.
+    Clients of types that nothing in the workspace serves; services that every node of ROS has; servers whose name is
+    not known, depends on a node that a launch file may rename, or may get the client's namespace when it is started.
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import Flow, Sure, begins, flows, said, unstarted
+from ...model.flow.edges import Flow, Sure, begins, display_name, flows, unstarted
 from ...model.flow.misspelling import NearNames, is_in_namespace, is_slip
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 _SERVER = {"client": "server", "action client": "action server"}
 # Packages of the services that nodes have by themselves, and types that tell nothing.
@@ -34,7 +35,16 @@ _EVERYWHERE = ("rcl_interfaces/", "lifecycle_msgs/", "composition_interfaces/", 
                "dynamic_reconfigure/", "roscpp/", "nodelet/", "std_srvs/", "sensor_msgs/SetCameraInfo")  # fmt: skip
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="warning",
+    preview=True,
+    texts=Text(
+        "nothing in {launch:the workspace} serves the {what} `{subject}`, but `{node}` serves `{replacement}` of the "
+        "same type ({place})",
+        help="call `{replacement}`, or serve `{subject}`",
+    ),
+)
 def unmatched_client(workspace: Workspace):
     served = {
         one.topic
@@ -42,23 +52,21 @@ def unmatched_client(workspace: Workspace):
         for one in launch.graph.endpoints
         if one.role in ("server", "action server")
     }
-    told = set()
+    reported = set()
     for path, flow in flows(workspace):
         for taker, giver in _unmatched(flow if path else unstarted(workspace)):
             one, other = taker.endpoint, giver.endpoint
-            if (one.path, one.line) in told or one.topic in served:
+            if (one.path, one.line) in reported or one.topic in served:
                 continue
-            told.add((one.path, one.line))
-            what = "service" if one.role == "client" else "action"
-            where = path or "the workspace"
-            yield Hit(
-                At(one.path, one.line),
-                one.topic,
-                f"nothing in {f'`{path}`' if path else where} serves the {what} `{one.topic}`, but "
-                f"`{said(giver.node)}` serves `{other.topic}` of the same type ({other.path}:{other.line})",
-                f"call `{other.topic}`, or serve `{one.topic}`",
-                taker.node.package,
-            )
+            reported.add((one.path, one.line))
+            data = {
+                "launch": (path,) if path else (),
+                "what": "service" if one.role == "client" else "action",
+                "node": display_name(giver.node),
+                "replacement": other.topic,
+                "place": f"{other.path}:{other.line}",
+            }
+            yield Diagnostic(At(one.path, one.line), one.topic, taker.node.package, data)
 
 
 def _unmatched(flow: Flow):

@@ -1,42 +1,45 @@
-"""unread-topic: nothing reads what a node publishes.
+"""unread-topic: nothing subscribes to a message that a node publishes.
 
 What it does
-    Reports publishers of messages that the workspace itself defines, and that nothing in the workspace subscribes to,
-    whatever the topic. One note a topic.
+    Reports publishers of messages that the workspace itself defines and that nothing in the workspace subscribes to, on
+    any topic. One note for each topic.
 
 Why it matters
-    It is work for nobody, or a sign that the reader was renamed or never written.
+    The messages are published for nothing, or the subscriber was renamed or never written.
 
 Severity
     note.
 
 Example
-    self.create_publisher(BatteryReport, "battery", 10)          # nobody subscribes to battery
+    self.create_publisher(BatteryReport, "battery", 10)          # nothing subscribes to battery
 
 Use instead
     Remove the publisher, or subscribe to it.
 
 Not reported
-    Topics of types from other packages, which tools, other workspaces and recordings read as well; private topics and
-    those for debugging; types that something in the workspace reads under another name.
+    Topics whose types come from other packages, since tools, other workspaces and recordings may read them; private
+    topics and topics for debugging; types that something in the workspace subscribes to on another topic.
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import said
+from ...model.flow.edges import display_name
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .own_topics import one_sided
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .one_sided import find_one_sided
 
 
-@rule(severity="note", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="note",
+    preview=True,
+    texts=Text(
+        "nothing in the workspace subscribes to `{type}`, which `{node}` publishes on `{subject}`",
+        help="subscribe to `{subject}`, or remove the publisher",
+    ),
+)
 def unread_topic(workspace: Workspace):
-    for one in one_sided(workspace, "publisher"):
+    for one in find_one_sided(workspace, "publisher"):
         endpoint = one.endpoint
-        yield Hit(
-            At(endpoint.path, endpoint.line),
-            endpoint.topic,
-            f"nothing in the workspace reads `{endpoint.type}`, which `{said(one.node)}` publishes on "
-            f"`{endpoint.topic}`",
-            f"subscribe to `{endpoint.topic}`, or stop publishing it",
-            one.node.package,
-        )
+        data = {"type": endpoint.type, "node": display_name(one.node)}
+        yield Diagnostic(At(endpoint.path, endpoint.line), endpoint.topic, one.node.package, data)

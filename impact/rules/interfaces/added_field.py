@@ -1,4 +1,4 @@
-"""added-field: a definition has a field that the base does not have.
+"""added-field: a field was added to a definition since the base.
 
 What it does
     Reports new fields.
@@ -18,20 +18,22 @@ Use instead
 """
 
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .comparison import pairs, users, wire
+from ..rule import rule
+from ..text import Text
+from .comparison import UNMATCHED, diagnostic, pairs
 
 
-@rule(severity="warning", compares=True)
+@rule(
+    scope="change",
+    severity="warning",
+    texts=Text(
+        f"the field `{{subject}}` was added to `{{definition}}`: {UNMATCHED}",
+        help="update all machines together, or define a new message",
+    ),
+)
 def added_field(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
-        before = {f.name for f in pair.old.fields}
+        before = {field.name for field in pair.old.fields}
         for field in pair.new.fields:
             if field.name not in before:
-                yield Hit(
-                    pair.at(field.line, field.column),
-                    field.name,
-                    f"`{pair.name}` has the new field `{field.name}`: {wire(workspace)}; {users(workspace, pair)}",
-                    "update every machine together, or add a new message",
-                    pair.package.name,
-                )
+                yield diagnostic(workspace, pair, pair.at(field.line, field.column), field.name)

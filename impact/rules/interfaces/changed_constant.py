@@ -1,15 +1,14 @@
-"""changed-constant: a constant of a definition has another value, or is gone, against the base.
+"""changed-constant: the value of a constant changed since the base.
 
 What it does
-    Compares the constants of every definition.
+    Compares the values of the constants that both revisions of a definition have.
 
 Why it breaks
-    A machine built before and one built after connect without complaint in ROS 2, whose type hash leaves constants out,
-    and mean different things by the same number. In ROS 1 the md5 sum changes. A constant that is gone stops the
-    compiler.
+    In ROS 2 the type hash does not contain constants: a machine built before the change and one built after it still
+    connect, and mean different things by the same number. In ROS 1 the md5 sum changes, and they do not connect.
 
 Severity
-    error for a constant that is gone and whose definition the workspace uses; warning otherwise.
+    warning.
 
 Example
     uint8 STOPPED=2                             # was 1
@@ -19,32 +18,32 @@ Use instead
 """
 
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .comparison import pairs, users
+from ..rule import rule
+from ..text import Text
+from .comparison import UNMATCHED, diagnostic, pairs
+
+_CHANGED = "the constant `{definition}.{subject}` changed from {old} to {new}"
+_HELP = "add a new constant instead"
 
 
-@rule(severity="warning", compares=True)
+@rule(
+    scope="change",
+    severity="warning",
+    texts={
+        "ros1": Text(f"{_CHANGED}: {UNMATCHED}", _HELP),
+        "ros2": Text(
+            f"{_CHANGED}: the type hash stays the same, so nodes with the old value still connect; "
+            "used by {users:nothing in the workspace}",
+            _HELP,
+        ),
+    },
+)
 def changed_constant(workspace: Workspace, base: Workspace):
+    kind = "ros1" if workspace.ros == 1 else "ros2"
     for pair in pairs(workspace, base):
-        after = {c.name: c for c in pair.new.constants}
-        wire = "its md5 changes" if workspace.ros == 1 else "its type hash stays the same, so nobody is told"
-        for constant in pair.old.constants:
-            new = after.get(constant.name)
-            who = users(workspace, pair)
-            if new is None:
-                yield Hit(
-                    pair.at(1),
-                    constant.name,
-                    f"`{pair.name}` lost the constant `{constant.name}`; {who}",
-                    "keep it for one release",
-                    pair.package.name,
-                    severity="error" if who.startswith("used") else "warning",
-                )
-            elif new.value != constant.value:
-                yield Hit(
-                    pair.at(new.line, new.column),
-                    constant.name,
-                    f"`{pair.name}.{constant.name}` is {new.value} and was {constant.value}: {wire}; {who}",
-                    "add a new constant instead",
-                    pair.package.name,
-                )
+        before = {constant.name: constant.value for constant in pair.old.constants}
+        for constant in pair.new.constants:
+            old = before.get(constant.name)
+            if old is not None and old != constant.value:
+                at = pair.at(constant.line, constant.column)
+                yield diagnostic(workspace, pair, at, constant.name, kind, old=old, new=constant.value)

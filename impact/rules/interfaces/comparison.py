@@ -1,4 +1,4 @@
-"""What the rules of this family share: definitions before and after, and who uses them."""
+"""Definitions before and after a change, and the packages that use them, for the rules of this family."""
 
 from __future__ import annotations
 
@@ -10,6 +10,12 @@ from ...facts.interface import Field, Section
 from ...model.cmake.build import At
 from ...model.package import InterfaceFile
 from ...model.workspace import Package, Workspace, is_interface_header
+from ..rule import Diagnostic
+from ..severity import Doubt
+from ..text import Value
+
+# How the message of a changed definition ends: what it means for nodes and bags from before, and who uses it.
+UNMATCHED = "its {hash} changes, so older nodes and bags no longer match; used by {users:nothing in the workspace}"
 
 
 class Pair(NamedTuple):
@@ -52,7 +58,8 @@ def type_of(field: Field) -> str:
 
 
 @lru_cache(maxsize=256)
-def _users(workspace: Workspace, package: str, name: str) -> tuple[str, ...]:
+def users_of(workspace: Workspace, package: str, name: str) -> tuple[str, ...]:
+    """The packages of the workspace that use a definition of a package."""
     found = []
     for other in workspace:
         if other.name == package and not other.build.targets:
@@ -75,19 +82,13 @@ def _users(workspace: Workspace, package: str, name: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-def users(workspace: Workspace, pair: Pair) -> str:
-    """A clause that names the packages of the workspace that use the definition."""
-    names = _users(workspace, pair.package.name, pair.file.name)
-    if not names:
-        return "nothing in the workspace uses it"
-    more = f" and {len(names) - 4} more" if len(names) > 4 else ""
-    return "used by " + ", ".join(f"`{n}`" for n in names[:4]) + more
-
-
-def wire(workspace: Workspace) -> str:
-    """What a change of fields does to nodes and bags that were built before it."""
-    if workspace.ros == 1:
-        return "its md5 changes, so nodes built before it do not connect and recorded bags need a migration rule"
-    return (
-        "its type hash changes, so nodes built before it do not match and recorded bags are read wrongly or not at all"
-    )
+def diagnostic(
+    workspace: Workspace, pair: Pair, at: At, subject: str, kind: str = "", **data: Value
+) -> Diagnostic:
+    """A diagnostic about one name of a definition. Where nothing in the workspace uses the definition, a change of it
+    can only break others. Beside the data given it has `definition`, `users`, and `hash`: what nodes compare when they
+    connect, by its name in the workspace's generation of ROS."""
+    users = users_of(workspace, pair.package.name, pair.file.name)
+    hash = "md5 sum" if workspace.ros == 1 else "type hash"
+    data = {"definition": pair.name, "users": users, "hash": hash, **data}
+    return Diagnostic(at, subject, pair.package.name, data, kind, doubts=() if users else (Doubt.DISTURBS,))

@@ -1,7 +1,7 @@
-"""removed-field: a field of a message, service or action is gone against the base.
+"""removed-field: a field of a message, service or action was removed since the base.
 
 What it does
-    Compares every definition with the base revision and reports fields that are no longer there.
+    Compares every definition with the base revision and reports fields that were removed.
 
 Why it breaks
     Source that reads or writes the field does not compile (C++) or stops when it gets there (Python). The md5 sum or
@@ -18,22 +18,22 @@ Use instead
 """
 
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .comparison import pairs, users, wire
+from ..rule import rule
+from ..text import Text
+from .comparison import UNMATCHED, diagnostic, pairs
 
 
-@rule(severity="error", compares=True)
+@rule(
+    scope="change",
+    severity="error",
+    texts=Text(
+        f"the field `{{subject}}` was removed from `{{definition}}`: {UNMATCHED}",
+        help="keep the field for one release, or change everything that uses it in the same change",
+    ),
+)
 def removed_field(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
-        there = {f.name for f in pair.new.fields}
+        after = {field.name for field in pair.new.fields}
         for field in pair.old.fields:
-            if field.name not in there:
-                who = users(workspace, pair)
-                yield Hit(
-                    pair.at(1),
-                    field.name,
-                    f"`{pair.name}` lost the field `{field.name}`: {wire(workspace)}; {who}",
-                    "keep the field for one release, or change every user with it",
-                    pair.package.name,
-                    severity="error" if who.startswith("used") else "warning",
-                )
+            if field.name not in after:
+                yield diagnostic(workspace, pair, pair.at(1), field.name)

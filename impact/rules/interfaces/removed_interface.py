@@ -1,10 +1,10 @@
-"""removed-interface: a message, service or action of the base is gone.
+"""removed-interface: a message, service or action was removed since the base.
 
 What it does
     Reports definitions that were removed, renamed, or moved to another package of the workspace.
 
 Why it breaks
-    Source that includes or imports it does not build or start; recorded bags name a type that no machine knows.
+    Source that includes or imports it does not build or start; recorded bags contain a type that no machine knows.
 
 Severity
     error when a package of the workspace still uses it; warning otherwise.
@@ -18,32 +18,40 @@ Use instead
 
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .comparison import _users
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+from .comparison import users_of
+
+_REMOVED = "`{subject}` was removed; used by {users:nothing in the workspace}"
 
 
-@rule(severity="error", compares=True)
+@rule(
+    scope="change",
+    severity="error",
+    texts={
+        "removed": Text(_REMOVED, help="keep the definition for one release"),
+        "moved": Text(_REMOVED, help="use `{replacement}`"),
+    },
+)
 def removed_interface(workspace: Workspace, base: Workspace):
-    now = {}
+    packages_with: dict[tuple[str, str], list[str]] = {}
     for package in workspace:
         for file in package.digest.interfaces:
-            now.setdefault((file.name, file.definition.kind), []).append(package.name)
+            packages_with.setdefault((file.name, file.definition.kind), []).append(package.name)
     for before in base:
         package = workspace.packages.get(before.name)
-        here = {(i.name, i.definition.kind) for i in package.digest.interfaces} if package else set()
         for file in before.digest.interfaces:
-            key = (file.name, file.definition.kind)
-            if key in here:
+            others = packages_with.get((file.name, file.definition.kind), [])
+            if package is not None and package.name in others:
                 continue
-            users = _users(workspace, before.name, file.name)
-            moved = [n for n in now.get(key, ()) if n != before.name]
-            at = At(package.digest.manifest_path, 1) if package else At(file.path, 1)
-            who = "used by " + ", ".join(f"`{n}`" for n in users[:4]) if users else "nothing in the workspace uses it"
-            yield Hit(
-                at,
+            users = users_of(workspace, before.name, file.name)
+            replacement = f"{others[0]}/{file.name}" if others else ""
+            yield Diagnostic(
+                At(package.digest.manifest_path, 1) if package else At(file.path, 1),
                 f"{before.name}/{file.name}",
-                f"`{before.name}/{file.name}` is gone; {who}",
-                f"use `{moved[0]}/{file.name}`" if moved else "keep it for one release",
                 before.name,
-                severity="error" if users else "warning",
+                {"users": users, "replacement": replacement},
+                kind="moved" if others else "removed",
+                doubts=() if users else (Doubt.DISTURBS,),
             )

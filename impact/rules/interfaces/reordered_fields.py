@@ -1,4 +1,4 @@
-"""reordered-fields: fields stand in another order than at the base.
+"""reordered-fields: the order of fields changed since the base.
 
 What it does
     Reports definitions whose common fields changed their order.
@@ -19,27 +19,26 @@ Use instead
 """
 
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .comparison import pairs, users, wire
+from ..rule import rule
+from ..text import Text
+from .comparison import UNMATCHED, diagnostic, pairs
 
 
-@rule(severity="error", compares=True)
+@rule(
+    scope="change",
+    severity="error",
+    texts=Text(
+        f"the order of the fields of `{{definition}}` changed, from `{{subject}}` on: {UNMATCHED}",
+        help="restore the old order",
+    ),
+)
 def reordered_fields(workspace: Workspace, base: Workspace):
     for pair in pairs(workspace, base):
-        new = [f for f in pair.new.fields if any(f.name == o.name for o in pair.old.fields)]
-        old = [f.name for f in pair.old.fields if any(f.name == n.name for n in pair.new.fields)]
-        moved = (
-            next((f for f, name in zip(new, old, strict=True) if f.name != name), None)
-            if len(new) == len(old)
-            else None
-        )
+        common = {field.name for field in pair.old.fields} & {field.name for field in pair.new.fields}
+        new = [field for field in pair.new.fields if field.name in common]
+        old = [field.name for field in pair.old.fields if field.name in common]
+        if len(new) != len(old):
+            continue
+        moved = next((field for field, name in zip(new, old, strict=True) if field.name != name), None)
         if moved is not None:
-            who = users(workspace, pair)
-            yield Hit(
-                pair.at(moved.line, moved.column),
-                moved.name,
-                f"the fields of `{pair.name}` stand in another order from `{moved.name}` on: {wire(workspace)}; {who}",
-                "put them back in their old order",
-                pair.package.name,
-                severity="error" if who.startswith("used") else "warning",
-            )
+            yield diagnostic(workspace, pair, pair.at(moved.line, moved.column), moved.name)

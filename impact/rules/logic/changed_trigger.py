@@ -1,38 +1,41 @@
-"""changed-trigger: what makes a node publish is another than at the base.
+"""changed-trigger: a message is published by another trigger, or with another quality of service, than at the base.
 
 What it does
     Compares what triggers each publish statement with the base: the callback and its topic, the timer and its period, a
     loop and its rate; and the publisher's queue, latch and quality of service.
 
 Why it breaks
-    Messages come more seldom, more often, at another moment or to fewer subscribers. Readers with a timeout, a filter
-    or a synchronizer behave otherwise, and nothing says so.
+    Messages arrive less often, more often, at other times or at fewer subscribers. Subscribers with a timeout, a filter
+    or a synchronizer behave differently, without any warning.
 
 Severity
-    warning; note when nothing in the workspace reads the topic.
+    warning; note when nothing in the workspace subscribes to the topic.
 
 Example
     timer_ = nh.createTimer(ros::Duration(5.0), &Driver::send, this);     // was 0.1
 
 Use instead
-    timer_ = nh.createTimer(ros::Duration(0.1), &Driver::send, this);     // or tell the readers of the topic
+    timer_ = nh.createTimer(ros::Duration(0.1), &Driver::send, this);     // or inform the users of the topic
 
 Not reported
-    Statements of which it is not known what leads to them; callbacks and timers that are merely called otherwise.
+    Statements whose trigger is not known; callbacks and timers that only have another name.
 """
 
 from collections.abc import Iterator
 
-from ...logic.changes import Change
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .statements import hits
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .statements import READERS, find_changes
 
 
-@rule(severity="warning", compares=True)
-def changed_trigger(workspace: Workspace, base: Workspace) -> Iterator[Hit]:
-    def says(change: Change) -> str:
-        return f"`{change.topic}` is published by another trigger: {change.why}"
-
-    cure = "make sure that its readers can do with the new pace, moment and quality of service"
-    yield from hits(workspace, base, lambda change: change.kind == "trigger changed", says, cure)
+@rule(
+    scope="change",
+    severity="warning",
+    texts=Text(
+        f"the trigger or the quality of service of `{{subject}}` changed: {{change}}; {READERS}",
+        help="check that the subscribers tolerate the new rate, trigger and quality of service",
+    ),
+)
+def changed_trigger(workspace: Workspace, base: Workspace) -> Iterator[Diagnostic]:
+    yield from find_changes(workspace, base, lambda change: change.kind == "trigger changed")

@@ -1,44 +1,36 @@
-"""Changes of the logic of publishing as hits: shared by the rules of this family."""
+"""Publish statements whose logic changed since the base, as diagnostics, for the rules of this family."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 
 from ...logic.changes import Change
 from ...logic.two_states import publishing
 from ...model.cmake.build import At
-from ...model.flow.edges import said
+from ...model.flow.edges import display_name
 from ...model.flow.graph import Endpoint, Graph
 from ...model.flow.reach import EVERYWHERE
 from ...model.workspace import Workspace
-from ..rule import Hit
+from ..rule import Diagnostic
+from ..severity import Doubt
 
 _LONGEST = 120
-_MOST_READERS = 3
+# How the message of a changed condition goes on, and how every message of the family ends.
+CONDITIONS = "its condition was {old:no condition} and is {new:no condition}"
+READERS = "read by {readers:nothing in the workspace}"
 
 
-def hits(
-    workspace: Workspace, base: Workspace, fits: Callable[[Change], bool], says: Callable[[Change], str], cure: str
-) -> Iterator[Hit]:
-    """A hit for each publish statement whose change fits, at its place now; a note where nothing in the workspace reads
-    its topic. says: the change in a clause; cure: the help."""
+def find_changes(workspace: Workspace, base: Workspace, fits: Callable[[Change], bool]) -> Iterator[Diagnostic]:
+    """A diagnostic for each publish statement whose change fits, at its place now. Its data: `change` (what changed, in
+    a clause), `old` and `new` (conditions), `readers`. Without a reader in the workspace nothing there depends on it.
+    """
     for change in publishing(workspace, base):
         if not fits(change) or not EVERYWHERE.isdisjoint(change.topics):
             continue
-        readers = readers_of(workspace.flow, change)
-        yield Hit(
-            At(change.path, change.line),
-            change.topic,
-            f"{says(change)}; {_read_by(workspace.flow, readers)}",
-            cure,
-            change.package,
-            severity="" if readers else "note",
-        )
-
-
-def conditions(change: Change) -> str:
-    """The new and the old condition of a statement in a clause."""
-    return f"under {quoted(change.new)}, was under {quoted(change.old)}"
+        readers = _names(workspace.flow, readers_of(workspace.flow, change))
+        data = {"change": change.why, "old": _code(change.old), "new": _code(change.new), "readers": readers}
+        doubts = () if readers else (Doubt.CHANGED,)
+        yield Diagnostic(At(change.path, change.line), change.topic, change.package, data, doubts=doubts)
 
 
 def readers_of(graph: Graph, change: Change) -> list[Endpoint]:
@@ -49,18 +41,14 @@ def readers_of(graph: Graph, change: Change) -> list[Endpoint]:
     return list({(one.node, one.path, one.line): one for one in found}.values())
 
 
-def _read_by(graph: Graph, readers: Sequence[Endpoint]) -> str:
+def _names(graph: Graph, readers: list[Endpoint]) -> tuple[str, ...]:
     nodes = {node.id: node for node in graph.nodes}
-    told = list(dict.fromkeys(said(nodes[one.node]) if one.node in nodes else one.function for one in readers))
-    if not told:
-        return "nothing in the workspace reads it"
-    more = f" and {len(told) - _MOST_READERS} more" if len(told) > _MOST_READERS else ""
-    return "read by " + ", ".join(f"`{name}`" for name in told[:_MOST_READERS]) + more
+    return tuple(dict.fromkeys(display_name(nodes[one.node]) if one.node in nodes else one.function for one in readers))
 
 
-def quoted(condition: str | None) -> str:
-    """A condition as code, cut where it is long."""
+def _code(condition: str | None) -> tuple[str, ...]:
+    """A condition to be shown as code, cut where it is long; empty without one."""
     text = (condition or "").replace("`", "")
     if not text:
-        return "no condition"
-    return f"`{text if len(text) <= _LONGEST else text[: _LONGEST - 1] + '…'}`"
+        return ()
+    return (text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…",)

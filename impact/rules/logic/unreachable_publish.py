@@ -1,14 +1,14 @@
-"""unreachable-publish: a publish statement that ran at the base never runs any more.
+"""unreachable-publish: a publish statement that ran at the base can no longer run.
 
 What it does
-    Reports a publish statement that stands behind a `return`, `throw`, `break` or the like which always happens, or
-    whose conditions contradict each other (decided with z3), and that could be reached at the base.
+    Reports a publish statement that follows a `return`, `throw`, `break` or the like that always runs, or whose
+    conditions contradict each other (decided with z3), and that could run at the base.
 
 Why it breaks
-    Nothing is published there any more, though the statement is still to be seen.
+    Nothing is published there any more, although the statement is still in the source.
 
 Severity
-    warning; note when nothing in the workspace reads the topic.
+    warning; note when nothing in the workspace subscribes to the topic.
 
 Example
     return;                       // left over from debugging
@@ -18,23 +18,25 @@ Use instead
     pub_.publish(message);
 
 Not reported
-    Statements that were never reached; contradictions between conditions that something may change in between.
+    Statements that could not run at the base either; conditions on values that may change between the two tests.
 """
 
 from collections.abc import Iterator
 
-from ...logic.changes import Change
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .statements import hits, quoted
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .statements import READERS, find_changes
 
 
-@rule(severity="warning", compares=True)
-def unreachable_publish(workspace: Workspace, base: Workspace) -> Iterator[Hit]:
-    def says(change: Change) -> str:
-        was = f"it ran under {quoted(change.old)}"
-        return f"`{change.topic}` is published here no longer: the statement {change.why}; {was}"
-
-    yield from hits(
-        workspace, base, lambda change: change.unreachable, says, "remove the statement, or what keeps it off"
-    )
+@rule(
+    scope="change",
+    severity="warning",
+    texts=Text(
+        "`{subject}` is no longer published here: the statement {change}; its condition was {old:no condition}; "
+        + READERS,
+        help="remove the statement, or what keeps it from running",
+    ),
+)
+def unreachable_publish(workspace: Workspace, base: Workspace) -> Iterator[Diagnostic]:
+    yield from find_changes(workspace, base, lambda change: change.unreachable)

@@ -2,31 +2,34 @@
 
 What it does
     Compares the conditions of every publish statement with the base, as tightened-publish-condition does. Reports a
-    statement whose old condition implies the new one, and is not implied by it.
+    statement whose old condition implies the new one and is not equivalent.
 
 Why it matters
-    Whoever reads the topic gets messages in situations in which there were none, and perhaps with values that did not
-    occur.
+    Subscribers get messages in situations in which there were none before, and perhaps with values that did not occur
+    before.
 
 Severity
     note.
 
 Not reported
-    What tightened-publish-condition leaves alone.
+    What tightened-publish-condition does not report.
 """
 
 from collections.abc import Iterator
 
-from ...logic.changes import Change
 from ...model.workspace import Workspace
-from ..rule import Hit, rule
-from .statements import conditions, hits
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .statements import CONDITIONS, READERS, find_changes
 
 
-@rule(severity="note", compares=True)
-def widened_publish_condition(workspace: Workspace, base: Workspace) -> Iterator[Hit]:
-    def says(change: Change) -> str:
-        return f"`{change.topic}` is published in more cases, {change.why}: {conditions(change)}"
-
-    cure = "make sure that its readers can handle the messages that come now"
-    yield from hits(workspace, base, lambda change: change.kind == "widened", says, cure)
+@rule(
+    scope="change",
+    severity="note",
+    texts=Text(
+        f"`{{subject}}` is published in more cases ({{change}}): {CONDITIONS}; {READERS}",
+        help="check that the subscribers can handle the additional messages",
+    ),
+)
+def widened_publish_condition(workspace: Workspace, base: Workspace) -> Iterator[Diagnostic]:
+    yield from find_changes(workspace, base, lambda change: change.kind == "widened")

@@ -1,4 +1,4 @@
-"""dependency-cycle: packages of the workspace depend on each other in a circle.
+"""dependency-cycle: packages of the workspace depend on each other in a cycle.
 
 What it does
     Reports every cycle among build, build tool, build export and run dependencies of the workspace's packages.
@@ -16,19 +16,30 @@ Use instead
     One direction only; what both need goes into a third package.
 
 Not reported
-    Cycles that only test or documentation dependencies close: colcon leaves these out where they would close one.
+    Cycles that only exist with test or documentation dependencies: colcon ignores those that would close a cycle.
 """
 
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
-# Every cycle that is found is cut, and the rest searched anew. A workspace in which all packages need each other has
-# about as many cycles as dependencies; the first ones tell enough.
+# Every cycle that is found is cut, and the rest searched again. A workspace in which all packages need each other has
+# about as many cycles as dependencies; the first ones are enough.
 _MOST_CYCLES = 100
 _MOST_EDGES = 2_000_000
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "cycle": Text("dependency cycle: {cycle}", help="remove one of these dependencies"),
+        "more": Text(
+            "there are more than {most} dependency cycles; the others are not listed",
+            help="first remove the listed cycles",
+        ),
+    },
+)
 def dependency_cycle(view: View):
     from graphlib import CycleError, TopologicalSorter
 
@@ -55,15 +66,9 @@ def dependency_cycle(view: View):
         if number == most:
             if view.reports_on(first):
                 at = view.manifest_place(package, dependency)
-                text = f"there are more than {most} dependency cycles; the others are not listed"
-                yield Hit(at, "further cycles", text, "cut those that are listed first", first, severity="note")
+                yield Diagnostic(at, "further cycles", first, {"most": most}, kind="more", severity="note")
             return
         if view.reports_on(first):
-            yield Hit(
-                view.manifest_place(package, dependency),
-                names[1],
-                "dependency cycle: " + " → ".join([*names, first]),
-                "cut one of these dependencies",
-                first,
-            )
+            at = view.manifest_place(package, dependency)
+            yield Diagnostic(at, names[1], first, {"cycle": " → ".join([*names, first])}, kind="cycle")
         needs[first].discard(names[1])

@@ -39,7 +39,7 @@ _TAGS = {
 }
 
 
-@rule(severity="error", per_target=False)
+@rule(scope="workspace", severity="error")
 def invalid_manifest(workspace: Workspace):
     for package in workspace:
         manifest, path = package.manifest, package.digest.manifest_path

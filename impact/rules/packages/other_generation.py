@@ -1,11 +1,11 @@
-"""other-generation: nothing of the workspace can be built on a target, since it is written for the other ROS.
+"""other-generation: no package of the workspace can be built on a target, because all are for the other ROS generation.
 
 What it does
-    Says so once for a target of one ROS generation when every package of the workspace builds with the other's tools:
+    Reports, once for a target, that every package of the workspace builds with the tools of the other ROS generation:
     catkin packages against a ROS 2 target, ament packages against a ROS 1 target.
 
 Why it breaks
-    There is no catkin in ROS 2 and no ament in ROS 1. What the other rules would say of such a target means nothing.
+    There is no catkin in ROS 2 and no ament in ROS 1. Findings of the other rules on such a target mean nothing.
 
 Severity
     error.
@@ -21,10 +21,18 @@ Use instead
 from ...model.cmake.build import At
 from ...model.package import build_type_of
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts=Text(
+        "no package of the workspace can be built on {distro}: {build_type} belongs to ROS {generation}",
+        help="check against a ROS {generation} target",
+    ),
+)
 def other_generation(view: View):
     packages = [p for p in view.workspace if not p.manifest.metapackage]
     foreign = [p for p in packages if _other(view, p)]
@@ -33,15 +41,8 @@ def other_generation(view: View):
     first = packages[0]
     if not view.reports_on(first.name):
         return
-    count = "the package" if len(packages) == 1 else f"none of the {len(packages)} packages"
-    verb = "cannot be built" if len(packages) == 1 else "can be built"
-    yield Hit(
-        At(first.digest.manifest_path, first.manifest.line),
-        first.name,
-        f"{count} {verb} on {view.target.distro}: {first.build_type} is of ROS {3 - view.target.ros}",
-        f"check against a ROS {3 - view.target.ros} target",
-        first.name,
-    )
+    data = {"distro": view.target.distro, "build_type": first.build_type, "generation": 3 - view.target.ros}
+    yield Diagnostic(At(first.digest.manifest_path, first.manifest.line), first.name, first.name, data)
 
 
 def _other(view: View, package) -> bool:

@@ -1,4 +1,4 @@
-"""unreleased-package: a declared package exists in ROS, and not on a target.
+"""unreleased-package: a declared package is released in ROS, but not on a target.
 
 What it does
     Reports dependencies on packages that some distro has released and the target's distro, at its date, has not, when
@@ -24,10 +24,21 @@ Not reported
 """
 
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
+
+_HELP = "bring its source into the workspace, or put a condition on the dependency"
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "never": Text("`{subject}` is not released in {distro}[[ (last released in {last})]]", _HELP),
+        "later": Text("`{subject}` was not released in {distro} on that date", _HELP),
+    },
+)
 def unreleased_package(view: View):
     target = view.target
     gone = {c.old or c.package for c in view.changes("package-removed", "package-renamed") if c.state == "removed"}
@@ -48,18 +59,12 @@ def unreleased_package(view: View):
                 need.certain and need.required and need.role == "build" and any(p.name == name for p in need.providers)
                 for need in view.needs(package)
             )
-            yield Hit(
+            last = view.last_distro(name) or ""
+            yield Diagnostic(
                 view.manifest_place(package, dependency),
                 name,
-                f"`{name}` is not released in {target.distro}{_when(view, name)}",
-                view.successor(name) or "bring its source into the workspace, or put a condition on the dependency",
                 package.name,
-                severity="error" if used and not view.underlaid else "warning",
+                {"distro": target.distro, "last": last},
+                kind="later" if last == target.distro else "never",
+                doubts=() if used and not view.underlaid else (Doubt.INCOMPLETE,),
             )
-
-
-def _when(view: View, name: str) -> str:
-    last = view.last_distro(name)
-    if last == view.target.distro:
-        return " on that day"
-    return f" (last seen in {last})" if last else ""

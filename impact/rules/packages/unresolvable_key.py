@@ -29,10 +29,29 @@ from functools import lru_cache
 from ...model.misspelling import nearest, one_edit
 from ...model.view import View
 from ..fix_actions import Remove, Replace
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
+
+_HELP = "declare a key that exists on the target, or put a condition on the dependency"
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "no rule": Text("rosdep has no rule for `{subject}` on {platform}", _HELP),
+        "no rule, similar": Text("rosdep has no rule for `{subject}` on {platform}", "declare `{replacement}`"),
+        "misspelt": Text("`{subject}` is neither a package nor a rosdep key", "declare `{replacement}`"),
+        "repository": Text(
+            "`{subject}` is neither a package nor a rosdep key, but {packages} are packages",
+            "declare the packages that are used",
+        ),
+        "unknown": Text(
+            "`{subject}` is not a public package or rosdep key",
+            "if it is your own, add it to `[workspace] private` in rosimpact.toml",
+        ),
+    },
+)
 def unresolvable_key(view: View):
     target = view.target
     for package in view:
@@ -50,43 +69,17 @@ def unresolvable_key(view: View):
                 continue  # unreleased-package says it
             guess = nearest(name, view.known_names)
             guess = guess if guess and view.available(guess) else None
-            known = target.known_key(name)
             at = view.manifest_place(package, dependency)
-            if known:
-                yield Hit(
-                    at,
-                    name,
-                    f"rosdep has no rule for `{name}` on {target.platform}",
-                    _cure(guess, name),
-                    package.name,
-                    severity="error",
-                )
+            if target.known_key(name):
+                data = {"platform": target.platform, "replacement": guess or ""}
+                yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if guess else "no rule")
             elif guess:
-                yield Hit(
-                    at,
-                    name,
-                    f"`{name}` is neither a package nor a rosdep key",
-                    _cure(guess, name),
-                    package.name,
-                    fix=_fix(view, package, name, guess),
-                )
+                fix = _fix(view, package, name, guess)
+                yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
             elif longer := _parts_of(view, name):
-                yield Hit(
-                    at,
-                    name,
-                    f"`{name}` is no package or rosdep key, while {' and '.join(f'`{n}`' for n in longer[:2])} are",
-                    "declare those of its packages that are used",
-                    package.name,
-                )
+                yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
             else:
-                yield Hit(
-                    at,
-                    name,
-                    f"`{name}` is no package or rosdep key known in public",
-                    "name it in `[workspace] private` of rosimpact.toml if it is your own",
-                    package.name,
-                    severity="note",
-                )
+                yield Diagnostic(at, name, package.name, kind="unknown", severity="note")
 
 
 def _parts_of(view: View, name: str) -> list[str]:
@@ -126,9 +119,3 @@ def _slip(name: str, guess: str) -> bool:
 
 def _plain(name: str) -> str:
     return re.sub(r"[-_.\s]", "", name.lower())
-
-
-def _cure(guess: str | None, name: str) -> str:
-    return (
-        f"declare `{guess}`" if guess and guess != name else "declare a key that exists there, or put a condition on it"
-    )

@@ -1,14 +1,14 @@
-"""unused-dependency: a declared dependency shows no sign of use.
+"""unused-dependency: nothing in a package uses a declared dependency.
 
 What it does
     Reports build and run dependencies for which no find_package, include, import, launch reference, message field,
     plugin or exported name was found.
 
 Why it matters
-    Each one is installed on every machine, and is one more name that can vanish from a distro.
+    Each one is installed on every machine, and can be removed from a distro.
 
 Severity
-    note: a dependency may be wanted for reasons that no file shows.
+    note: a dependency may be needed for reasons that no file shows.
 
 Example
     <depend>laser_geometry</depend>             <!-- and nothing includes, finds, links or starts it -->
@@ -21,7 +21,8 @@ Not reported
 """
 
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 _SILENT = (
     "_vendor",
@@ -43,7 +44,14 @@ _SILENT = (
 )
 
 
-@rule(severity="note")
+@rule(
+    scope="target",
+    severity="note",
+    texts=Text(
+        "nothing in `{package}` uses `{subject}`",
+        help="remove the dependency if it is not needed for another reason",
+    ),
+)
 def unused_dependency(view: View):
     for package in view:
         if package.manifest.metapackage or (package.build_type == "ament_python" and not package.digest.imports):
@@ -81,10 +89,4 @@ def unused_dependency(view: View):
             ):
                 continue
             place = next(d for d in package.manifest.dependencies if d.name == name)
-            yield Hit(
-                view.manifest_place(package, place),
-                name,
-                f"nothing in `{package.name}` uses `{name}`",
-                "remove the dependency if it is not wanted for another reason",
-                package.name,
-            )
+            yield Diagnostic(view.manifest_place(package, place), name, package.name)

@@ -1,4 +1,4 @@
-"""What the rules of this family share: publishers and subscribers of ROS 2 that meet, with the qualities they tell.
+"""Publishers and subscribers of ROS 2 that meet, and the quality of service of each, for the rules of this family.
 
 Source of the tables: "Quality of service compatibilities" in
 https://docs.ros.org/en/rolling/Concepts/Intermediate/About-Quality-of-Service-Settings.html.
@@ -9,17 +9,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...model.cmake.build import At
-from ...model.flow.edges import Pair, met, said
+from ...model.flow.edges import Pair, display_name, met
 from ...model.flow.graph import Qos
 from ...model.workspace import Workspace
-from ..rule import Hit
+from ..rule import Diagnostic
+from ..text import Text, Value
 
 _ROS1 = frozenset(("roscpp", "rospy"))
 
 
 def meetings(workspace: Workspace) -> Iterator[tuple[Pair, Qos, Qos]]:
-    """Publishers and subscribers that meet, with what each asks for; where code may choose among several of one name,
-    none is judged."""
+    """Publishers and subscribers of one topic, with what is offered and what is asked for. Where a node has several of
+    the same name, it is not known which of them is used, and none is returned."""
     for pair in met(workspace):
         giver, taker = pair.giver.endpoint, pair.taker.endpoint
         if giver.role != "publisher" or giver.qos is None or taker.qos is None or giver.framework in _ROS1:
@@ -30,14 +31,23 @@ def meetings(workspace: Workspace) -> Iterator[tuple[Pair, Qos, Qos]]:
             yield pair, giver.qos, taker.qos
 
 
-def refused(pair: Pair, offered: str, asked: str, cure: str) -> Hit:
-    """The finding at a subscriber. offered, asked: clauses of what the publisher gives and the subscriber wants."""
-    giver, taker = pair.giver.endpoint, pair.taker.endpoint
-    return Hit(
-        At(taker.path, taker.line),
-        taker.topic,
-        f"the subscriber of `{taker.topic}` {asked}, but the publisher in `{said(pair.giver.node)}` {offered} "
-        f"({giver.path}:{giver.line}){pair.together}",
-        cure,
-        pair.taker.node.package,
+def qos_text(asks: str, offers: str, help: str) -> Text:
+    """The text of a diagnostic of this family. asks, offers: what the subscriber asks for and the publisher offers, as
+    clauses that begin with a verb."""
+    return Text(
+        f"the subscriber of `{{subject}}` {asks}, but the publisher in `{{node}}` {offers} ({{place}})"
+        "[[; `{launch}` starts both]]",
+        help,
     )
+
+
+def incompatible(pair: Pair, kind: str = "", **data: Value) -> Diagnostic:
+    """The diagnostic at a subscriber. Its data also has `node` and `place` of the publisher, and `launch`."""
+    giver, taker = pair.giver.endpoint, pair.taker.endpoint
+    data = {
+        "node": display_name(pair.giver.node),
+        "place": f"{giver.path}:{giver.line}",
+        "launch": pair.launch,
+        **data,
+    }
+    return Diagnostic(At(taker.path, taker.line), taker.topic, pair.taker.node.package, data, kind)

@@ -1,10 +1,10 @@
-"""qos-deadline: a subscriber wants messages more often than the publisher promises.
+"""qos-deadline: a subscriber asks for a shorter deadline than the publisher offers.
 
 What it does
-    Reports a subscriber whose deadline is shorter than that of the topic's publisher. Both have to be told as numbers.
+    Reports a subscriber whose deadline is shorter than that of the topic's publisher. Both have to be known as numbers.
 
 Why it breaks
-    The two do not match, and no message arrives; the nodes warn of incompatible QoS once they run.
+    The two are not connected and no message arrives; the running nodes warn about incompatible QoS.
 
 Severity
     warning.
@@ -17,22 +17,26 @@ Use instead
     create_publisher<Imu>("imu", rclcpp::QoS(5).deadline(100ms));
 
 Not reported
-    Deadlines that are not told, or not as numbers; nodes that no launch file starts together, when one of them has
-    somebody else to talk to.
+    Deadlines that are not known as numbers; nodes that no launch file starts together, if one of them has another
+    partner.
 """
 
 from ...model.workspace import Workspace
 from ..rule import rule
-from .offers import meetings, refused
+from .offers import incompatible, meetings, qos_text
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="warning",
+    preview=True,
+    texts=qos_text(
+        "asks for a deadline of {asked:g} s",
+        "offers {offered:g} s",
+        help="give the publisher a deadline of at most {asked:g} s",
+    ),
+)
 def qos_deadline(workspace: Workspace):
     for pair, offered, asked in meetings(workspace):
         if offered.deadline is not None and asked.deadline is not None and offered.deadline > asked.deadline:
-            yield refused(
-                pair,
-                f"promises one every {offered.deadline:g} s",
-                f"wants a message every {asked.deadline:g} s",
-                f"give the publisher a deadline of at most {asked.deadline:g} s",
-            )
+            yield incompatible(pair, offered=offered.deadline, asked=asked.deadline)

@@ -1,11 +1,11 @@
-"""qos-durability: a subscriber asks for messages from before it came, and the publisher keeps none.
+"""qos-durability: a subscriber asks for messages from before it started, and the publisher does not keep them.
 
 What it does
-    Reports a subscriber that is `transient_local` on a topic whose publisher is `volatile`. Both have to tell so: by a
-    profile, a setting, or the default that a bare depth stands for.
+    Reports a subscriber that is `transient_local` on a topic whose publisher is `volatile`. Both have to be known: from
+    a profile, a setting, or the default of a plain queue depth.
 
 Why it breaks
-    The two do not match, and no message arrives, not even a new one; the nodes warn of incompatible QoS once they run.
+    The two are not connected and no message arrives, not even a new one; the running nodes warn about incompatible QoS.
 
 Severity
     warning.
@@ -18,18 +18,27 @@ Use instead
     create_publisher<OccupancyGrid>("map", rclcpp::QoS(1).transient_local());
 
 Not reported
-    A transient-local publisher and a volatile subscriber, which match; latched publishers of ROS 1; qualities that are
-    not told, or left to the system; nodes that no launch file starts together, when one has somebody else to talk to.
+    A transient-local publisher and a volatile subscriber, which match; latched publishers of ROS 1; settings that are
+    not known, or are the default of the system; nodes that no launch file starts together, if one of them has another
+    partner.
 """
 
 from ...model.workspace import Workspace
 from ..rule import rule
-from .offers import meetings, refused
+from .offers import incompatible, meetings, qos_text
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="warning",
+    preview=True,
+    texts=qos_text(
+        "asks for transient local durability",
+        "is volatile",
+        help="make the publisher transient local, or the subscriber volatile",
+    ),
+)
 def qos_durability(workspace: Workspace):
     for pair, offered, asked in meetings(workspace):
         if offered.durability == "volatile" and asked.durability == "transient_local":
-            cure = "make the publisher transient local, or the subscriber volatile"
-            yield refused(pair, "is volatile", "is transient local", cure)
+            yield incompatible(pair)

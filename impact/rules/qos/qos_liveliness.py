@@ -1,11 +1,11 @@
-"""qos-liveliness: a subscriber wants stronger signs of life than the publisher gives.
+"""qos-liveliness: a subscriber asks for a stricter liveliness than the publisher offers.
 
 What it does
     Reports a subscriber that asks for liveliness `manual_by_topic` of a publisher whose liveliness is `automatic`, and
-    a subscriber whose lease is shorter than the publisher's. Both have to tell so.
+    a subscriber whose lease is shorter than the publisher's. Both have to be known.
 
 Why it breaks
-    The two do not match, and no message arrives; the nodes warn of incompatible QoS once they run.
+    The two are not connected and no message arrives; the running nodes warn about incompatible QoS.
 
 Severity
     warning.
@@ -18,25 +18,34 @@ Use instead
     create_publisher<Imu>("imu", rclcpp::QoS(5).liveliness(RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC));
 
 Not reported
-    Leases that are not told, or not as numbers; nodes that no launch file starts together, when one of them has
-    somebody else to talk to.
+    Leases that are not known as numbers; nodes that no launch file starts together, if one of them has another partner.
 """
 
 from ...model.workspace import Workspace
 from ..rule import rule
-from .offers import meetings, refused
+from .offers import incompatible, meetings, qos_text
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="warning",
+    preview=True,
+    texts={
+        "kind": qos_text(
+            "asks for liveliness `manual_by_topic`",
+            "offers `automatic`",
+            help="make the publisher assert its liveliness (`manual_by_topic`), or the subscriber `automatic`",
+        ),
+        "lease": qos_text(
+            "asks for a liveliness lease of {asked:g} s",
+            "offers {offered:g} s",
+            help="give the publisher a lease of at most {asked:g} s",
+        ),
+    },
+)
 def qos_liveliness(workspace: Workspace):
     for pair, offered, asked in meetings(workspace):
         if offered.liveliness == "automatic" and asked.liveliness == "manual_by_topic":
-            cure = "make the publisher assert its liveliness (manual by topic), or the subscriber automatic"
-            yield refused(pair, "gives automatic ones", "wants signs of life by topic", cure)
+            yield incompatible(pair, "kind")
         elif offered.lease is not None and asked.lease is not None and offered.lease > asked.lease:
-            yield refused(
-                pair,
-                f"promises one every {offered.lease:g} s",
-                f"wants a sign of life every {asked.lease:g} s",
-                f"give the publisher a lease of at most {asked.lease:g} s",
-            )
+            yield incompatible(pair, "lease", offered=offered.lease, asked=asked.lease)

@@ -1,11 +1,11 @@
-"""qos-reliability: a subscriber asks for reliable delivery of what is published as best effort.
+"""qos-reliability: a subscriber asks for reliable delivery, and the publisher offers best effort.
 
 What it does
-    Reports a subscriber that is `reliable` on a topic whose publisher is `best_effort`. Both have to tell so: by a
-    profile, a setting, or the default that a bare depth stands for.
+    Reports a subscriber that is `reliable` on a topic whose publisher is `best_effort`. Both have to be known: from a
+    profile, a setting, or the default of a plain queue depth.
 
 Why it breaks
-    The two do not match, and no message arrives; the nodes warn of incompatible QoS once they run.
+    The two are not connected and no message arrives; the running nodes warn about incompatible QoS.
 
 Severity
     warning.
@@ -18,18 +18,26 @@ Use instead
     create_subscription<LaserScan>("scan", rclcpp::SensorDataQoS(), on_scan);
 
 Not reported
-    A reliable publisher and a best-effort subscriber, which match; qualities that are not told, or left to the system;
-    nodes that no launch file starts together, when one of them has somebody else to talk to.
+    A reliable publisher and a best-effort subscriber, which match; settings that are not known, or are the default of
+    the system; nodes that no launch file starts together, if one of them has another partner.
 """
 
 from ...model.workspace import Workspace
 from ..rule import rule
-from .offers import meetings, refused
+from .offers import incompatible, meetings, qos_text
 
 
-@rule(severity="warning", preview=True, flow=True)
+@rule(
+    scope="flow",
+    severity="warning",
+    preview=True,
+    texts=qos_text(
+        "asks for reliable delivery",
+        "offers best effort",
+        help="make the subscriber best effort (`SensorDataQoS`), or the publisher reliable",
+    ),
+)
 def qos_reliability(workspace: Workspace):
     for pair, offered, asked in meetings(workspace):
         if offered.reliability == "best_effort" and asked.reliability == "reliable":
-            cure = "make the subscriber best effort (`SensorDataQoS`), or the publisher reliable"
-            yield refused(pair, "is best effort", "is reliable", cure)
+            yield incompatible(pair)

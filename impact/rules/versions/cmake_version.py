@@ -1,14 +1,13 @@
-"""cmake-version: cmake_minimum_required does not suit a target's CMake.
+"""cmake-version: cmake_minimum_required does not fit a target's CMake.
 
 What it does
     Compares the version with the CMake of the target's platform: newer than it has, or older than CMake 4 accepts.
 
 Why it breaks
-    CMake refuses a project that asks for a newer CMake, and since 4.0 one that asks for compatibility with less than
-    3.5.
+    CMake stops when a project asks for a newer CMake, and since 4.0 when it asks for compatibility with less than 3.5.
 
 Severity
-    error: the configuration stops at its first line.
+    error: CMake stops at the first line.
 
 Example
     cmake_minimum_required(VERSION 2.8.3)       # CMake 4 stops here
@@ -17,15 +16,29 @@ Use instead
     cmake_minimum_required(VERSION 3.5...3.28)
 
 Not reported
-    A version that is not a plain number, and platforms whose CMake is not known.
+    Versions that are not plain numbers, and platforms whose CMake is not known.
 """
 
 from ...model.view import View
 from ...targets.version import at_least, compare
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts={
+        "newer": Text(
+            "`cmake_minimum_required` asks for CMake {subject}, but the target has {version}",
+            help="ask for at most CMake {version}",
+        ),
+        "older": Text(
+            "CMake {version} does not accept projects for CMake {subject}",
+            help="write `cmake_minimum_required(VERSION 3.5)` or newer",
+        ),
+    },
+)
 def cmake_version(view: View):
     cmake = view.target.library("cmake")
     if not cmake:
@@ -38,18 +51,6 @@ def cmake_version(view: View):
         if not low[:1].isdigit():
             continue
         if compare(low, cmake) > 0:
-            yield Hit(
-                at,
-                low,
-                f"CMake {low} is asked for and {view.target.platform} has {cmake}",
-                f"ask for at most {cmake}",
-                package.name,
-            )
+            yield Diagnostic(at, low, package.name, {"version": cmake}, kind="newer")
         elif at_least(cmake, "4.0") and not at_least(high or low, "3.5"):
-            yield Hit(
-                at,
-                low,
-                f"CMake {cmake} no longer accepts projects written for {low}",
-                "cmake_minimum_required(VERSION 3.5) or newer",
-                package.name,
-            )
+            yield Diagnostic(at, low, package.name, {"version": cmake}, kind="older")

@@ -1,10 +1,10 @@
-"""end-of-life-target: a target's distro gets no more updates.
+"""end-of-life-target: the distro of a target is no longer maintained.
 
 What it does
-    Says so once for every target whose distro was past its end of life on the day of the shipped data.
+    Reports, once for every target, that its distro was past its end of life on the date of the shipped data.
 
 Why it matters
-    Nothing that breaks there will be mended in the distro, and packages may leave its archives.
+    Faults of the distro are no longer fixed, and packages may be removed from its archives.
 
 Severity
     note.
@@ -12,19 +12,18 @@ Severity
 
 from ...model.cmake.build import At
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..text import Text
 
 
-@rule(severity="note")
+@rule(
+    scope="target",
+    severity="note",
+    texts=Text("{subject} reached its end of life on {date}", help="plan the move to a maintained distro"),
+)
 def end_of_life_target(view: View):
     ended = getattr(view.target, "end_of_life", "") or ""
     if ended and ended <= view.target.data_date:
         first = next(iter(view.workspace), None)
         if first is not None:
-            yield Hit(
-                At(first.digest.manifest_path, 1),
-                view.target.distro,
-                f"{view.target.distro} reached its end of life on {ended}",
-                "plan the move to a maintained distro",
-                first.name,
-            )
+            yield Diagnostic(At(first.digest.manifest_path, 1), view.target.distro, first.name, {"date": ended})

@@ -1,8 +1,8 @@
-"""library-version: a version asked of a library is not what the platform has.
+"""library-version: CMake asks for a version of a library that a target does not have.
 
 What it does
     Compares the version in find_package(X n) and pkg_check_modules(... x>=n) with the platform's version of the
-    library, by the rule the library's own configuration uses (same major for OpenCV, at least for Boost ...).
+    library, by the rule that the library's own configuration uses (same major for OpenCV, at least for Boost ...).
 
 Why it breaks
     CMake stops: "Could not find a configuration file that is compatible with requested version".
@@ -23,10 +23,19 @@ Not reported
 
 from ...model.view import View
 from ...targets.providers.library import satisfies
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts=Text(
+        "CMake asks for {subject} {requested}, but the target has {version}",
+        help="ask for a version that all targets have, or for no version",
+    ),
+)
 def library_version(view: View):
     for package in view:
         for found in package.build.found:
@@ -39,14 +48,13 @@ def library_version(view: View):
             others = [f for f in package.build.found if f.name == found.name and f is not found]
             if any(_holds(view, o) or o.quiet for o in others) or found.quiet:
                 continue
-            sure = found.required and view.certain(found.conditions)
-            yield Hit(
+            yield Diagnostic(
                 found.at,
                 found.name,
-                f"{found.name} is {answer.version}, and CMake asks for {found.version}",
-                "ask for a version that every target has, or for none",
                 package.name,
-                severity="error" if sure else "warning" if found.required else "note",
+                {"version": answer.version, "requested": found.version},
+                doubts=() if view.certain(found.conditions) else (Doubt.CONDITIONAL,),
+                severity="" if found.required else "note",
             )
 
 

@@ -56,7 +56,7 @@ class _Missing(NamedTuple):
     symbols: int = -1
 
 
-@rule(severity="error", installed=True)
+@rule(scope="install_space", severity="error")
 def stale_binary(view: View, installed: Installed, shelf: Shelf):
     askers: dict[_Missing, dict[str, list[Binary]]] = {}
     for binary in installed.binaries:

@@ -23,7 +23,9 @@ Not reported
 
 from ...model.view import View
 from ...targets.version import compare
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 _HOLDS = {
     "version_lt": lambda c: c < 0,
@@ -35,7 +37,14 @@ _HOLDS = {
 _SIGN = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
 
 
-@rule(severity="error")
+@rule(
+    scope="target",
+    severity="error",
+    texts=Text(
+        "package.xml asks for `{subject}` {bound}, but the target has {version}",
+        help="relax the bound, or update that target",
+    ),
+)
 def unsatisfied_version(view: View):
     for package in view:
         seen = set()
@@ -55,12 +64,11 @@ def unsatisfied_version(view: View):
             for name, bound in dependency.bounds:
                 if name in _HOLDS and not _HOLDS[name](compare(version, bound)):
                     seen.add(dependency.name)
-                    yield Hit(
+                    yield Diagnostic(
                         view.manifest_place(package, dependency),
                         dependency.name,
-                        f"`{dependency.name}` is {version}, and the manifest asks for {_SIGN[name]} {bound}",
-                        "relax the bound, or update that target",
                         package.name,
-                        severity="" if not here else "warning",
+                        {"version": version, "bound": f"{_SIGN[name]} {bound}"},
+                        doubts=(Doubt.DISTURBS,) if here else (),
                     )
                     break

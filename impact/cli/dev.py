@@ -1,0 +1,36 @@
+"""`rosimpact dev`: for people who work on rosimpact itself; CONTRIBUTING.md says how."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ...edges.console import write
+
+app = typer.Typer(help="For work on rosimpact itself.", no_args_is_help=True, rich_markup_mode=None)
+
+
+@app.callback()
+def _dev() -> None:
+    """For work on rosimpact itself."""
+
+
+@app.command("new-rule")
+def new_rule(
+    name: Annotated[str, typer.Argument(help="The rule's name, words with dashes: removed-header.")],
+    family: Annotated[str, typer.Option(help="The folder of impact/rules that it belongs to.")],
+    root: Annotated[Path, typer.Option(help="The checkout of rosimpact.")] = Path("."),
+) -> None:
+    """Write a rule's module and its first file of cases, which work and are to be edited."""
+    from .new_rule import write_rule
+
+    module, cases = write_rule(root, name, family)
+    write(
+        f"{module}\n{cases}\n\n"
+        "Edit both, then:\n"
+        f"  python -m pytest tests/rules -k {cases.stem}                  # does the rule find what its cases expect?\n"
+        f"  python -m pytest tests/rules -k {cases.stem} --update-cases   # writes what it finds into them\n"
+        "  python docs/rules.py > docs/rules.md\n"
+    )

@@ -1,0 +1,136 @@
+"""Lays out a rule: its module and its first file of cases, which work and are to be edited."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from ...edges import files
+from ...edges.console import UserError
+
+_NAME = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
+
+RULE = '''"""{name}: a package depends on `{subject}`.
+
+What it does
+    Reports what is wrong, in a sentence.
+
+Why it breaks
+    What happens to whom, and when: configuring, compiling, linking, installing, starting.
+
+Severity
+    warning. Say when it is graver or milder.
+
+Example
+    <depend>{subject}</depend>
+
+Use instead
+    <depend>rclcpp</depend>
+
+Not reported
+    What looks like it and works.
+"""
+
+from ...model.view import View
+from ..rule import Diagnostic, rule
+from ..text import Text
+
+
+@rule(
+    scope="target",
+    severity="warning",
+    preview=True,
+    texts=Text("`{{package}}` depends on `{{subject}}`", help="depend on `rclcpp`"),
+)
+def {function}(view: View):
+    for package in view:
+        for dependency in package.manifest.dependencies:
+            if dependency.name != "{subject}":
+                continue
+            yield Diagnostic(view.manifest_place(package, dependency), dependency.name, package.name)
+'''
+CASES = """# {name}
+
+Targets: jazzy
+
+```xml sled/package.xml
+<?xml version="1.0"?>
+<package format="3">
+  <name>sled</name>
+  <version>1.0.0</version>
+  <description>sled</description>
+  <maintainer email="robots@example.org">Robots</maintainer>
+  <license>Apache-2.0</license>
+
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <depend>rclcpp</depend>
+
+  <export>
+    <build_type>ament_cmake</build_type>
+  </export>
+</package>
+```
+
+```cmake sled/CMakeLists.txt
+cmake_minimum_required(VERSION 3.8)
+project(sled)
+
+find_package(ament_cmake REQUIRED)
+find_package(rclcpp REQUIRED)
+
+add_executable(sled src/sled.cpp)
+target_link_libraries(sled rclcpp::rclcpp)
+install(TARGETS sled DESTINATION lib/${{PROJECT_NAME}})
+
+ament_package()
+```
+
+```cpp sled/src/sled.cpp
+#include <rclcpp/rclcpp.hpp>
+
+int main(int argc, char ** argv)
+{{
+  rclcpp::init(argc, argv);
+  return 0;
+}}
+```
+
+## Nothing is reported
+
+## A package depends on it
+
+```diff sled/package.xml
+   <depend>rclcpp</depend>
++  <depend>{subject}</depend>
+```
+
+```findings
+warning sled/package.xml:11 {subject} [jazzy]
+  `sled` depends on `{subject}`
+  help: depend on `rclcpp`
+```
+"""
+
+
+def write_rule(root: Path, name: str, family: str) -> tuple[Path, Path]:
+    """Writes a rule's module and its file of cases, and returns their paths. root: a checkout of rosimpact.
+
+    Raises UserError for a name that no rule can have, an unknown family, a rule that exists, and a root that is no
+    checkout.
+    """
+    rules, cases = root / "impact/rules", root / "tests/rules"
+    if not rules.is_dir() or not cases.is_dir():
+        raise UserError(f"{root}: no checkout of rosimpact; start the command where impact/ and tests/ are")
+    if not _NAME.fullmatch(name):
+        raise UserError(f"{name}: no name of a rule; write words of small letters with dashes, as removed-header")
+    families = sorted(folder.parent.name for folder in rules.glob("*/__init__.py"))
+    if family not in families:
+        raise UserError(f"--family {family}: unknown; choose one of {', '.join(families)}")
+    function = name.replace("-", "_")
+    if known := [path for path in rules.glob(f"*/{function}.py")]:
+        raise UserError(f"{known[0]}: exists; choose another name")
+    module, first = rules / family / f"{function}.py", cases / family / f"{function}.md"
+    for path, text in ((module, RULE), (first, CASES)):
+        filled = text.format(name=name, function=function, subject="replace_me")
+        files.write_file(path, filled.encode(), beneath=root, instead_of=None)
+    return module, first

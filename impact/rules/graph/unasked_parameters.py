@@ -1,0 +1,54 @@
+"""Parameters that launch and parameter files set, and that the node's code neither declares nor reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from ...model.flow.launches import Start
+from ...model.flow.misspelling import is_slip
+from ...model.workspace import Workspace
+from .launch_settings import group_by_line
+
+# What every node, or the framework around it, understands.
+_COMMON = frozenset(
+    ("use_sim_time", "tf_prefix", "robot_description", "start_type_description_service", "bond_heartbeat_period",
+     "service_introspection_mode", "enable_statistics", "num_worker_threads")
+)  # fmt: skip
+_COMMON_HEADS = ("qos_overrides", "bond", "diagnostic_updater", "actionlib", "lifecycle")
+
+
+class Unasked(NamedTuple):
+    """A parameter set at a line for a program that does not ask for it. similar: the parameter of the program whose
+    name it is a misspelling of; empty when there is none."""
+
+    path: str
+    line: int
+    name: str
+    package: str
+    program: str
+    similar: str
+
+
+def find_unasked(workspace: Workspace) -> Iterator[Unasked]:
+    """The parameters of the launch and parameter files of a workspace that no node they are set for asks for."""
+    settings = group_by_line(workspace, lambda start: start.given, lambda parameter: parameter.name)
+    for (path, line, name), rows in settings:
+        if any(_asks(start, name) for start, _ in rows):
+            continue
+        start, _ = rows[0]
+        similar = next((known for known in start.parameters if is_slip(_last(known), _last(name))), "")
+        yield Unasked(path, line, name, start.package, start.program.partition("/")[2], similar)
+
+
+def _asks(start: Start, name: str) -> bool:
+    """Whether a node may ask for a parameter."""
+    parts = name.replace("/", ".").split(".")
+    if start.hidden_parameters or parts[-1] in _COMMON or parts[0] in _COMMON_HEADS:
+        return True
+    known = {_last(one) for one in start.parameters}
+    return any(part in known for part in parts)
+
+
+def _last(name: str) -> str:
+    return name.replace("/", ".").rpartition(".")[2].lstrip("~")

@@ -1,0 +1,48 @@
+"""removed-python-module: a Python file imports a module that a target's Python no longer has.
+
+What it does
+    Reports imports of modules of the standard library that the target's Python does not have. On a target with Python 2
+    it reports what the newest distro's Python 3 does not have.
+
+Why it breaks
+    The node stops at the import: ModuleNotFoundError or ImportError.
+
+Severity
+    error for files that are nodes, scripts or modules of the package; warning for tests, for imports inside functions,
+    for distutils, which setuptools provides where it is installed, and for the first place of a package that only the
+    newest distro does not accept; note for examples and the rest of those.
+
+Example
+    import imp                                  # removed in Python 3.12
+
+Use instead
+    import importlib
+
+Not reported
+    Imports with an except branch, and code under a test of the Python version.
+"""
+
+from collections.abc import Iterator
+
+from ...model.view import View
+from ...model.workspace import Package
+from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for
+from ...targets.target import Target
+from ..rule import rule
+from ..severity import Doubt
+from .python_files import Refused, report_refused
+
+
+@rule(scope="target", severity="error", group="python-version")
+def removed_python_module(view: View):
+    def find(package: Package, target: Target) -> Iterator[Refused]:
+        for item in package.digest.imports:
+            if not view.certain(item.conditions) or item.module.split(".")[0] in view.workspace.modules:
+                continue
+            if ever_stdlib(item.module) and not stdlib(item.module, target.python, 3):
+                doubts = (Doubt.LATE,) if item.lazy or stood_in_for(item.module) else ()
+                message = f"the standard library of Python 3.{target.python} does not have `{item.module}`"
+                advice = "use its successor, with an except branch if both versions must work"
+                yield Refused(item, item.module, message, advice, doubts, item.conditions)
+
+    yield from report_refused(view, find)

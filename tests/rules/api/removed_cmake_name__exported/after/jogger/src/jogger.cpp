@@ -1,6 +1,0 @@
-#include <grid_map_core/GridMap.hpp>
-
-int main()
-{
-  return 0;
-}

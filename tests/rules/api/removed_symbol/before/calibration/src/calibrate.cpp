@@ -1,9 +1,0 @@
-#include <opencv2/imgcodecs.hpp>
-#include <ros/ros.h>
-
-int main(int argc, char** argv)
-{
-  ros::init(argc, argv, "calibration");
-  cv::Mat depth = cv::imread(argv[1], CV_LOAD_IMAGE_ANYDEPTH);
-  return depth.empty() ? 1 : 0;
-}

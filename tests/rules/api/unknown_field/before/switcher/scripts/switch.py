@@ -1,6 +1,0 @@
-#!/usr/bin/env python3
-from controller_manager_msgs.srv import SwitchController
-
-
-def request():
-    return SwitchController.Request(stop_controllers=["arm"])

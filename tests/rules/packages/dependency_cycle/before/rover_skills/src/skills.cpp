@@ -1,8 +1,0 @@
-#include <rclcpp/rclcpp.hpp>
-
-int main(int argc, char ** argv)
-{
-  rclcpp::init(argc, argv);
-  rclcpp::spin(rclcpp::Node::make_shared("skills"));
-  return 0;
-}

@@ -1,9 +1,0 @@
-#include <boost/thread/mutex.hpp>
-#include <boost/thread/reverse_lock.hpp>
-
-int main()
-{
-  boost::mutex mutex;
-  boost::mutex::scoped_lock lock(mutex);
-  boost::reverse_lock<boost::mutex::scoped_lock> unlocked(lock);
-}

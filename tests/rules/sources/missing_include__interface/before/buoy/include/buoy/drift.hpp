@@ -1,8 +1,0 @@
-#pragma once
-#include <geometry_msgs/msg/pose.hpp>
-
-struct Drift
-{
-  geometry_msgs::msg::Point from;  // pose.hpp brings it
-  nav_msgs::msg::Odometry now;
-};
