@@ -10,7 +10,7 @@ from ...edges.console import UserError
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
 
-RULE = '''"""{name}: a package depends on `{subject}`.
+RULE = '''"""{name}: a manifest exports `{subject}`.
 
 What it does
     Reports what is wrong, in a sentence.
@@ -22,15 +22,16 @@ Severity
     warning. Say when it is graver or milder.
 
 Example
-    <depend>{subject}</depend>
+    <export><{subject}/></export>
 
 Use instead
-    <depend>rclcpp</depend>
+    <export/>
 
 Not reported
     What looks like it and works.
 """
 
+from ...model.cmake.build import At
 from ...model.view import View
 from ..rule import Hit, rule
 
@@ -38,14 +39,14 @@ from ..rule import Hit, rule
 @rule(severity="warning", preview=True)
 def {function}(view: View):
     for package in view:
-        for dependency in package.manifest.dependencies:
-            if dependency.name != "{subject}":
+        for export in package.manifest.exports:
+            if export.tag != "{subject}":
                 continue
             yield Hit(
-                at=view.manifest_place(package, dependency),
-                subject=dependency.name,
-                message=f"`{{package.name}}` depends on `{{dependency.name}}`",
-                help="depend on `rclcpp`",
+                at=At(package.digest.manifest_path, export.line),
+                subject=export.tag,
+                message=f"`{{package.name}}` exports `{{export.tag}}`",
+                help="remove it",
                 package=package.name,
             )
 '''
@@ -97,17 +98,17 @@ int main(int argc, char ** argv)
 
 ## Nothing is reported
 
-## A package depends on it
+## The manifest exports it
 
 ```diff sled/package.xml
-   <depend>rclcpp</depend>
-+  <depend>{subject}</depend>
+     <build_type>ament_cmake</build_type>
++    <{subject}/>
 ```
 
 ```findings
-warning sled/package.xml:11 {subject} [jazzy]
-  `sled` depends on `{subject}`
-  help: depend on `rclcpp`
+warning sled/package.xml:15 {subject} [jazzy]
+  `sled` exports `{subject}`
+  help: remove it
 ```
 """
 
