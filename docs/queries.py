@@ -10,17 +10,20 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+from rosimpact.impact.facts.manifest import Manifest
+from rosimpact.impact.model.cmake.build import Build
 from rosimpact.impact.model.view import View
 from rosimpact.impact.model.workspace import Workspace
 from rosimpact.impact.rules.rule import Hit
 
-START = (View, Workspace, Hit)
+START = (View, Workspace, Hit, Manifest, Build)
 STEPS = 2
 HEAD = """\
 # What a rule can ask
 
 A rule is given a `View`: the workspace (`view.workspace`) as one target (`view.target`) sees it. It yields `Hit`s.
-These are their public attributes and methods, and those of the types that they return, each with the first sentence of
+Of a package, `package.manifest` is what its package.xml says and `package.build` what its CMakeLists.txt or setup.py
+builds. These are their public attributes and methods, and those of the types that they return, each with the first sentence of
 its docstring. What no row explains is explained where the type is defined.
 """
 

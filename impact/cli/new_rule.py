@@ -106,7 +106,7 @@ int main(int argc, char ** argv)
 ```
 
 ```findings
-warning sled/package.xml:15 {subject} [jazzy]
+warning sled/package.xml:14 {subject} [jazzy]
   `sled` exports `{subject}`
   help: remove it
 ```
