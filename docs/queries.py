@@ -23,8 +23,8 @@ HEAD = """\
 
 A rule is given a `View`: the workspace (`view.workspace`) as one target (`view.target`) sees it. It yields `Hit`s.
 Of a package, `package.manifest` is what its package.xml says and `package.build` what its CMakeLists.txt or setup.py
-builds. These are their public attributes and methods, and those of the types that they return, each with the first sentence of
-its docstring. What no row explains is explained where the type is defined.
+builds. These are their public attributes and methods, and those of the types that they return, each with the first
+sentence of its docstring. What no row explains is explained where the type is defined.
 """
 
 
