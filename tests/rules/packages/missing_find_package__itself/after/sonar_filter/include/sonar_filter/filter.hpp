@@ -1,3 +1,0 @@
-#pragma once
-
-double filtered(double value);

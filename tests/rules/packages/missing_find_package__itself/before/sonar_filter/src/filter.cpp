@@ -1,3 +1,0 @@
-#include "sonar_filter/filter.hpp"
-
-double filtered(double value) { return value; }

@@ -1,1 +1,0 @@
-include("${arm_generator_DIR}/generate_arms.cmake")
