@@ -14,6 +14,7 @@ import re
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
@@ -517,6 +518,8 @@ class _Linker:
         jobs = 1 if len(order) < 2 or files < _ALONE_FILES else self.jobs
         self.gathered.store.close()  # every process opens it for itself
         _ = self.watched.in_cpp  # made once and for all processes
+        if self.watched.surfaces is not None or self.watched.fields is not None:
+            import_module(".cpp.uses", __package__)  # once, not in every process
         decoder = msgspec.msgpack.Decoder(Digest)
         for path, result in processes.forked(_join, order, jobs, self, tasks):
             if isinstance(result, processes.Died):
