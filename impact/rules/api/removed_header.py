@@ -130,7 +130,7 @@ def removed_header(view: View):
                 moved = Change("header-renamed", found.package, path, found.replacement, "", found.version, "", "")
                 rating = rate(found, hit._replace(fix=respelt(view, package, include, moved)), doubts)
                 if isinstance(rating, Upcoming):
-                    coming.append(rating)
+                    coming.append(rating._replace(order=_rank(include)))
                 else:
                     yield rating
                 continue
