@@ -293,7 +293,8 @@ class Availabilities:
                 return Availability(symbol, "present", package, offer.version)
             sure = sure and all(one != part for one, _ in offer.build.unknown)
         return Availability(
-            symbol, state, package, offer.version, offered.first, offered.instead, offered.moved_to,
+            symbol, state, package, offer.version, offered.first, offered.instead or _older(offer, offered),
+            offered.moved_to,
             _alike(offer, side, name) if state in ("removed", "not yet") and side in _WITH_ALIKE else "",
             sure=sure, evidence=_with_other(offer, offered),
         )  # fmt: skip
@@ -398,9 +399,21 @@ def decides(offer: Offer, offered: Offered) -> bool:
     return offer.exact or all(e.place != offer.place + 1 for e in line.events[offered.side][offered.name])
 
 
+def _older(offer: Offer, offered: Offered) -> str:
+    """The name that one which is not there yet is going to replace."""
+    if offered.state != "absent":
+        return ""
+    every = offer.line.events.get(offered.side, {})
+    return next((old for old, events in every.items() for e in events for t in e.told if t.instead == offered.name), "")
+
+
 def _with_other(offer: Offer, offered: Offered) -> Evidence:
     """The evidence for what surfaces say of a name, with that for what stands for it."""
     evidence = of_offered(offered)
+    if (old := _older(offer, offered)) and (gone := offer.get(offered.side, old)) is not None:
+        first = gone.gone_in or gone.first
+        other = Evidence(offered.package, "removed", old, offered.name, offered.side, first=first, stored=True)
+        return evidence._replace(instead=old, other=other)
     new = offer.get(offered.side, offered.instead) if offered.instead else None
     if new is None or not new.first:
         return evidence

@@ -13,7 +13,7 @@ TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
     [
         ("humble", Symbol("header", OLD, TF2), "deprecated", "0.18.0", NEW),
         ("jazzy", Symbol("header", OLD, TF2), "removed", "0.36.0", NEW),
-        ("foxy", Symbol("header", NEW, TF2), "not yet", "0.18.0", ""),
+        ("foxy", Symbol("header", NEW, TF2), "not yet", "0.18.0", OLD),
         ("jazzy", Symbol("header", "cv_bridge/cv_bridge.hpp", ("cv_bridge",)), "present", "", ""),
         # Headers that a build makes are in no source tree.
         ("jazzy", Symbol("header", "rclcpp/logging.hpp", ("rclcpp",)), "present", "", ""),

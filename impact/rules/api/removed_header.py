@@ -129,9 +129,10 @@ def removed_header(view: View):
                 advice = f"include `{found.replacement}`" if found.replacement else ""
                 hit = hit_of(found, include.at, path, package.name, advice)
                 moved = Change("header-renamed", found.package, path, found.replacement, "", found.version, "", "")
-                rating = rate(found, hit._replace(fix=respelt(view, package, include, moved)), doubts)
+                fix = () if found.state == "not yet" else respelt(view, package, include, moved)
+                rating = rate(found, hit._replace(fix=fix), doubts)
                 if isinstance(rating, Upcoming):
-                    coming.append(rating)
+                    coming.append(rating._replace(order=_rank(include)))
                 else:
                     yield rating
                 continue

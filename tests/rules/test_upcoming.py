@@ -1,0 +1,44 @@
+"""What is there and will be gone: which places are warnings."""
+
+from rosimpact.impact.model.cmake.build import At
+from rosimpact.impact.rules.api.upcoming import Upcoming, rated, rated_all
+from rosimpact.impact.rules.rule import Hit
+from rosimpact.impact.rules.severity import Doubt
+from rosimpact.impact.targets.availability import Horizon
+from rosimpact.impact.targets.distro.distro import DistroTarget
+
+TARGET = DistroTarget("jazzy")
+SYNC, UPDATE = Horizon(TARGET, "the next sync of jazzy", soon=True), Horizon(TARGET, "jazzy of 2026-08-22")
+NEWEST, FAR = Horizon(TARGET, "lyrical", platform=True), Horizon(TARGET, "lyrical", platform=True, far=True)
+
+
+def one(line, changed="opencv", horizon=NEWEST, doubts=(), order=()):
+    return Upcoming(Hit(At("a.cpp", line), f"x{line}", "gone"), changed, horizon, doubts, order or (line,))
+
+
+def severities(*upcoming):
+    return [hit.severity for hit in rated(upcoming)]
+
+
+def test_the_first_of_a_kind_is_a_warning():
+    assert severities(one(1), one(2), one(3, "boost")) == ["warning", "note", "warning"]
+
+
+def test_what_breaks_first_is_first_and_the_order_given_stays():
+    assert severities(one(1, order=(9,)), one(2, order=(3,))) == ["note", "warning"]
+
+
+def test_a_note_does_not_take_the_place_of_a_warning():
+    assert severities(one(1, doubts=(Doubt.EXAMPLE,)), one(2)) == ["note", "warning"]
+
+
+def test_the_next_sync_counts_as_now_and_a_far_distro_as_a_note():
+    expected = ["error", "error", "warning", "note", "note"]
+    soon = [one(1, horizon=SYNC), one(2, horizon=SYNC), one(3, horizon=SYNC, doubts=(Doubt.TEST,))]
+    assert severities(*soon, one(4, horizon=FAR), one(5, "boost", FAR)) == expected
+    assert severities(one(1, horizon=UPDATE), one(2, horizon=UPDATE)) == ["warning", "note"]
+
+
+def test_findings_with_a_severity_keep_it():
+    plain = Hit(At("a.cpp", 1), "x", "gone", severity="error")
+    assert [hit.severity for hit in rated_all((plain, one(2)))] == ["error", "warning"]
