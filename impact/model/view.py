@@ -1244,7 +1244,9 @@ class View:
         `Qt5Widgets`), and so maybe a package."""
         for component, at in found.components if found.required else ():
             for name in (f"{found.name.lower()}_{component}", f"{found.name}{component}"):
-                providers = tuple(self.providers.installed_cmake(name))
+                installed = self.providers.installed_cmake(name)
+                # The component's own package is what to declare, not one that has all of them.
+                providers = tuple(sorted(installed, key=lambda p: component.lower() not in p.name))
                 if providers:
                     yield Need("part", name, providers, at, "test" if testing else "build", certain)
 
