@@ -10,18 +10,21 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+from rosimpact.impact.facts.manifest import Manifest
+from rosimpact.impact.model.cmake.build import Build
 from rosimpact.impact.model.view import View
 from rosimpact.impact.model.workspace import Workspace
 from rosimpact.impact.rules.rule import Diagnostic
 
-START = (View, Workspace, Diagnostic)
+START = (View, Workspace, Diagnostic, Manifest, Build)
 STEPS = 2
 HEAD = """\
 # What a rule can ask
 
 A rule gets a `View`: the workspace (`view.workspace`) as one target (`view.target`) sees it. It yields `Diagnostic`s.
-These are their public attributes and methods, and those of the types that they return, each with the first sentence of
-its docstring. What no row explains is explained where the type is defined.
+Of a package, `package.manifest` is what its package.xml says and `package.build` what its CMakeLists.txt or setup.py
+builds. These are their public attributes and methods, and those of the types that they return, each with the first
+sentence of its docstring. What no row explains is explained where the type is defined.
 """
 
 

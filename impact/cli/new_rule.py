@@ -10,7 +10,7 @@ from ...edges.console import UserError
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
 
-RULE = '''"""{name}: a package depends on `{subject}`.
+RULE = '''"""{name}: a manifest exports `{subject}`.
 
 What it does
     Reports what is wrong, in a sentence.
@@ -22,15 +22,16 @@ Severity
     warning. Say when it is graver or milder.
 
 Example
-    <depend>{subject}</depend>
+    <export><{subject}/></export>
 
 Use instead
-    <depend>rclcpp</depend>
+    <export/>
 
 Not reported
     What looks like it and works.
 """
 
+from ...model.cmake.build import At
 from ...model.view import View
 from ..rule import Diagnostic, rule
 from ..text import Text
@@ -40,14 +41,14 @@ from ..text import Text
     scope="target",
     severity="warning",
     preview=True,
-    texts=Text("`{{package}}` depends on `{{subject}}`", help="depend on `rclcpp`"),
+    texts=Text("`{{package}}` exports `{{subject}}`", help="remove it"),
 )
 def {function}(view: View):
     for package in view:
-        for dependency in package.manifest.dependencies:
-            if dependency.name != "{subject}":
+        for export in package.manifest.exports:
+            if export.tag != "{subject}":
                 continue
-            yield Diagnostic(view.manifest_place(package, dependency), dependency.name, package.name)
+            yield Diagnostic(At(package.digest.manifest_path, export.line), export.tag, package.name)
 '''
 CASES = """# {name}
 
@@ -97,17 +98,17 @@ int main(int argc, char ** argv)
 
 ## Nothing is reported
 
-## A package depends on it
+## The manifest exports it
 
 ```diff sled/package.xml
-   <depend>rclcpp</depend>
-+  <depend>{subject}</depend>
+     <build_type>ament_cmake</build_type>
++    <{subject}/>
 ```
 
 ```findings
-warning sled/package.xml:11 {subject} [jazzy]
-  `sled` depends on `{subject}`
-  help: depend on `rclcpp`
+warning sled/package.xml:14 {subject} [jazzy]
+  `sled` exports `{subject}`
+  help: remove it
 ```
 """
 
