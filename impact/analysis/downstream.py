@@ -20,6 +20,7 @@ from ..model.flow.connections import Edge, edges
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
 from ..model.flow.reach import EVERYWHERE, Reach, Step
 from ..model.flow.select import kind_of
+from ..model.flow.workspace import flow_of
 from ..model.workspace import Workspace
 from .message_changes import holding, message_changes
 
@@ -128,11 +129,11 @@ class _Reading:
 
     @cached_property
     def now(self) -> Graph:
-        return self.workspace.flow
+        return flow_of(self.workspace).graph
 
     @cached_property
     def before(self) -> Graph:
-        return self.base.flow
+        return flow_of(self.base).graph
 
     @cached_property
     def reach(self) -> Reach:
@@ -337,13 +338,13 @@ class _Reading:
             told.setdefault((change.path, change.function), set()).update((change.topic, *change.topics))
         for function in self.functions:
             place = (function.path, function.name, function.line)
-            led = [one for one in self.workspace.callers.leading_to(*place) if one.trigger.kind in EVENTS]
+            led = [one for one in flow_of(self.workspace).callers.leading_to(*place) if one.trigger.kind in EVENTS]
             if not function.known and not (led and led[0].steps == 0):
                 continue  # who calls what is new is another function too
             sent: dict[str, dict[tuple[str, str], None]] = {}
             own = {node for one in led for node in owners.get((one.trigger.path, one.trigger.line), ())}
             own |= running.get(function.path, set())
-            for called in self.workspace.callers.called_from(*place):
+            for called in flow_of(self.workspace).callers.called_from(*place):
                 for publish in publishes.get((called.path, called.name), ()):
                     if publish.topic and (publish.node in own or not own):
                         sent.setdefault(publish.node, {})[publish.topic, "publisher"] = None

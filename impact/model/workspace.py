@@ -15,7 +15,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -32,12 +32,6 @@ from .cmake.interpret import extras_of, interpret
 from .discovery import Discovered, PackagePlace, discover
 from .ignored import holds_ignored, is_ignored
 from .package import Digest, Watched, build_type_of, digest_of
-
-if TYPE_CHECKING:
-    from .flow.callers import Callers
-    from .flow.graph import Graph
-    from .flow.join import Join
-    from .flow.launches import Launch
 
 # Starting processes costs about as much as joining packages with this many files here.
 _ALONE_FILES = 100
@@ -110,6 +104,8 @@ class Workspace:
         self.identity = identity
         self._interface_stems: dict[str, tuple[frozenset[str], frozenset[str]]] = {}
         self._provided: dict[str, list[str]] = {}
+        # What later joins made of it, each under its own type.
+        self.derived: dict[type, Any] = {}
 
     def __iter__(self):
         return iter(self.packages.values())
@@ -266,34 +262,6 @@ class Workspace:
         if stems is None:
             stems = self._interface_stems[package] = _stems(self.interface_names.get(package, ()))
         return _names_interface(rest, stems)
-
-    @cached_property
-    def flow(self) -> Graph:
-        """The message-flow graph of its code, without a launch file."""
-        from .flow.workspace import graph_of
-
-        return graph_of(self, self.gathered.store)
-
-    @cached_property
-    def code(self) -> Join:
-        """Its code, joined for the message flow."""
-        from .flow.workspace import joined
-
-        return joined(self)
-
-    @cached_property
-    def callers(self) -> Callers:
-        """Who calls whom in its code, and what triggers it."""
-        from .flow.workspace import callers_of
-
-        return callers_of(self, self.gathered.store)
-
-    @cached_property
-    def launches(self) -> tuple[Launch, ...]:
-        """What its launch files start, see launches()."""
-        from .flow.launches import launches
-
-        return launches(self)
 
     @cached_property
     def broken_headers(self) -> frozenset[str]:

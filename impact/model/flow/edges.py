@@ -11,6 +11,7 @@ from ..workspace import Workspace
 from .defined import released
 from .graph import Endpoint, Graph, Node
 from .launches import Launch
+from .workspace import flow_of
 
 # Of these the workspace says what runs; plugins and libraries get their names from whoever loads them, but for names
 # that begin with a slash.
@@ -169,14 +170,15 @@ def uncompared(workspace: Workspace) -> Iterator[tuple[Endpoint, int]]:
 def flows(workspace: Workspace) -> Iterator[tuple[str, Flow]]:
     """What each launch file surely starts, by its path; then the whole workspace, with an empty path."""
     whole = whole_flow(workspace)
-    for launch in workspace.launches:
+    for launch in flow_of(workspace).launches:
         yield launch.path, launched_flow(whole, launch)
     yield "", whole
 
 
 def whole_flow(workspace: Workspace) -> Flow:
     """The flow of a whole workspace, under the names that its source gives."""
-    return Flow(workspace.flow, {each.name: workspace.interface_names.get(each.name, set()) for each in workspace})
+    names = {each.name: workspace.interface_names.get(each.name, set()) for each in workspace}
+    return Flow(flow_of(workspace).graph, names)
 
 
 def launched_flow(whole: Flow, launch: Launch) -> Flow:
@@ -206,7 +208,7 @@ class _Started:
     def __init__(self, workspace: Workspace):
         self._names: dict[str, set[str]] = {}
         self._together: list[set[str]] = []
-        for launch in workspace.launches:
+        for launch in flow_of(workspace).launches:
             programs = {start.node: start.program for start in launch.starts}
             self._together.append(set(programs.values()))
             for program in programs.values():
@@ -226,7 +228,7 @@ class _Started:
 def unstarted(workspace: Workspace) -> Flow:
     """The workspace's flow as far as no launch file starts its nodes: these have the names that the source gives."""
     flow = whole_flow(workspace)
-    started = {start.program for launch in workspace.launches for start in launch.starts}
+    started = {start.program for launch in flow_of(workspace).launches for start in launch.starts}
     flow.surely = flow.nodes.keys() - started
     return flow
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import msgspec
 
@@ -69,9 +69,10 @@ class Launch(msgspec.Struct, frozen=True):
     elsewhere: tuple[str, ...] = ()
 
 
-def launches(workspace: Workspace) -> tuple[Launch, ...]:
+def launches(workspace: Workspace, code: Callable[[], Join]) -> tuple[Launch, ...]:
     """What the launch files that no other includes start, with the defaults of their arguments. Remembered by the
-    content of all that it rests on."""
+    content of all that it rests on. code: gives the code of the workspace, joined; not called where nothing is
+    started."""
     store = workspace.gathered.store
     key = stamp(workspace)
     known = store.memo("launches", key) if store is not None else None
@@ -80,17 +81,17 @@ def launches(workspace: Workspace) -> tuple[Launch, ...]:
             return msgspec.msgpack.decode(known, type=tuple[Launch, ...])
         except msgspec.MsgspecError:
             pass  # of another version: made anew
-    found = tuple(_launches(workspace))
+    found = tuple(_launches(workspace, code))
     if store is not None:
         store.remember("launches", encodable([(key, found)]))
     return found
 
 
-def _launches(workspace: Workspace) -> Iterator[Launch]:
+def _launches(workspace: Workspace, code: Callable[[], Join]) -> Iterator[Launch]:
     followed = list(_followed(workspace))
     if not any(launch.started for _, launch, _ in followed):
         return
-    join = workspace.code
+    join = code()
     seeing = Seeing(workspace, join)
     sights: dict[str, Sight] = {}
     for path, launch, sources in followed:

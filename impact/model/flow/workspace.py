@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -23,6 +24,7 @@ from .graph import Graph
 if TYPE_CHECKING:
     # What is remembered is read without them.
     from .join import Join
+    from .launches import Launch
     from .nodes import Built
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
@@ -31,6 +33,43 @@ _BUILD = frozenset(
 )
 
 Progress = Callable[[int, int], None]
+
+
+class WorkspaceFlow:
+    """The message flow of a workspace; each part is worked out once, when it is asked for."""
+
+    def __init__(self, workspace: Workspace):
+        self._workspace, self._store = workspace, workspace.gathered.store
+
+    @cached_property
+    def code(self) -> Join:
+        """Its code, joined."""
+        return joined(self._workspace)
+
+    @cached_property
+    def graph(self) -> Graph:
+        """The message-flow graph of its code, without a launch file."""
+        return graph_of(self._workspace, self._store)
+
+    @cached_property
+    def callers(self) -> Callers:
+        """Who calls whom in its code, and what triggers it."""
+        return callers_of(self._workspace, self._store)
+
+    @cached_property
+    def launches(self) -> tuple[Launch, ...]:
+        """What its launch files start, see launches()."""
+        from .launches import launches
+
+        return launches(self._workspace, lambda: self.code)
+
+
+def flow_of(workspace: Workspace) -> WorkspaceFlow:
+    """The message flow of a workspace; the same object for as long as the workspace lives."""
+    found = workspace.derived.get(WorkspaceFlow)
+    if found is None:
+        found = workspace.derived[WorkspaceFlow] = WorkspaceFlow(workspace)
+    return found
 
 
 def linked(tree, store, jobs: int | None = None, progress: Progress | None = None) -> Workspace:
@@ -165,7 +204,8 @@ def graph_of(
         from .started import launched
 
         start = launched(workspace, launch, arguments or {})
-        return workspace.code.graph(root, rev, _unread(workspace.code), start)
+        code = flow_of(workspace).code
+        return code.graph(root, rev, _unread(code), start)
     key = _key(workspace)
     known = store.memo("graph", key) if store is not None else None
     if known is not None:
@@ -173,10 +213,11 @@ def graph_of(
             return msgspec.structs.replace(msgspec.msgpack.decode(known, type=Graph), root=root, rev=rev)
         except msgspec.MsgspecError:
             pass  # of another version: made anew
-    graph = workspace.code.graph(unread=_unread(workspace.code))
+    code = flow_of(workspace).code
+    graph = code.graph(unread=_unread(code))
     if store is not None:
         store.remember("graph", encodable([(key, graph)]))
-        store.remember("callers", encodable([(key, callers(workspace.code))]))
+        store.remember("callers", encodable([(key, callers(flow_of(workspace).code))]))
     return msgspec.structs.replace(graph, root=root, rev=rev)
 
 
@@ -189,7 +230,7 @@ def callers_of(workspace: Workspace, store) -> Callers:
             return msgspec.msgpack.decode(known, type=Callers)
         except msgspec.MsgspecError:
             pass  # of another version: made anew
-    found = callers(workspace.code)
+    found = callers(flow_of(workspace).code)
     if store is not None:
         store.remember("callers", encodable([(key, found)]))
     return found

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Protocol, TypeVar
 
 from ...model.flow.launches import Start
+from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
 
 
@@ -31,8 +32,8 @@ def group_by_line(
     workspace are left out.
     """
     found: dict[tuple[str, int, str], list[tuple[Start, T]]] = {}
-    elsewhere = {place for launch in workspace.launches for place in launch.elsewhere}
-    for launch in workspace.launches:
+    elsewhere = {place for launch in flow_of(workspace).launches for place in launch.elsewhere}
+    for launch in flow_of(workspace).launches:
         for start in launch.starts:
             for each in of(start):
                 found.setdefault((each.path, each.line, name(each)), []).append((start, each))

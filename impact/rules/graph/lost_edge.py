@@ -29,6 +29,7 @@ from collections.abc import Iterator
 from ...model.cmake.build import At
 from ...model.flow.edges import Flow
 from ...model.flow.graph import Endpoint
+from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..severity import Doubt
@@ -61,7 +62,7 @@ _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
     },
 )
 def lost_edge(workspace: Workspace, base: Workspace):
-    now, before = (Flow(each.flow, {}) for each in (workspace, base))
+    now, before = (Flow(flow_of(each).graph, {}) for each in (workspace, base))
     for topic in sorted({topic for kind, topic in before.known if kind == "topic"}):
         had, has = _sides(before, topic), _sides(now, topic)
         for role, gone in _OTHER.items():

@@ -27,6 +27,7 @@ Not reported
 from ...model.cmake.build import At
 from ...model.flow.edges import Flow, Sure, display_name, flows, unstarted
 from ...model.flow.misspelling import NearNames
+from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text
@@ -43,7 +44,7 @@ from ..text import Text
     ),
 )
 def near_miss_name(workspace: Workspace):
-    closed = {launch.path for launch in workspace.launches if not launch.missing}
+    closed = {launch.path for launch in flow_of(workspace).launches if not launch.missing}
     reported = set()
     for path, flow in flows(workspace):
         for taker, giver in _near(flow if path else unstarted(workspace), path in closed):

@@ -25,6 +25,7 @@ Not reported
 from ...model.cmake.build import At
 from ...model.flow.edges import Flow, Sure, begins, display_name, flows, unstarted
 from ...model.flow.misspelling import NearNames, is_in_namespace, is_slip
+from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, rule
 from ..text import Text
@@ -48,7 +49,7 @@ _EVERYWHERE = ("rcl_interfaces/", "lifecycle_msgs/", "composition_interfaces/", 
 def unmatched_client(workspace: Workspace):
     served = {
         one.topic
-        for launch in workspace.launches
+        for launch in flow_of(workspace).launches
         for one in launch.graph.endpoints
         if one.role in ("server", "action server")
     }

@@ -10,6 +10,7 @@ from ...model.cmake.build import At
 from ...model.flow.edges import display_name
 from ...model.flow.graph import Endpoint, Graph
 from ...model.flow.reach import EVERYWHERE
+from ...model.flow.workspace import flow_of
 from ...model.workspace import Workspace
 from ..rule import Diagnostic
 from ..severity import Doubt
@@ -27,7 +28,7 @@ def find_changes(workspace: Workspace, base: Workspace, fits: Callable[[Change],
     for change in publishing(workspace, base):
         if not fits(change) or not EVERYWHERE.isdisjoint(change.topics):
             continue
-        readers = _names(workspace.flow, readers_of(workspace.flow, change))
+        readers = _names(flow_of(workspace).graph, readers_of(flow_of(workspace).graph, change))
         data = {"change": change.why, "old": _code(change.old), "new": _code(change.new), "readers": readers}
         doubts = () if readers else (Doubt.CHANGED,)
         yield Diagnostic(At(change.path, change.line), change.topic, change.package, data, doubts=doubts)
