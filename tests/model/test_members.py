@@ -3,7 +3,7 @@
 import msgspec
 import pytest
 import zstandard
-from rosimpact.impact.facts import python
+from rosimpact.impact.facts import python_interfaces
 from rosimpact.impact.model.members import Scope, interface_named, interfaces_included
 from rosimpact.impact.model.members_cpp import CppUses
 from rosimpact.impact.model.python.members import changing_members, interfaces_used
@@ -179,7 +179,7 @@ IMPORTS = "from arm_msgs.msg import Arm\nfrom arm_msgs.srv import Start as Begin
     ],
 )  # fmt: skip
 def test_python(text, found, fields):
-    uses = python.extract((IMPORTS + text).encode()).members
+    uses = python_interfaces.extract((IMPORTS + text).encode()).members
     scope = Scope([interface for interface in interfaces_used(uses, fields) if interface.ros == 2], fields)
     members = {f"{f.interface.short}.{f.section}.{f.member}" for _, f in changing_members(uses, scope)}
     assert sorted(members) == found
