@@ -62,6 +62,8 @@ class Gathered:
         self._decoded: dict[tuple[str, str], Any] = {}
         self._looked: dict[bytes, Any] = {}
         self._others: dict[str, str] = {}
+        self._fresh: list[tuple[bytes, bytes]] = []
+        self._deferring = False
 
     def paths(self, *wanted: str) -> list[str]:
         """Paths of these kinds, sorted; of every kind when none is given."""
@@ -124,9 +126,25 @@ class Gathered:
             if row == fact_key(content, version):  # else it has just been written to
                 with contextlib.suppress(UnicodeEncodeError, OverflowError, RecursionError):
                     fresh.append((row, pack(kinds.encode(found))))
-        if fresh:
-            self.store.put(fresh)
+        self._fresh += fresh
+        if not self._deferring:
+            self._flush()
         return {path: known[row] for path, row in rows.items() if row in known}
+
+    @contextlib.contextmanager
+    def deferring(self) -> Iterator[None]:
+        """Stores what look() makes meanwhile at once, at the end."""
+        self._deferring = True
+        try:
+            yield
+        finally:
+            self._deferring = False
+            self._flush()
+
+    def _flush(self) -> None:
+        if self._fresh:
+            self.store.put(self._fresh)
+            self._fresh = []
 
     def preload(self, paths: Iterable[str]) -> None:
         """Reads the stored facts of many files at once, which is faster than one by one. Paths without facts are left

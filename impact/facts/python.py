@@ -12,7 +12,6 @@ import msgspec
 from . import python2
 from .markup import text_encoding
 from .place import Problem, Reference
-from .python_interfaces import KINDS, MemberUse, member_uses
 from .python_objects import PythonUse
 from .python_tree import TRY, Attribute, Import, Reader
 from .words import words_of
@@ -26,7 +25,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
     has and Python 2 has not), or None. interpreter: the first line when it is a `#!` that names python. main: has an
     `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes.
-    words: see words_of(). members: fields and constants of interfaces.
+    words: see words_of().
     """
 
     imports: tuple[Import, ...]
@@ -39,7 +38,6 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     problems: tuple[Problem, ...] = ()
     uses: tuple[PythonUse, ...] = ()
     words: str = ""
-    members: tuple[MemberUse, ...] = ()
 
 
 class Source(NamedTuple):
@@ -161,7 +159,6 @@ def extract(data: bytes) -> PythonFile:
                 problems=problems,
                 uses=reader.object_uses(reader.column),
                 words=words_of(data),
-                members=member_uses(tree, reader.column) if any(map(_of_interfaces, reader.imports)) else (),
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))
@@ -175,11 +172,6 @@ def extract(data: bytes) -> PythonFile:
         problems=problems,
         words=words_of(data),
     )
-
-
-def _of_interfaces(one: Import) -> bool:
-    """Whether an import may bring interfaces: `from pkg.msg import Name`, `from pkg import msg`, `import pkg.msg`."""
-    return one.module.partition(".")[2] in KINDS or not KINDS.isdisjoint(one.names)
 
 
 def _imports_by_line(text: str) -> tuple[Import, ...]:

@@ -11,6 +11,10 @@ from collections.abc import Callable, Iterable, Iterator
 
 import msgspec
 
+from .flow_python_text import Text
+from .place import Problem
+from .python import read
+
 KINDS = frozenset(("msg", "srv", "action"))
 SECTIONS = frozenset(("Request", "Response", "Goal", "Result", "Feedback"))
 ELEMENT = "[]"
@@ -36,16 +40,23 @@ _Value = tuple[str, tuple[str, ...]] | None
 _Names = dict[str, _Value]
 
 
-def member_uses(tree: ast.Module, column: Callable[[int, int], int]) -> tuple[MemberUse, ...]:
-    """Every use of a member of a value whose interface shows, in the order of the source. column: of a line and an
-    offset in bytes. Raises RecursionError for what is nested without end."""
-    imported = _imported(tree)
-    if not imported:
-        return ()
-    walk = _Walk(imported, column)
-    walk.called_back = walk.callbacks(tree)
-    walk.block(tree.body, {}, None)
-    return tuple(sorted(walk.found.values(), key=lambda use: (use.line, use.column)))
+class InterfacesFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What a Python file uses of interfaces, in the order of the source."""
+
+    members: tuple[MemberUse, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+def extract(data: bytes) -> InterfacesFile:
+    """Every use of a member of a value whose interface shows; nothing of a file that no parser reads."""
+    source = read(data)
+    imported = _imported(source.tree) if source.tree is not None else {}
+    if source.tree is None or not imported:
+        return InterfacesFile()
+    walk = _Walk(imported, Text(source.parsed).column)
+    walk.called_back = walk.callbacks(source.tree)
+    walk.block(source.tree.body, {}, None)
+    return InterfacesFile(tuple(sorted(walk.found.values(), key=lambda use: (use.line, use.column))))
 
 
 def _imported(tree: ast.Module) -> dict[str, str]:
@@ -247,7 +258,7 @@ class _Walk:
                     self.expression(one, names, own)
 
     def expression(self, node: ast.AST | None, names: _Names, own: _Class | None) -> None:
-        if node is None:
+        if node is None or isinstance(node, (ast.Name, ast.Constant)):
             return
         if isinstance(node, ast.Lambda):
             names = {**names, **dict.fromkeys(one.arg for one in ast.walk(node.args) if isinstance(one, ast.arg))}

@@ -6,7 +6,7 @@ Most files have nothing of what a table describes, and their facts tell so; thos
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import msgspec
 
@@ -63,37 +63,59 @@ def searched_text(data: bytes, facts: object, table: Rows) -> SearchedText:
 
 
 class DeclaredCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What a C++ file announces or defines. types: classes, enums, aliases and announced messages. variables: types of
-    which it has a variable or member itself. spaces: namespaces. tf2: words in namespace tf2, or in a special form of a
-    template."""
+    """What a C++ file announces or defines. types: classes, enums, aliases and announced messages. spaces: namespaces.
+    tf2: words in namespace tf2, or in a special form of a template."""
 
     types: frozenset[str] = frozenset()
-    variables: frozenset[str] = frozenset()
     spaces: frozenset[str] = frozenset()
     tf2: frozenset[str] = frozenset()
     problems: tuple[Problem, ...] = ()
 
 
-_TYPE = re.compile(rb"\b(?:class|struct|enum|typedef|using)\b([^;{}=]{0,300})")
+class VariablesCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """The types of which a C++ file has a variable or member itself, not a pointer or reference."""
+
+    types: frozenset[str] = frozenset()
+    problems: tuple[Problem, ...] = ()
+
+
+_TYPES = (b"class", b"struct", b"enum", b"typedef", b"using")
+_FAR = 300
+_HEAD = re.compile(rb"[^;{}=]*")
 _NAMED = re.compile(rb"([A-Za-z_]\w*)\s*[;:{=<]")
 # The macro of ros/message_forward.h that announces a message.
-_MESSAGE = re.compile(rb"\bROS_DECLARE_MESSAGE\s*\(\s*(\w+)")
-_SPACE = re.compile(rb"\bnamespace\s+(\w+)")
+_MESSAGE = re.compile(rb"ROS_DECLARE_MESSAGE\s*\(\s*(\w+)")
+_SPACE = re.compile(rb"namespace\s+(\w+)")
 # tf2's namespace up to its end or that of the file, and a special form of one of its templates from outside.
-_OF_TF2 = re.compile(rb"\bnamespace\s+tf2\s*\{.*|\btemplate\s*<\s*>[^;{}]*", re.DOTALL)
+_OF_TF2 = (re.compile(rb"namespace\s+tf2\s*\{.*", re.DOTALL), re.compile(rb"template\s*<\s*>[^;{}]*"))
 _WORD = re.compile(rb"\w+")
 
 
 def declared_cpp(data: bytes, facts: CppFile, table: None) -> DeclaredCpp:
     """The names that a C++ file declares, as its text shows them."""
-    types = {name[1] for head in _TYPE.finditer(data) for name in _NAMED.finditer(data, head.start(1), head.end() + 1)}
-    types.update(_MESSAGE.findall(data))
     return DeclaredCpp(
-        _decoded(types),
-        frozenset(types_of_variables(data)),
+        _decoded({*_types(data), *_MESSAGE.findall(data)}),
         _decoded(_SPACE.findall(data)),
-        _decoded(word for part in _OF_TF2.finditer(data) for word in _WORD.findall(part[0])),
+        _decoded(word for form in _OF_TF2 for part in form.finditer(data) for word in _WORD.findall(part[0])),
     )
+
+
+def _types(data: bytes) -> Iterator[bytes]:
+    for keyword in _TYPES:
+        at = data.find(keyword)
+        while at >= 0:
+            end = at + len(keyword)
+            if not data[at - 1 : at].isalnum() and not data[end : end + 1].isalnum():
+                head = _HEAD.match(data, end, at + _FAR)
+                end = head.end() if head is not None else end
+                for name in _NAMED.finditer(data, at + len(keyword), end + 1):
+                    yield name[1]
+            at = data.find(keyword, max(end, at + len(keyword)))
+
+
+def variables_cpp(data: bytes, facts: CppFile, table: None) -> VariablesCpp:
+    """The types of variables, as the lines of a C++ file show them."""
+    return VariablesCpp(frozenset(types_of_variables(data)))
 
 
 def _decoded(words: Iterable[bytes]) -> frozenset[str]:

@@ -108,7 +108,7 @@ _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&
 _TYPE_OF_VARIABLE = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|>)(?:\s*[&*]+\s*|[ \t]+)\Z")
 _ASSIGNED = re.compile(rb"\s*=(?!=)")
 _VARIABLE_LINE = re.compile(
-    rb"^[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s+\w+\s*[;={]", re.MULTILINE
+    rb"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:::)?([A-Za-z_]\w*(?:::\w+)+)\s+\w+\s*[;={]"
 )
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
@@ -210,9 +210,11 @@ def initialises(data: bytes, variable: str) -> bool:
 
 
 def types_of_variables(data: bytes) -> Iterator[str]:
-    """The types of which some line of a C++ file declares a variable or member itself, not a pointer or reference."""
-    types = (match[1].decode() for match in _VARIABLE_LINE.finditer(data))
-    return (type_ for type_ in types if type_ not in KEYWORDS)
+    """The qualified types of which some line of a C++ file declares a variable or member itself, not a pointer or
+    reference."""
+    for line in data.split(b"\n"):
+        if b"::" in line and (match := _VARIABLE_LINE.match(line)) is not None:
+            yield match[1].decode()
 
 
 def _line_start(data: bytes, at: int) -> int:

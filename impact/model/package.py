@@ -371,6 +371,7 @@ class _Join:
         self.prefix = path + "/" if path else ""
         self.cpp: dict[str, CppFile] = {}
         self.searched: Mapping[str, SearchedCpp] = {}
+        self._declared: dict[str, DeclaredCpp] = {}
         self.by_name: dict[str, list[str]] = {}
         self.resolved: dict[str, list[tuple[str | None, Include]]] = {}
         self._known: dict[str, Known] = {}
@@ -594,7 +595,7 @@ class _Join:
                     if not any(h in reach for h in headers) and not self.declares(path, text):
                         around = conditions + self.macros.asked(name.conditions, targets)
                         std = text.startswith("std::") and text not in _ANNOUNCED
-                        whole = std or any(text in declared.variables for declared in self.declared([path]))
+                        whole = std or any(text in f.types for f in self.look((path,), "variables_cpp").values())
                         needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
             found = self.searched.get(path)
             for word in found.words if found is not None else ():
@@ -808,13 +809,14 @@ class _Join:
     def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""
         from .members import Scope
-        from .python.members import changing_members, interfaces_used
+        from .python.members import changing_members, interfaces_used, may_use_interfaces
 
         table = self.watched.fields
         if table is None:
             return
-        for path, facts in files.items():
-            used = interfaces_used(facts.members, table) if facts.members else ()
+        wanted = [path for path, facts in files.items() if may_use_interfaces(facts, table)]
+        for path, facts in self.look(wanted, "interfaces_python").items():
+            used = interfaces_used(facts.members, table)
             seen = set()
             # Both generations import an interface alike: each is followed for itself.
             for ros in sorted({interface.ros for interface in used}):
@@ -927,9 +929,13 @@ class _Join:
         message = type_in(name) is not None
         return any(head in declared.spaces for declared in found) if message else any(True for _ in found)
 
-    def declared(self, paths: Iterable[str]) -> Iterator[DeclaredCpp]:
+    def declared(self, paths: Collection[str]) -> Iterator[DeclaredCpp]:
         """What C++ files of the package declare."""
-        return iter(self.look(paths, "declared_cpp").values())
+        known = self._declared
+        unknown = [path for path in paths if path not in known]
+        if unknown:
+            known.update(self.look(unknown, "declared_cpp"))
+        return (known[path] for path in paths if path in known)
 
     # -- what Python files need ------------------------------------------------------------------------------------
 

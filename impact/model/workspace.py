@@ -499,7 +499,8 @@ class _Linker:
 
     def joined_one(self, place: PackagePlace, before: Digest | None) -> _Joined:
         try:
-            digest, read = self.join(place, before)
+            with self.gathered.deferring():
+                digest, read = self.join(place, before)
         except MemoryError:
             raise  # ends a process, whose package is then tried in a new one
         except Exception as error:

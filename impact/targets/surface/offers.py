@@ -89,13 +89,13 @@ class Offers:
     def exports(self, name: str) -> tuple[str, ...] | None:
         """What a package hands on to its dependants by CMake: packages, and the CMake names of system libraries; None
         when nothing of it is stored."""
-        offer, history = self.package(name), self.surfaces.history(name)
+        offer, history = self.package(name), self.history(name)
         return history.exports(offer.stored) if offer is not None and history is not None else None
 
     def is_bundle(self, name: str) -> bool:
         """True for a package of which the stored version, or else the newest one, has no header, module, library,
         program, plugin, interface or launch file: it is there for what it depends on."""
-        offer, history = self.package(name), self.surfaces.history(name)
+        offer, history = self.package(name), self.history(name)
         if history is None:
             return False
         return history.is_bundle(offer.stored if offer is not None else history.versions[-1])

@@ -252,7 +252,7 @@ def _untold(offers: Offers, offered: Offered, arguments: int) -> Judged | None:
 
 def _accepting(offers: Offers, package: str, name: str, version: str, arguments: int) -> list[Entity]:
     """The overloads of a function in a version that take so many arguments."""
-    history = offers.surfaces.history(package)
+    history = offers.history(package)
     offer = offers.package(package)
     place = offer.line.place(version) if offer is not None else None
     if history is None or offer is None or place is None:
