@@ -28,7 +28,8 @@ from typing import Any
 
 from ..edges.files import write_file
 from ..impact.targets.changes import DISTROS
-from ..impact.targets.distro.distro import DistroTarget, known_distros
+from ..impact.targets.distro.distro import DistroTarget
+from ..impact.targets.distro.known import known_distros
 from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.changes import Line
 from ..impact.targets.surface.fields import Definition, default_fields, there

@@ -17,7 +17,8 @@ from typing import Any, Literal, NamedTuple
 
 from ..edges.files import check_writable_path
 from ..impact.model.surface.clones import Clone, Clones, Release, Version
-from ..impact.targets.distro.distro import DistroTarget, TargetError, known_distros
+from ..impact.targets.distro.distro import DistroTarget, TargetError
+from ..impact.targets.distro.known import known_distros
 from ..impact.targets.snapshot import Snapshot, default
 from ..impact.targets.surface.store import History, Packed, write
 from ..impact.targets.version import parts

@@ -52,16 +52,16 @@ _FOLLOW_LINKS = "Follow links that lead out of the workspace. Do not use it on w
 
 def _print_schema(value: bool) -> None:
     if value:
-        from . import run
+        from . import check as command
 
-        raise typer.Exit(run.schema())
+        raise typer.Exit(command.schema())
 
 
 def _print_graph_schema(value: bool) -> None:
     if value:
-        from . import run
+        from . import graph as command
 
-        raise typer.Exit(run.graph_schema())
+        raise typer.Exit(command.graph_schema())
 
 
 @app.command()
@@ -131,10 +131,10 @@ def check(
 
     Exit status: 0 nothing at or above --fail-on, 1 findings, 2 the tool failed or analysed nothing.
     """
-    from . import run
+    from . import check as command
 
     raise typer.Exit(
-        run.check(
+        command.check(
             path, targets=tuple(target or ()), format=format, output=output, rev=rev, base=tuple(base or ()),
             select=_names(select), ignore=_names(ignore), fail_on=fail_on, notes=notes, preview=preview,
             baseline=baseline, write_baseline=write_baseline, prune_baseline=prune_baseline, fix=fix, diff=diff,
@@ -145,9 +145,9 @@ def check(
 
 def _print_upgrade_schema(value: bool) -> None:
     if value:
-        from . import run
+        from . import upgrade as command
 
-        raise typer.Exit(run.upgrade_schema())
+        raise typer.Exit(command.upgrade_schema())
 
 
 @app.command()
@@ -177,10 +177,10 @@ def upgrade(
 
     Exit status: 0 no new finding at or above --fail-on, 1 something breaks, 2 the tool failed.
     """
-    from . import run
+    from . import upgrade as command
 
     raise typer.Exit(
-        run.upgrade(
+        command.upgrade(
             path, from_, to, packages=_names(packages), rev=rev, config=config, format=format, output=output,
             fail_on=fail_on, jobs=jobs, quiet=quiet, follow_links=follow_links,
         )
@@ -204,9 +204,9 @@ def why(
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
 ) -> None:
     """Show which package provides a name on a target, since when, and what uses it in the workspace."""
-    from . import run
+    from . import why as command
 
-    raise typer.Exit(run.why(name, path, tuple(target or ()), format, follow_links=follow_links))
+    raise typer.Exit(command.why(name, path, tuple(target or ()), format, follow_links=follow_links))
 
 
 @app.command()
@@ -250,10 +250,10 @@ def graph(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
     """Show which nodes are connected by topics, services and actions, without building or running anything."""
-    from . import run
+    from . import graph as command
 
     raise typer.Exit(
-        run.graph(
+        command.graph(
             path, launch=launch, arguments=tuple(set_ or ()), nodes=_names(node), topics=_names(topic),
             packages=_names(package), around=around, hops=hops, rev=rev, base=tuple(base or ()), format=format,
             output=output, everything=all, jobs=jobs, quiet=quiet, follow_links=follow_links,
@@ -263,9 +263,9 @@ def graph(
 
 def _print_impact_schema(value: bool) -> None:
     if value:
-        from . import run
+        from . import impact as command
 
-        raise typer.Exit(run.impact_schema())
+        raise typer.Exit(command.impact_schema())
 
 
 @app.command()
@@ -300,10 +300,10 @@ def impact(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
     """Show which nodes are affected by changes since a base: of messages, topics, publish conditions and callbacks."""
-    from . import run
+    from . import impact as command
 
     raise typer.Exit(
-        run.impact(
+        command.impact(
             path, base=tuple(base or ()), rev=rev, packages=_names(package), topics=_names(topic), nodes=_names(node),
             format=format, output=output, everything=all, jobs=jobs, quiet=quiet, follow_links=follow_links,
         )
@@ -325,10 +325,10 @@ def logic(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
     """List the commits that changed when messages are published: which condition or trigger, and whom it affects."""
-    from . import run
+    from . import logic as command
 
     raise typer.Exit(
-        run.logic(
+        command.logic(
             repository, range=range, number=commits, since=since, packages=_names(package), topics=_names(topic),
             everything=all, format=format, output=output, jobs=jobs, quiet=quiet,
         )
@@ -340,9 +340,9 @@ def explain(
     rule: Annotated[str | None, typer.Argument(help="Name of a rule or group; default: list all rules.")] = None,
 ) -> None:
     """Explain what a rule does, why it matters, and how to fix its findings."""
-    from . import run
+    from . import explain as command
 
-    raise typer.Exit(run.explain(rule))
+    raise typer.Exit(command.explain(rule))
 
 
 @env_app.command("capture")
@@ -352,16 +352,16 @@ def env_capture(
     ] = None,
 ) -> None:
     """Write this machine as a target."""
-    from . import run
+    from . import env as command
 
-    raise typer.Exit(run.env_capture(output))
+    raise typer.Exit(command.env_capture(output))
 
 
 def _print_env_diff_schema(value: bool) -> None:
     if value:
-        from . import run
+        from . import env as command
 
-        raise typer.Exit(run.env_diff_schema())
+        raise typer.Exit(command.env_diff_schema())
 
 
 @env_app.command("diff")
@@ -379,9 +379,9 @@ def env_diff(
     ] = False,
 ) -> None:
     """Show the differences between two machines; with a workspace, also what breaks on only one of them."""
-    from . import run
+    from . import env as command
 
-    raise typer.Exit(run.env_diff(first, second, path, format, output))
+    raise typer.Exit(command.env_diff(first, second, path, format, output))
 
 
 _REPOS_HELP = "Folder of git clones with their tags, called OWNER+NAME or NAME."
@@ -403,9 +403,9 @@ def surface_show(
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
 ) -> None:
     """Show what a version of a package offers: headers, names, messages, targets, programs."""
-    from . import run
+    from . import surface as command
 
-    raise typer.Exit(run.surface_show(package, repos=repos, all_of_it=all, format=format, output=output, jobs=jobs))
+    raise typer.Exit(command.surface_show(package, repos=repos, all_of_it=all, format=format, output=output, jobs=jobs))
 
 
 @surface_app.command("diff")
@@ -425,10 +425,10 @@ def surface_diff(
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")] = None,
 ) -> None:
     """Show what changed between two versions: removed, moved and deprecated names, and changed signatures."""
-    from . import run
+    from . import surface as command
 
     raise typer.Exit(
-        run.surface_diff(
+        command.surface_diff(
             what, old, new, repos=repos, packages=_names(packages), all_of_it=all, format=format, output=output,
             jobs=jobs,
         )
@@ -452,10 +452,10 @@ def surface_build(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")] = False,
 ) -> None:
     """Write what the released versions of packages offer to a file. A stopped run continues the next time."""
-    from . import run
+    from . import surface as command
 
     raise typer.Exit(
-        run.surface_build(
+        command.surface_build(
             distros=_names(distro), repos=repos, packages=_names(packages), all_versions=all_versions, output=output,
             jobs=jobs, dask=dask, quiet=quiet,
         )
@@ -467,9 +467,9 @@ def data_status(
     format: Annotated[str, typer.Option("--format", "-f", help="text or json.")] = "text",
 ) -> None:
     """Show the age and the sources of the distro data."""
-    from . import run
+    from . import data as command
 
-    raise typer.Exit(run.data_status(format))
+    raise typer.Exit(command.data_status(format))
 
 
 @data_app.command("build")
@@ -486,17 +486,17 @@ def data_build(
     ] = None,
 ) -> None:
     """Rebuild the snapshot from git repositories."""
-    from . import run
+    from . import data as command
 
-    raise typer.Exit(run.data_build(rosdistro, output, work, meta_ros))
+    raise typer.Exit(command.data_build(rosdistro, output, work, meta_ros))
 
 
 @data_app.command("update")
 def data_update() -> None:
     """Update the snapshot over the network, with the rosdistro library."""
-    from . import run
+    from . import data as command
 
-    raise typer.Exit(run.data_update())
+    raise typer.Exit(command.data_update())
 
 
 def _version(value: bool) -> None:

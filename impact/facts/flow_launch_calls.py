@@ -11,7 +11,6 @@ import json
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .flow_launch import Action, Condition, Piece, Value, literal, named, other, plain, together
 from .flow_launch_values import (
     NOTHING,
     Asked,
@@ -32,6 +31,7 @@ from .flow_launch_values import (
     folder_of,
     source_of,
 )
+from .launch_actions import Action, Condition, Piece, Value, literal, named, other, plain, together
 
 if TYPE_CHECKING:
     from .flow_launch_python import Walker

@@ -10,19 +10,6 @@ import ast
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from .flow_launch import (
-    DEEPEST,
-    Action,
-    Condition,
-    LaunchFile,
-    Piece,
-    Value,
-    literal,
-    named,
-    other,
-    plain,
-    together,
-)
 from .flow_launch_calls import MAKERS, MOST_TURNS, Call
 from .flow_launch_values import (
     Asked,
@@ -51,6 +38,8 @@ from .flow_launch_values import (
     place_in,
     source_of,
 )
+from .flow_parameters import DEEPEST
+from .launch_actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, plain, together
 from .place import Problem
 from .python import read
 

@@ -15,9 +15,9 @@ import msgspec
 
 from ..facts.condition import Condition
 from ..facts.cpp import CppFile, Include
-from ..facts.flow_launch import LaunchFile
 from ..facts.interface import Interface
 from ..facts.launch import PluginClass
+from ..facts.launch_actions import LaunchFile
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python import PythonFile

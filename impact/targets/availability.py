@@ -15,7 +15,7 @@ from functools import cache, cached_property
 from typing import Literal, NamedTuple
 
 from .changes import DISTROS, Row, all_rows, changes_in_force, reached, version_of
-from .distro.distro import known_distros
+from .distro.known import known_distros
 from .evidence import Evidence, evidence_of, of_offered
 from .providers.providers import Providers, default_providers
 from .surface.changes import PARAMETER

@@ -266,7 +266,7 @@ def _released(distro: str) -> str:
 
 @cache
 def _release_days() -> dict[str, str]:
-    from .distro.distro import known_distros
+    from .distro.known import known_distros
 
     return {known.name: known.released for known in known_distros() if known.released}
 

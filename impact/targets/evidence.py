@@ -11,10 +11,10 @@ from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from .changes import DISTROS, Row, all_rows, reached, version_of
-from .distro.distro import DistroTarget, known_distros, releases
+from .distro.known import known_distros, releases
 from .providers.providers import Providers
 from .surface.offers import declarations, effect, there_at
-from .target import Change, Target
+from .target import Change, DatedTarget, Target
 from .uses import all_uses
 from .version import at_least, parts
 
@@ -305,7 +305,7 @@ def _holds_at(evidence: Evidence, events: tuple[Event, ...], line: Line, place: 
 
 
 def _since(evidence: Evidence, target: Target, holds: bool, providers: Providers) -> str:
-    if not isinstance(target, DistroTarget):
+    if not isinstance(target, DatedTarget):
         return ""
     released = _release_days().get(target.distro, "")
     if evidence.library:

@@ -17,7 +17,8 @@ from ...edges.limits import limits
 from ..config import check_inside, lies_in
 from ..tree.ignore import git_folder
 from . import snapshot as snapshots
-from .distro.distro import DistroTarget, Known, TargetError, known_distros
+from .distro.distro import DistroTarget, TargetError
+from .distro.known import Known, known_distros
 from .platform import CODENAMES, normal_platform
 from .snapshot import Snapshot
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
     from .availability import Availability, Symbol
@@ -176,4 +176,21 @@ class Target(Protocol):
 
     def changes(self) -> tuple[Change, ...]:
         """Known upstream changes that are in force here, deprecations included."""
+        ...
+
+
+@runtime_checkable
+class DatedTarget(Target, Protocol):
+    """A target that knows since when its machine has what it has."""
+
+    def arrivals(self, package: str) -> tuple[tuple[str, str | None], ...]:
+        """(ISO day, version) of every version of a ROS package that could be had until now; None: there was none."""
+        ...
+
+    def came_with_release(self, name: str) -> bool:
+        """Whether everybody has a platform library in this version since the distro's release."""
+        ...
+
+    def overridden(self, package: str) -> bool:
+        """Whether the version of a ROS package was given for this machine, and is not the distro's."""
         ...

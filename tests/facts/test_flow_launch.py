@@ -4,16 +4,10 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.impact.facts.flow_launch import (
-    LaunchFile,
-    Piece,
-    extract,
-    plain,
-    substitutions,
-    words,
-)
+from rosimpact.impact.facts.flow_launch import extract, substitutions, words
 from rosimpact.impact.facts.flow_parameters import ParameterFile, scalar
 from rosimpact.impact.facts.flow_parameters import extract as parameters
+from rosimpact.impact.facts.launch_actions import LaunchFile, Piece, plain
 
 
 def said(value):

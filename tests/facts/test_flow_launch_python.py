@@ -3,8 +3,9 @@
 import textwrap
 
 import pytest
-from rosimpact.impact.facts.flow_launch import LaunchFile, extract, plain
+from rosimpact.impact.facts.flow_launch import extract
 from rosimpact.impact.facts.flow_launch_python import MOST_STEPS
+from rosimpact.impact.facts.launch_actions import LaunchFile, plain
 
 
 def said(value):

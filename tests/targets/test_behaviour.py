@@ -6,7 +6,8 @@ import pytest
 from rosimpact.impact.facts.usage import places_of_use
 from rosimpact.impact.targets.behaviour import all_behaviour
 from rosimpact.impact.targets.changes import DISTROS
-from rosimpact.impact.targets.distro.distro import DistroTarget, releases
+from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.distro.known import releases
 from rosimpact.impact.targets.uses import all_uses
 from rosimpact.impact.targets.version import at_least
 

@@ -3,7 +3,8 @@
 import pickle
 
 import pytest
-from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError, known_distros
+from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
+from rosimpact.impact.targets.distro.known import known_distros
 
 
 def target(text, **more):

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.impact.config import Config
-from rosimpact.impact.targets.distro.distro import known_distros
+from rosimpact.impact.targets.distro.known import known_distros
 from rosimpact.impact.targets.resolve import (
     TargetError,
     branch_of,

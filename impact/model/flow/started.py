@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from ...facts.flow_launch import LaunchFile
 from ...facts.flow_parameters import ParameterFile
+from ...facts.launch_actions import LaunchFile
 from ..launch.follow import Launched, Remap, Started, follow
 from ..workspace import Workspace
 from .names import NameRefused, Rule, ros1_remapped, ros2_remapped

@@ -14,9 +14,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ...facts.flow_launch import Action, Condition, LaunchFile, literal, plain
 from ...facts.flow_parameters import Entry
 from ...facts.flow_parameters import extract as parameters
+from ...facts.launch_actions import Action, Condition, LaunchFile, literal, plain
 from ..flow.names import canonical, ros2_rule
 from .fill import Filling, Scope
 from .result import (

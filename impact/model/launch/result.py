@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple, Protocol
 
-from ...facts.flow_launch import LaunchFile
 from ...facts.flow_parameters import Entry, ParameterFile
+from ...facts.launch_actions import LaunchFile
 from ..flow.names import canonical, joined
 from .text import Text, known, within
 

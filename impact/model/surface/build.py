@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ...facts.cmake import CMakeFile
-from ...facts.flow_launch import Action, plain
 from ...facts.kinds import kind_of as kind_by_name
+from ...facts.launch_actions import Action, plain
 from ...targets.surface.fields import snake
 from ...targets.surface.surface import BuildSurface, ExportedTarget, Header, LaunchFile, Plugin, Program
 from ..cmake.build import Install, for_tests

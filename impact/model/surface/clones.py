@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ....edges.console import UserError
-from ...targets.distro.distro import DistroTarget, TargetError, known_distros
+from ...targets.distro.distro import DistroTarget, TargetError
+from ...targets.distro.known import known_distros
 from ...targets.snapshot import Snapshot, default
 from ...targets.surface.compare import State
 from ...targets.surface.surface import Surface

@@ -29,7 +29,8 @@ from ...model.package import NameUse
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.behaviour import Behaviour, all_behaviour
-from ...targets.distro.distro import DistroTarget, known_distros
+from ...targets.distro.distro import DistroTarget
+from ...targets.distro.known import known_distros
 from ...targets.evidence import Evidence
 from ..rule import Hit, rule
 from .build_api import of_another_distro

@@ -24,7 +24,8 @@ Not reported
 from functools import cache
 
 from ...model.view import View
-from ...targets.distro.distro import DistroTarget, known_distros
+from ...targets.distro.distro import DistroTarget
+from ...targets.distro.known import known_distros
 from ...targets.evidence import of_offered
 from ...targets.surface.offers import Offered
 from ...targets.surface.offers_cpp import defaults_changed

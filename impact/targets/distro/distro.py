@@ -22,6 +22,7 @@ from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
 from ..target import Change, ReleasedDependency, Resolution, Target
 from ..version import number_of
+from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros
 from .rosdep import decode_rule, resolve_rule, split_platform
 
 if TYPE_CHECKING:
@@ -30,31 +31,6 @@ if TYPE_CHECKING:
 
 class TargetError(UserError):
     """A target that cannot be made; the message says what is known instead."""
-
-
-class DistroFacts(msgspec.Struct, frozen=True):
-    """What data/distros.yaml says of a distro. Days are ISO; end_of_life None means none is set."""
-
-    released: str
-    end_of_life: str | None
-    lts: bool
-    platform: str
-    libraries_from: dict[str, str] = {}
-    libraries: dict[str, str] = {}
-
-
-class Known(NamedTuple):
-    """One distro of the snapshot in brief: first_day and last_day bound the releases known."""
-
-    name: str
-    ros: int
-    python: int
-    status: str
-    released: str
-    end_of_life: str
-    lts: bool
-    first_day: str
-    last_day: str
 
 
 class Library(NamedTuple):
@@ -71,58 +47,6 @@ class _Released(NamedTuple):
 
 
 _WITH_KINDS = ("build_export", "buildtool_export", "exec")
-
-
-def known_distros(data: Snapshot | None = None) -> tuple[Known, ...]:
-    """All distros of the snapshot, oldest first."""
-    return _known_distros(data or snapshots.default())
-
-
-@functools.lru_cache(maxsize=4)
-def _known_distros(data: Snapshot) -> tuple[Known, ...]:
-    facts = dict(data.rows("SELECT name, facts FROM distro_fact"))
-    found = []
-    for name, ros, python, status, first, last in data.rows(
-        "SELECT name, ros, python, status, first, last FROM distro LEFT JOIN"
-        " (SELECT distro, min(ts) AS first, max(ts) AS last FROM release GROUP BY distro) ON distro = id ORDER BY id"
-    ):
-        fact = msgspec.json.decode(facts[name], type=DistroFacts) if name in facts else None
-        found.append(
-            Known(
-                name,
-                ros,
-                python,
-                status,
-                fact.released if fact else day_of(first) if first else "",
-                (fact.end_of_life or "") if fact else "",
-                fact.lts if fact else False,
-                day_of(first) if first else "",
-                day_of(last) if last else "",
-            )
-        )
-    return tuple(sorted(found, key=lambda known: known.released))
-
-
-def releases(package: str, data: Snapshot | None = None) -> frozenset[tuple[int, str]]:
-    """(ROS generation, version) of every release of a package in any distro."""
-    rows = (data or snapshots.default()).rows(
-        "SELECT DISTINCT d.ros, r.version, n.names FROM home h JOIN package p ON p.id = h.package"
-        " JOIN distro d ON d.id = h.distro JOIN release r ON r.repository = h.repository AND r.distro = h.distro"
-        " JOIN packages n ON n.id = r.packages WHERE p.name = ? AND r.version IS NOT NULL",
-        (package,),
-    )
-    return frozenset((ros, _upstream(version)) for ros, version, names in rows if package in names.split(" "))
-
-
-def day_of(ts: int) -> str:
-    """The ISO day (UTC) of a moment, in seconds since 1970."""
-    return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
-
-
-def end_of_day(day: str) -> int:
-    """The last second (UTC) of an ISO day, in seconds since 1970."""
-    start = datetime.datetime.combine(datetime.date.fromisoformat(day), datetime.time(), datetime.timezone.utc)
-    return int(start.timestamp()) + 86_399
 
 
 def version_key(version: str) -> list[int]:
@@ -817,11 +741,6 @@ def _platform_order() -> dict[str, int]:
 def _facts(distro: str, data: Snapshot) -> DistroFacts | None:
     row = data.row("SELECT facts FROM distro_fact WHERE name = ?", (distro,))
     return msgspec.json.decode(row[0], type=DistroFacts) if row else None
-
-
-def _upstream(version: str) -> str:
-    """`1.2.3-0` → `1.2.3`: the part after the dash counts the packaging."""
-    return version.partition("-")[0]
 
 
 def _unknown_distro(name: str, data: Snapshot) -> str:

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from .. import snapshot as snapshots
 from ..snapshot import Snapshot
 from ..version import parts
-from .distro import Known, TargetError, condition_holds, day_of, end_of_day, known_distros, version_key
+from .distro import TargetError, condition_holds, version_key
+from .known import Known, day_of, end_of_day, known_distros
 
 ABSENT = -1
 """Stands in a table of versions where a package is not released."""

@@ -1,0 +1,85 @@
+"""rosimpact data."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...edges.console import (
+    counted,
+    escape_json,
+    run_command,
+    say,
+    steps,
+)
+from .output import (
+    READ_SO_FAR,
+    TEXT_OR_JSON,
+    deliver_answer,
+    print_answer,
+)
+
+
+def data_status(format: str = "text") -> int:
+    """Prints date, origin and contents of the distro data in use."""
+
+    def answer() -> str:
+        from ...databuild.snapshot import status
+
+        found = status()
+        if format == "json":
+            import json
+
+            return escape_json(json.dumps(found._asdict(), indent=1, default=str, ensure_ascii=False))
+        origin = "updated" if found.updated else "shipped with rosimpact"
+        lines = [f"distro data of {found.date}, {origin}, {found.packed / 1e6:.1f} MB, in {found.folder}"]
+        lines += [f"from {name} {commit}" for name, commit in found.sources.items()]
+        if found.last_syncs:
+            newest = ", ".join(f"{name} {day}" for name, day in sorted(found.last_syncs.items()))
+            lines.append(f"newest syncs: {newest}")
+        kept = found.surfaces
+        told_of = f"{counted(kept['packages'], 'package')}, {counted(kept['versions'], 'version')}"
+        lines.append(f"surfaces of {told_of}, as of {kept['date']}, of {kept['distros']}")
+        return "\n".join(lines)
+
+    return deliver_answer(answer, format, TEXT_OR_JSON)
+
+
+def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path | None) -> int:
+    """Builds the snapshot from git repositories."""
+
+    def build_it() -> int:
+        from ...databuild.snapshot import build
+        from ..cache import cache_folder
+
+        built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, steps())
+        print_answer(
+            f"data of {built.date} in {output}: {counted(built.releases, 'release')}, "
+            f"{counted(built.manifests, 'manifest')}, {counted(built.rules, 'rosdep rule')}, "
+            f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)",
+            "text",
+        )
+        for name, count in built.unreadable.items():
+            say(f"rosimpact: {name}: {counted(count, 'version')} of its distribution file could not be read")
+        return 0
+
+    return run_command(build_it, READ_SO_FAR, rosdistro)
+
+
+def data_update() -> int:
+    """Refreshes the snapshot over the network."""
+
+    def work() -> int:
+        from ...databuild.snapshot import update
+
+        found = update(report=steps())
+        for failure in found.failures:
+            say(f"rosimpact: not updated: {failure}")
+        print_answer(
+            f"data of {found.date} in {found.folder}: {counted(len(found.syncs), 'new sync')}, "
+            f"{counted(found.releases, 'release')}, {counted(found.manifests, 'manifest')}, "
+            f"{counted(found.rules, 'rosdep rule')}",
+            "text",
+        )
+        return 0
+
+    return run_command(work, "interrupted; the data in use stays", "the distro data")

@@ -1,0 +1,54 @@
+"""rosimpact graph."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...edges.console import (
+    UserError,
+)
+from .output import (
+    deliver_answer,
+    print_answer,
+    progress_bar,
+    say_notes,
+    style_of,
+)
+
+GRAPH_FORMATS = ("text", "json", "graphml", "dot", "mermaid", "html")
+
+
+def graph_schema() -> int:
+    """Prints the JSON schema of the graph's JSON."""
+    from ..report.graph.json import schema as text
+
+    print_answer(text(), "json")
+    return 0
+
+
+def graph(
+    path: Path, *, launch, arguments, nodes, topics, packages, around, hops, rev, base, format, output, everything,
+    jobs, quiet, follow_links=False,
+) -> int:  # fmt: skip
+    """Draws the message-flow graph. Returns the exit status: 0, or 2 (failed)."""
+
+    def answer() -> str:
+        given = dict(argument.partition(":=")[::2] for argument in arguments)
+        if any(":=" not in argument for argument in arguments):
+            raise UserError("--set: write NAME:=VALUE")
+        if given and not launch:
+            raise UserError("--set: arguments belong to a launch file; name it with --launch")
+        from ..analysis.graph import graphs
+        from ..report.graph import draw
+
+        found = graphs(
+            path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
+            progress=None if quiet else progress_bar(), follow_links=follow_links,
+        )  # fmt: skip
+        say_notes(found.notes)
+        return draw(
+            found.now, format, found.before, nodes=nodes, topics=topics, packages=packages, around=around,
+            hops=hops, everything=everything, style=style_of(output),
+        )  # fmt: skip
+
+    return deliver_answer(answer, format, GRAPH_FORMATS, output, path)

@@ -1,0 +1,49 @@
+"""rosimpact logic."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from ...edges.console import (
+    UserError,
+    steps,
+)
+from ...edges.version import __version__
+from .output import (
+    deliver_answer,
+    say_notes,
+    style_of,
+)
+
+LOGIC_FORMATS = ("text", "json", "html")
+
+
+def logic(
+    path: Path, *, range, number, since, packages, topics, everything, format, output, jobs, quiet
+) -> int:  # fmt: skip
+    """Prints where the logic of publishing changed. Returns the exit status: 0, or 2 (failed)."""
+
+    def answer() -> str:
+        from ..facts.store import Store
+        from ..logic import repository as history
+        from ..report import logic as logic_report
+        from ..report import timeline
+
+        with Store() as store:
+            try:
+                asked = history.Range(range, number, since)
+                found = history.read(os.fspath(path), asked, store, jobs, None if quiet else steps())
+            except ValueError as error:
+                raise UserError(f"--since: {error}") from None
+            say_notes(store.notes)
+        all_of_it, found = found, history.chosen(found, packages, topics, everything)
+        missed = logic_report.missed(all_of_it, found, packages, topics)
+        say_notes([missed] if missed else [])
+        if format == "html":
+            return timeline.render(found, __version__)
+        if format == "json":
+            return logic_report.as_json(found, __version__)
+        return logic_report.text(found, style_of(output))
+
+    return deliver_answer(answer, format, LOGIC_FORMATS, output, path)

@@ -1,0 +1,156 @@
+"""What every command does with its answer: checks formats, prints or saves, says notes, shows progress."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from ...edges.console import (
+    UserError,
+    rewrite,
+    run_command,
+    say,
+    visible,
+    write,
+    write_exactly,
+    write_json,
+)
+from ...edges.files import check_writable_path, outermost, write_file
+from ..report.style import PLAIN, Style, style_for
+
+TEXT_OR_JSON = ("text", "json")
+READ_SO_FAR = "interrupted; what was read is kept, and the next run continues from there"
+PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run continues from there"
+
+
+def deliver_answer(
+    answer: Callable[[], str],
+    format: str = "text",
+    known: Sequence[str] = ("text",),
+    output: Path | None = None,
+    path: object = "",
+) -> int:
+    """Delivers what a command says, its errors as one line. Returns the exit status: 0, 2 (failed), 130 (interrupted).
+
+    answer: makes the text. known: the formats that the command has. path: what an error without a file of its own is
+    about.
+    """
+
+    def work() -> int:
+        one_of("--format", format, known)
+        check_output(output, path)
+        deliver(answer(), output, format, path)
+        return 0
+
+    return run_command(work, READ_SO_FAR, path)
+
+
+def one_of(option: str, given: str, known: Sequence[str]) -> None:
+    """Raises UserError when an option has a value that it does not know."""
+    if given not in known:
+        raise UserError(f"{option} {given}: unknown; choose one of {', '.join(known)}")
+
+
+def say_notes(notes: Iterable[str]) -> None:
+    for note in notes:
+        say(f"rosimpact: {note}")
+
+
+def deliver(text: str, output: Path | None, format: str, path: object = "") -> None:
+    """Writes a text to the file asked for, or to standard output. Raises UserError when that cannot be written."""
+    if output is None:
+        print_answer(text, format)
+    else:
+        save(output, text, path)
+
+
+def save(file: Path, text: str, path: object) -> None:
+    """Writes a file that the user named. path: the workspace. Raises UserError."""
+    place, beneath = _place_of(file, path)
+    try:
+        write_file(place, _bytes(text), beneath=beneath)
+    except OSError as error:
+        raise _cannot_write(file, error) from None
+
+
+def check_output(file: Path | None, path: object) -> None:
+    """Raises UserError where a file that the user named would be refused, before long work is done for nothing."""
+    if file is not None:
+        place, beneath = _place_of(file, path)
+        try:
+            check_writable_path(place, beneath=beneath)
+        except OSError as error:
+            raise _cannot_write(file, error) from None
+
+
+def _cannot_write(file: Path, error: OSError) -> UserError:
+    return UserError(f"{visible(str(file))}: cannot be written: {error.strerror}; give another file")
+
+
+def _place_of(file: Path, path: object) -> tuple[str, str | None]:
+    """(path to write to, folder that must hold it without links in between).
+
+    What lies in the workspace, or in the repository around it, around the current folder or around the file itself, was
+    made by whoever made those: a link in them must not say where a report goes. None elsewhere, where folders are the
+    user's own.
+    """
+    name = os.fspath(file)
+    if not os.path.isabs(name):
+        name = os.path.join(os.getcwd(), name)
+    folders = [os.fspath(path)] if isinstance(path, str | os.PathLike) and path != "" else []
+    folders += [found for folder in (*folders, ".") if (found := _repository_of(os.path.realpath(folder)))]
+    folders += [found] if (found := _repository_of(os.path.dirname(os.path.abspath(name)))) else []
+    beneath = outermost(name, folders)
+    return (name, None) if beneath is None else (os.path.abspath(name), beneath)
+
+
+def _repository_of(place: str) -> str:
+    """The nearest folder with a `.git` in it, from an absolute path upwards; empty when there is none."""
+    while not os.path.lexists(os.path.join(place, ".git")):
+        place, last = os.path.dirname(place), place
+        if place == last:
+            return ""
+    return place
+
+
+def _bytes(text: str) -> bytes:
+    return (text if text.endswith("\n") or not text else text + "\n").encode("utf-8", "surrogateescape")
+
+
+_PRINTERS: dict[str, Callable[[str], None]] = {
+    "json": write_json, "sarif": write_json, "html": write_exactly, "graphml": write_exactly, "dot": write_exactly,
+    "github": write_exactly, "patch": write_exactly,
+}  # fmt: skip
+"""Formats whose makers escape what they hold; all others are for people."""
+
+
+def print_answer(text: str, format: str) -> None:
+    """Prints a text on standard output. Who reads no further has read enough: the exit status stays what it is. Raises
+    UserError when it cannot be written."""
+    with suppress(BrokenPipeError):
+        _PRINTERS.get(format, write)(text)
+
+
+def progress_bar() -> Callable[[int, int], None] | None:
+    """A line on standard error that is rewritten while files are parsed; None when nobody watches."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        return None
+
+    def show(done: int, total: int) -> None:
+        share = 100 * done // max(1, total)
+        rewrite("" if done >= total else f"parsing {share:3d} % of {total / 1e6:.1f} MB", ended=False)
+
+    return show
+
+
+def style_of(output: Path | None) -> Style:
+    """How text is written: for the terminal that reads it; in a file or a pipe, lines are as long as they are."""
+    from ..report.columns import UNBROKEN
+
+    if output is not None:
+        return PLAIN._replace(width=UNBROKEN)
+    style = style_for(sys.stdout)
+    return style if sys.stdout.isatty() else style._replace(width=UNBROKEN)

@@ -1,0 +1,161 @@
+"""rosimpact surface."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from ...edges.console import (
+    UserError,
+    counted,
+    steps,
+)
+from ...edges.version import __version__
+from .output import (
+    check_output,
+    deliver_answer,
+    say_notes,
+    style_of,
+)
+
+
+def surface_show(what: str, *, repos, all_of_it, format, output, jobs) -> int:
+    """Prints what a version of a package offers. Returns the exit status: 0, or 2 (failed)."""
+    from ..report import surface as report
+
+    def answer(store) -> str:
+        package, _, asked = what.partition("@")
+        source, state = _surface(package, asked, repos, store, jobs)
+        surface, hashes = state.surfaces[package], _hashes(package, source.asked, state)
+        if format == "json":
+            return report.show_json(surface, source, __version__, hashes)
+        if format == "markdown":
+            return report.show_markdown(surface, source, hashes)
+        return report.show_text(surface, source, style_of(output), all_of_it, hashes)
+
+    return _of_surfaces(answer, format, output)
+
+
+def surface_diff(what: str, old: str, new: str, *, repos, packages, all_of_it, format, output, jobs) -> int:
+    """Prints what changed between two versions of a package, or of all packages of a clone. Returns the exit status:
+    0, or 2 (failed)."""
+    from ..report import surface as report
+
+    def answer(store) -> str:
+        from ..model.surface.clones import Clone
+        from ..targets.surface.compare import State, compare, compare_states
+
+        if os.path.isdir(what) and repos is None:
+            clone = Clone(Path(what))
+            states = [State(clone.surfaces(revision, store, jobs)) for revision in (old, new)]
+            changes = compare_states(*states)
+            unknown = [name for name in packages if name not in changes]
+            if unknown:
+                raise UserError(f"--packages {unknown[0]}: {clone.name} has no such package at {old} or {new}")
+            changes = {name: each for name, each in changes.items() if (name in packages if packages else each)}
+            sources = [report.Source(revision, "", clone.name, revision) for revision in (old, new)]
+        else:
+            (first, before), (second, after) = (_surface(what, asked, repos, store, jobs) for asked in (old, new))
+            changes = {what: compare(before.surfaces[what], after.surfaces[what], before, after)}
+            sources = [first, second]
+            old_hashes, new_hashes = _hashes(what, first.asked, before), _hashes(what, second.asked, after)
+            changes[what] = tuple(
+                report.with_hashes(change, old_hashes, new_hashes) if change.kind == "wire" else change
+                for change in changes[what]
+            )
+        found = report.Difference(sources[0], sources[1], changes)
+        if format == "json":
+            return report.diff_json(found, __version__)
+        if format == "markdown":
+            return report.diff_markdown(found)
+        return report.diff_text(found, style_of(output), all_of_it)
+
+    return _of_surfaces(answer, format, output)
+
+
+def surface_build(*, distros, repos, packages, all_versions, output, jobs, dask, quiet) -> int:
+    """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
+
+    def answer() -> str:
+        from ...databuild.surfaces import all_distros, build
+        from ..model.surface.clones import Clones
+
+        if not distros:
+            raise UserError("--distro: missing; name the distros to read, such as --distro humble --distro jazzy")
+        if dask is not None and jobs is not None:
+            raise UserError("--jobs: has no effect with --dask, which uses a cluster; give only one of the two")
+        check_output(output, "")
+        report = None if quiet else steps()
+        versions = "all" if all_versions else "newest"
+        built = build(Clones(repos), all_distros(distros), output, packages, jobs, report, versions=versions, dask=dask)
+        if not built.packages:
+            raise UserError(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")
+        say_notes(built.failed)
+        told_of = f"{counted(built.packages, 'package')}, {counted(built.versions, 'version')}"
+        return (
+            f"{output}: {told_of}, {output.stat().st_size:,} bytes; "
+            f"{built.approximate} with a branch for a missing tag, {len(built.missing)} without a clone"
+        )
+
+    return deliver_answer(answer, path=output)
+
+
+def _surface(package: str, asked: str, repos: Path | None, store, jobs):
+    """Where a version of a package was found, and its state: in clones, else in what is shipped."""
+    from ..model.surface.clones import Clones
+    from ..model.surface.installed import is_installed, surface_at
+    from ..model.surface.stored_versions import StoredVersions
+    from ..report.surface import Source
+    from ..targets.surface.store import shipped
+
+    if is_installed(asked):
+        surface, state = surface_at(package, asked)
+        return Source(asked, surface.version, asked, "installed"), state
+    if repos is None:
+        versions = StoredVersions(shipped())
+        asked = asked or versions.newest(package)
+        stored, state = versions.surface(package, asked)
+        return Source(asked, stored.version, "the shipped surfaces", stored.stored, stored.approximate), state
+    clones = Clones(repos)
+    asked = asked or clones.newest(package)
+    found, state = clones.surface(package, asked, store, jobs)
+    revision = found.revision.removeprefix("refs/").partition("/")[2] or found.revision
+    return Source(asked, found.version, found.clone.name, revision, found.approximate), state
+
+
+def _hashes(package: str, asked: str, state) -> dict[str, str]:
+    """The hashes of a package's interfaces, by `msg/Name`, as far as all that is in them is known: in the state of its
+    repository, or of other packages of the distro that was asked for."""
+    from ..model.surface.installed import is_installed
+    from ..model.surface.stored_versions import StoredVersions
+    from ..targets.hashes import hash_of
+    from ..targets.surface.store import shipped
+
+    others = None if asked[:1].isdigit() or is_installed(asked) else StoredVersions(shipped())
+
+    def find(name: str):
+        owner, _, short = name.partition("/")
+        if owner in state.surfaces:
+            return dict(state.surfaces[owner].interfaces).get(f"msg/{short}")
+        return others.message(asked, name) if others is not None else None
+
+    surface = state.surfaces[package]
+    ros = 2 if surface.build.build_type.startswith("ament") else 1
+    known = ((name, hash_of(f"{package}/{name}", ros, definition, find)) for name, definition in surface.interfaces)
+    return {name: told for name, told in known if told is not None}
+
+
+def _of_surfaces(answer: Callable, format: str, output: Path | None) -> int:
+    """Delivers what a command on surfaces says."""
+    from ..report.surface import FORMATS as known
+
+    def with_store() -> str:
+        from ..facts.store import Store
+
+        with Store() as store:
+            text = answer(store)
+            say_notes(store.notes)
+        return text
+
+    return deliver_answer(with_store, format, known, output)
