@@ -301,9 +301,9 @@ def refusing(ws, tmp_path):
 @pytest.mark.parametrize("name", [".git/config", "report.json", "reports/secret", "reports/new", "history/config",
                                   "pipe", "a", "a/", "/proc/version", "a/package.xml/x", "x" * 5000, ""])  # fmt: skip
 def test_outputs_are_refused_before_the_work(say, refusing, tmp_path, monkeypatch, option, name):
-    from rosimpact.impact.cli import run
+    from rosimpact.impact.cli import check as command
 
-    monkeypatch.setattr(run, "run_check", lambda *_: pytest.fail("the work was begun"))
+    monkeypatch.setattr(command, "run_check", lambda *_: pytest.fail("the work was begun"))
     monkeypatch.chdir(refusing)
     for place in (name, refusing / name) if name and len(name) < 200 else (name,):
         said = say("check", ".", "-t", "jazzy", option, place)
