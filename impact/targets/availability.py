@@ -237,7 +237,9 @@ class Availabilities:
             return found
         if symbol.name in self._made(offer):
             return Availability(symbol, "present", package, version)
-        closed = all(part != "headers" for part, _ in offer.build.unknown)
+        # `include/PACKAGE` is exported where headers are installed a folder deeper, so that the path stays as it was.
+        nested = f"{package}/{symbol.name}" in self._made(offer)
+        closed = not nested and all(part != "headers" for part, _ in offer.build.unknown)
         return found if closed else Availability(symbol, "unknown", package, version)
 
     def _header_of(self, symbol: Symbol, package: str, version: str) -> Availability:
