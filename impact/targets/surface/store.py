@@ -103,6 +103,7 @@ class History:
         self._rows: dict[str, list[tuple[str, msgspec.Raw, list[int]]]] = {}
         for kind, scope, value, spans in rows:
             self._rows.setdefault(kind, []).append((scope, value, spans))
+        self._inline_of: dict[str, tuple[str, ...]] = {}
 
     def surface(self, version: str) -> Surface | None:
         """What a version offers; None for one that is not stored."""
@@ -213,11 +214,31 @@ class History:
 
     def entities(self, name: str, version: str) -> Iterator[Entity]:
         """What a version declares by a name of C++, as users write it; nothing for a version that is not stored."""
-        inline = (space for _, (spaces, *_) in self._values("header", version) for space in spaces)
-        last = name.rpartition("::")[2].encode()
-        near = (one for _, one in self._values("entity", version, Entity, last))
-        found = offered([HeaderSurface(tuple(near), inline=tuple(inline))])
+        if version not in self.versions:
+            return iter(())
+        place = self.versions.index(version)
+        rows = self._by_last.get(name.rpartition("::")[2], ())
+        near = tuple(_decode_entity(value) for _, value, spans in rows if there(spans, place))
+        found = offered([HeaderSurface(near, inline=self._inline(version))]) if near else ()
         return (entity for entity in found if entity.name == name)
+
+    @cached_property
+    def _by_last(self) -> dict[str, list[Any]]:
+        """The rows of what is declared in C++, by the last part of its name, with and without template arguments."""
+        found: dict[str, list[Any]] = {}
+        for row in self._rows.get("entity", ()):
+            full = _decoded(row[1])[1]
+            for last in {full.rpartition("::")[2], full.partition("<")[0].rpartition("::")[2]}:
+                found.setdefault(last, []).append(row)
+        return found
+
+    def _inline(self, version: str) -> tuple[str, ...]:
+        """The inline namespaces of a version."""
+        known = self._inline_of.get(version)
+        if known is None:
+            spaces = (space for _, (spaces, *_) in self._values("header", version) for space in spaces)
+            known = self._inline_of[version] = tuple(dict.fromkeys(spaces))
+        return known
 
     def _headers(self, version: str) -> Iterator[tuple[str, HeaderSurface]]:
         entities = self._inside("entity", version, Entity)
@@ -243,15 +264,15 @@ class History:
         return found
 
     def _values(
-        self, kind: str, version: str, type_: Any = Any, word: bytes = b"", of: tuple[str, ...] = ()
+        self, kind: str, version: str, type_: Any = Any, of: tuple[str, ...] = ()
     ) -> Iterator[tuple[str, Any]]:
-        """Scope and value of each row of a kind that a version has, and in which a word stands. of: these scopes."""
+        """Scope and value of each row of a kind that a version has. of: these scopes."""
         place = self.versions.index(version) if version in self.versions else -1
         decode = msgspec.msgpack.Decoder(type_).decode
         for scope, value, spans in self._rows.get(kind, ()):
             if of and scope not in of:
                 continue
-            if place >= 0 and (not word or word in bytes(value)) and there(spans, place):
+            if place >= 0 and there(spans, place):
                 yield scope, decode(value)
 
     @cached_property
@@ -307,6 +328,7 @@ class History:
 
 _decoder = msgspec.msgpack.Decoder(tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]]])
 _decoded = msgspec.msgpack.Decoder().decode
+_decode_entity = msgspec.msgpack.Decoder(Entity).decode
 _name = itemgetter(0)
 # How what a row of a kind is about is called.
 _NAMED: dict[str, Callable[[str, str, msgspec.Raw], str]] = {
