@@ -191,7 +191,7 @@ def test_build(repos, tmp_path):
         (("--distro", "noetic"), "no clone has a package asked for"),
         (("--distro", "humble", "--repos", "REPOS/none"), "no such folder"),
         (("--distro", "humble", "--dask", "127.0.0.1"), "--dask 127.0.0.1: missing port number"),
-        (("--distro", "humble", "--dask", "127.0.0.1:8786", "--jobs", "2"), "give one of the two"),
+        (("--distro", "humble", "--dask", "127.0.0.1:8786", "--jobs", "2"), "give only one of the two"),
     ],
 )
 def test_errors_of_build_are_one_line(repos, tmp_path, arguments, said):

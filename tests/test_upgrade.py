@@ -86,9 +86,9 @@ def test_the_verdict_comes_first_and_the_work_in_build_order(say, ws):
     titles = [line for line in lines if " of 2: " in line]
     assert titles == ["1 of 2: zoom", "2 of 2: arm"]
     first = lines[lines.index("1 of 2: zoom") : lines.index("2 of 2: arm")]
-    assert any("`cv_bridge/cv_bridge.h` is gone" in line and line.endswith("[fixable]") for line in first)
+    assert any("`cv_bridge/cv_bridge.h` is not available" in line and line.endswith("[fixable]") for line in first)
     assert [line for line in first if "→" in line] == ["  → zoom/src/far.cpp:2:10", "  → zoom/src/near.cpp:1:10"]
-    assert "  help: include `cv_bridge/cv_bridge.hpp`, there since iron" in first
+    assert "  help: include `cv_bridge/cv_bridge.hpp`" in first
     assert "deprecated on kilted" in lines and "StaticSingleThreadedExecutor` is deprecated" in said.out
     assert "OpenCV" not in said.out, "what is broken on both is counted alone"
     assert f"1 error already on humble: rosimpact check {ws} --target humble lists it" in lines[-1]

@@ -29,8 +29,8 @@ DOORS = {
         "corpus/figures.py": "our own labels, and a picture just drawn",
         **dict.fromkeys(
             (f"impact/targets/{name}.py" for name in (
-                "behaviour", "changes", "machine/sonames", "parameters", "providers/includes", "providers/providers",
-                "providers/standard", "providers/version_macros", "snapshot", "surface/fields", "surface/store", "uses",
+                "behaviour", "changes", "machine/sonames", "parameters", "providers/apt", "providers/includes",
+                "providers/providers", "providers/standard", "providers/version_macros", "snapshot", "surface/fields", "surface/store", "uses",
             )),
             _SHIPPED,
         ),

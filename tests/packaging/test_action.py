@@ -64,7 +64,7 @@ def test_what_the_check_step_leaves(tmp_path):
     assert json.loads(Path(outputs["sarif-file"]).read_text())["version"] == "2.1.0"
     assert Path(outputs["html-file"]).read_text().lstrip().lower().startswith("<!doctype html>")
     assert len((tmp_path / "rosimpact.markdown").read_text().splitlines()) <= 10
-    assert (tmp_path / "summary").read_text().count("| OpenCV is") == 1
+    assert (tmp_path / "summary").read_text().count("- ❌ `src/porter_vision/CMakeLists.txt:16`") == 1
     assert re.search(r"^::error ", printed, re.MULTILINE)
 
 
