@@ -30,7 +30,8 @@ DOORS = {
         **dict.fromkeys(
             (f"impact/targets/{name}.py" for name in (
                 "behaviour", "changes", "machine/sonames", "parameters", "providers/apt", "providers/includes",
-                "providers/providers", "providers/standard", "providers/version_macros", "snapshot", "surface/fields", "surface/store", "uses",
+                "providers/providers", "providers/standard", "providers/version_macros", "snapshot", "surface/fields",
+                "surface/store", "uses",
             )),
             _SHIPPED,
         ),
