@@ -655,7 +655,7 @@ def committed(folder: Path, bare: bool = False) -> pygit2.Repository:
         (("--base", "src=v9.9"), ("`src`", "no git repository")),
         (("--base", ".=v9.9"), ("`v9.9`", "no revision")),
         (("--rev", "HEAD:src/bad/package.xml"), ("no revision",)),
-        (("--rev", "HEAD", "--fix"), ("--fix", "leave --rev out")),
+        (("--rev", "HEAD", "--fix"), ("--fix", "remove --rev")),
     ],
 )
 def test_revisions(say, ws, arguments, words):

@@ -366,6 +366,9 @@ class _Facts:
     def facts(self, path: str) -> Any:
         return kinds.extract(self.kinds[path], self.files.read(path))
 
+    def look(self, paths: Iterable[str], kind: str, on_error: Any = None) -> dict[str, Any]:
+        return {path: kinds.extract(kind, self.files.read(path)).facts for path in paths}
+
 
 _PART = re.compile(rb"(?m)^== ([^\n]{1,80})\n")
 

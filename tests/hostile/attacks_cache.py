@@ -232,7 +232,7 @@ def many_at_once(place: Place, ended: Ended) -> list[str]:
     wrong = []
     for out, err, status in answers:
         text = (out + err).decode()
-        if status != 1 or "asks for 9" not in text or "Traceback" in text or "fault of rosimpact" in text:
+        if status != 1 or "asks for OpenCV 9" not in text or "Traceback" in text or "fault of rosimpact" in text:
             wrong.append(f"one of ten at once: status {status}: {text[-200:]!r}")
     return wrong[:1]
 
@@ -257,7 +257,7 @@ def once_more(place: Place, ended: Ended) -> list[str]:
         "jazzy",
     ]
     again = subprocess.run(command, env=environment, capture_output=True, timeout=120)
-    if again.returncode != 1 or b"asks for 9" not in again.stdout:
+    if again.returncode != 1 or b"asks for OpenCV 9" not in again.stdout:
         return [f"a second run: status {again.returncode}: {again.stderr[-200:]!r}"]
     return []
 
@@ -267,7 +267,7 @@ def same_answer(place: Place, ended: Ended) -> list[str]:
     text = ended.out.decode("utf-8", "replace")
     missing = [
         word
-        for word in ("asks for 9", "tf2_geometry_msgs.h` is gone", "src/healthy/CMakeLists.txt:4")
+        for word in ("asks for OpenCV 9", "tf2_geometry_msgs.h` is not available", "src/healthy/CMakeLists.txt:4")
         if word not in text
     ]
     return [f"another answer than usual: {missing[0]!r} is missing"] if missing else []

@@ -211,7 +211,7 @@ def test_a_job_that_its_workers_do_not_survive_is_named(start, clones):
     deadly = jobs[0]._replace(name="deadly")
     results = {job.name: result for job, result in done_by(cluster.address, [deadly, jobs[0]])}
     assert results["deadly"] == ({}, ("deadly: every worker that reads it dies, so it is left out",))
-    assert set(results["ros2/rclcpp"].packages) == {"rclcpp"}
+    assert set(results["ros2/rclcpp"].packages) == {("rclcpp", 2)}
 
 
 def test_workers_that_cannot_do_it(start, clones, tmp_path, monkeypatch):
