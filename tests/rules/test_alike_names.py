@@ -9,8 +9,8 @@ from rosimpact.impact.analysis.session import Options
 @pytest.mark.parametrize(
     ("package", "program", "help_"),
     [
-        ("controller_manager", "spawner.py", "it has `spawner`"),
-        ("moveit_servo", "servo_node_main", "it has `servo_node`"),
+        ("controller_manager", "spawner.py", "controller_manager has `spawner`"),
+        ("moveit_servo", "servo_node_main", "moveit_servo has `servo_node`"),
         ("moveit_servo", "fake_command_publisher", ""),
     ],
 )
