@@ -37,6 +37,9 @@ _IMPORT = re.compile(
 # What only type checkers import.
 _FOR_TYPES = re.compile(rb"^if TYPE_CHECKING:\n(?:[ \t]+[^\n]*\n|\n)+", re.MULTILINE)
 _NAME = re.compile(rb"\w+")
+# The bytes of the digest that stands before what is remembered.
+_SEAL = 20
+
 
 class _Keys(msgspec.Struct, frozen=True, array_like=True):
     """What the cache folder holds: a state of the source and of the installed libraries, and the keys by module."""
@@ -118,15 +121,19 @@ def _keys() -> Mapping[str, str]:
     about = f"{_ROOTS} {libraries}".encode("utf-8", "surrogateescape")
     place = os.path.join(cache_folder(), f"code-{hashlib.sha1(about).hexdigest()[:16]}")
     with contextlib.suppress(OSError, msgspec.MsgspecError, ValueError):
-        known = msgspec.msgpack.decode(files.read_file(place, _LARGEST), type=_Keys)
-        if known.state == state:
-            return known.keys
+        data = files.read_file(place, _LARGEST)
+        sealed, packed = data[:_SEAL], data[_SEAL:]
+        if sealed == hashlib.sha1(packed).digest():  # else it was damaged, and modules may be missing
+            known = msgspec.msgpack.decode(packed, type=_Keys)
+            if known.state == state:
+                return known.keys
     sources = {name: files.read_file(path, _LARGEST) for name, path, _ in _sources()}
     keys = keys_of(sources, _version)
     if _state(libraries) == state:  # else a file changed while all were read
         with contextlib.suppress(OSError, UnicodeEncodeError):
             os.makedirs(cache_folder(), exist_ok=True)
-            files.write_file(place, msgspec.msgpack.encode(_Keys(state, keys)))
+            packed = msgspec.msgpack.encode(_Keys(state, keys))
+            files.write_file(place, hashlib.sha1(packed).digest() + packed)
     return keys
 
 

@@ -113,6 +113,15 @@ def test_a_damaged_memory_is_worked_out_again(anew, tmp_path, data):
     assert anew() == first
 
 
+def test_a_memory_with_another_name_in_it_is_worked_out_again(anew, tmp_path):
+    first = anew()
+    (place,) = tmp_path.iterdir()
+    data = place.read_bytes()
+    place.write_bytes(data.replace(b"impact.source_keys", b"impact.source_kezs"))
+    assert place.read_bytes() != data
+    assert anew() == first
+
+
 def test_what_cannot_be_looked_at_is_never_read_back(anew, monkeypatch):
     def fails():
         raise NotADirectoryError(20, "Not a directory")
