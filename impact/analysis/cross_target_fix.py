@@ -103,12 +103,11 @@ def _used(evidence: Evidence, view: View, spoken: frozenset[str]) -> bool | None
 
 def _other(evidence: Evidence, view: View) -> bool | None:
     """Whether the other spelling is there."""
-    if evidence.side == "header":
-        return view.environment.headers(evidence.instead)
-    if evidence.other is None:
-        return None
-    holds = holds_on(evidence.other, view.target, view.providers)
-    return None if holds is None else holds == (evidence.other.change == "added")
+    if evidence.other is not None:
+        holds = holds_on(evidence.other, view.target, view.providers)
+        if holds is not None:
+            return holds == (evidence.other.change == "added")
+    return view.environment.headers(evidence.instead) if evidence.side == "header" else None
 
 
 def _boundary(

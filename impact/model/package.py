@@ -204,6 +204,8 @@ class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     reaches: tuple[tuple[str, tuple[tuple[str, ...], ...]], ...] = ()
     # Of headers: the headers of the package that they include.
     inner: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    # The same, as they are written.
+    written_inner: tuple[tuple[str, tuple[IncludeUse, ...]], ...] = ()
     interfaces: tuple[InterfaceFile, ...] = ()
     syntax: tuple[SyntaxUse, ...] = ()
     headers: tuple[str, ...] = ()
@@ -381,6 +383,14 @@ class _Join:
     def inside(self, path: str) -> str:
         return path[len(self.prefix) :]
 
+    def written_inner(self, path: str) -> tuple[IncludeUse, ...]:
+        """The includes of a header that files of the package answer."""
+        return tuple(
+            IncludeUse(i.path, At(path, i.line, i.column), "", True, i.conditions)
+            for to, i in self.resolved.get(path, ())
+            if to is not None
+        )
+
     def digest(self) -> Digest:
         allows, problems = [], []
         aside = (
@@ -454,6 +464,9 @@ class _Join:
                 (path, inner)
                 for path, found in self.resolved.items()
                 if is_header(path) and (inner := tuple(to for to, _ in found if to is not None))
+            ),
+            written_inner=tuple(
+                (path, written) for path in roles if is_header(path) and (written := self.written_inner(path))
             ),
             interfaces=tuple(interfaces),
             syntax=tuple(syntax),

@@ -24,9 +24,8 @@ Not reported
 import posixpath
 import re
 
-from ...model.cmake.build import At
 from ...model.cmake.installed import installed_headers
-from ...model.package import role_of_folder
+from ...model.package import IncludeUse, role_of_folder
 from ...model.view import View
 from ..rule import Hit, rule
 
@@ -43,19 +42,20 @@ def uninstalled_header(view: View):
             continue
         made = set(package.build.made)
         told = set()
+        written = dict(package.digest.written_inner)
         for path, inner in package.digest.inner:
             place = installed.headers.get(path)
             if place is None or role_of_folder(path[len(package.path) :].lstrip("/")):
                 continue
             lost = [to for to in inner if to not in installed.headers and to not in told and not to.endswith(".in")]
             for to in lost if lost else ():
-                include = _include_of(view, path, to)
+                include = _include_of(view, written.get(path, ()), to)
                 if include is None or to in made or _answered(installed.headers, place, include.path):
                     continue
                 told.add(to)
                 dependants = package.name in view.workspace.includers
                 yield Hit(
-                    At(path, include.line, include.column),
+                    include.at,
                     include.path,
                     f"`{posixpath.basename(path)}` is installed and includes `{include.path}`, which is not",
                     f"install `{to[len(package.path) :].lstrip('/')}`, or include it from sources alone",
@@ -64,11 +64,10 @@ def uninstalled_header(view: View):
                 )
 
 
-def _include_of(view: View, path: str, to: str):
-    """The include in a file that names another file of the package and stands under no condition."""
-    file = view.workspace.gathered.facts(path)
+def _include_of(view: View, includes: tuple[IncludeUse, ...], to: str) -> IncludeUse | None:
+    """The include that names another file of the package and stands under no condition."""
     name = posixpath.basename(to)
-    for include in getattr(file.facts if file is not None else None, "includes", ()):
+    for include in includes:
         if posixpath.basename(include.path) == name and view.certain(include.conditions):
             return include
     return None

@@ -94,13 +94,14 @@ def _ros2(view: View, package, default: int | None):
     if not fixed or not package.build.standard_by_flag or default is None:
         return
     have = standard_year(fixed[0])
+    own = {t.name: standard_year(t.standard) for t in package.build.targets if t.standard}
     standards = standards_asked(view, package)
     newest = view.newest
     for include in package.digest.includes:
         if include.role != "build" or not include.targets or not view.certain(include.conditions):
             continue
-        if any(standards.get(t, 0) > have for t in include.targets):
-            continue
+        if any(own.get(t, 0) > have or standards.get(t, 0) > max(have, default) for t in include.targets):
+            continue  # CMake writes a flag of its own behind
         need = needed_standard(view.target, include.path)
         if need is None or need.package in view.workspace.packages:
             continue

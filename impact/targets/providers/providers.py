@@ -139,6 +139,7 @@ class Providers:
         if not found:
             for other in self._folded_cmake.get(name.lower(), ()):
                 found += self._facts("cmake", other) + self._ros("ros_cmake", other) + self._system("cmake", other)
+                found += self._sought(other)
             found = [provider._replace(sure=False) for provider in found]
         return _once(found)
 
@@ -338,6 +339,9 @@ class Providers:
             "SELECT name FROM cmake UNION SELECT name FROM ros_cmake UNION SELECT name FROM fact WHERE kind = 'cmake'"
         ):
             found.setdefault(name.lower(), []).append(name)
+        for name in self._find_modules:
+            if name.lower() not in found:
+                found[name.lower()] = [name]
         return found
 
     def _open(self) -> sqlite3.Connection:
