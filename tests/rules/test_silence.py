@@ -632,7 +632,7 @@ SILENT = {
         ("jazzy",),
         ament(
             "set(CMAKE_CXX_STANDARD 20)\nadd_library(sled sled.cpp)\ninstall(TARGETS sled DESTINATION lib)",
-            sled_cpp="#include <regex>\nuint8_t length(const std::string & s) { return s.size(); }\n",
+            sled_cpp="#include <memory>\nuint8_t length(const std::string & s) { return s.size(); }\n",
         ),
         ("CMakeLists.txt", "STANDARD 20", "STANDARD 17"),
     ),
