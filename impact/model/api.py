@@ -286,15 +286,6 @@ class Vocabulary:
     def _spaces(self) -> frozenset[str]:
         return frozenset(full.partition("::")[0] for full in self.classes if "::" in full)
 
-    def alias(self, full: str) -> str | None:
-        """What a name of another package stands for, None where it is no alias that is known."""
-        return None
-
-    def result(self, full: str, member: str) -> tuple[str, tuple[str, ...]] | None:
-        """The type of a member of a class of another package, or what it gives back, with the names of the class's
-        template parameters that it may be written with."""
-        return None
-
     def pure(self, full: str) -> tuple[str, ...]:
         """The methods of a class that only some versions make others implement."""
         return self._known[self.classes[full]].pure.get(full, ()) if full in self.classes else ()

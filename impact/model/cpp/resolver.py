@@ -298,9 +298,6 @@ class Resolver:
             for full in meanings:
                 if full in self.vocabulary.classes:
                     return Type(full)
-                meant = self.vocabulary.alias(full)
-                if meant is not None:
-                    return self.type_of(meant, _NOWHERE, depth + 1)
         if self.scope is not None:
             for full in meanings:
                 told = self._interface(full)
@@ -552,7 +549,7 @@ class Resolver:
             return None if found is None else Type("", several=found.several, interface=found.interface,
                                                    section=found.section)  # fmt: skip
         if not type_.own:
-            return self._released(type_, name)
+            return None  # what members of other packages are is not known
         for one in self.line_of_own(type_.name):
             if name in one.members:
                 kind = "function" if called else "variable"
@@ -561,29 +558,11 @@ class Resolver:
                     written = {each.type for each in one.members[name] if each.kind == kind}
                     found = self._substituted(written, one.template, type_.arguments, place)
                 return found
-        for one in self.line_of_own(type_.name):
-            for _, base in self.bases(one):
-                if base is not None and not base.own and base.name:
-                    found = self._released(base, name)
-                    if found is not None:
-                        return found
         return None
 
     def _substituted(self, written: set[str], parameters: tuple[str, ...], arguments: tuple[str, ...], place: Place):
         """A type that is written with the parameters of a template."""
         return self.type_of(_filled_text(written.pop(), parameters, arguments), place) if len(written) == 1 else None
-
-    def _released(self, type_: Type, name: str) -> Type | None:
-        """What a member of a class of another package is."""
-        if self.vocabulary is None:
-            return None
-        told = self.vocabulary.result(type_.name, name)
-        if told is None:
-            return None
-        written, parameters = told
-        if parameters and type_.arguments:
-            return self._substituted({written}, parameters, type_.arguments, _NOWHERE)
-        return self.type_of(written, _NOWHERE)
 
     def _of_call(self, expr: Expr, place: Place, depth: int) -> Type | None:
         callee = expr.parts[0]
@@ -623,12 +602,6 @@ class Resolver:
             for one in self.line_of_own(place.owner):
                 if name in one.members:
                     return self._declared_type(one.members[name], _inside(one), "function")
-            for one in self.line_of_own(place.owner):
-                for _, base in self.bases(one):
-                    if base is not None and not base.own and base.name:
-                        found = self._released(base, name)
-                        if found is not None:
-                            return found
         outer, _, last = name.rpartition("::")
         if outer:
             class_ = self.named(outer, place)
@@ -643,12 +616,6 @@ class Resolver:
         }
         if found:
             return next(iter(found)) if len(found) == 1 else None
-        if self.vocabulary is not None:
-            for full in self.meanings(name, place):
-                owner, _, inner = full.rpartition("::")
-                told = self.vocabulary.result(owner, inner)
-                if told is not None:
-                    return self.type_of(told[0], _NOWHERE)
         return None
 
 
