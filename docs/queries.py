@@ -5,26 +5,41 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
 from rosimpact.impact.facts.manifest import Manifest
+from rosimpact.impact.facts.setup import SetupFile
 from rosimpact.impact.model.cmake.build import Build
+from rosimpact.impact.model.package import Digest
 from rosimpact.impact.model.view import View
-from rosimpact.impact.model.workspace import Workspace
+from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import Diagnostic
 
-START = (View, Workspace, Diagnostic, Manifest, Build)
+START = (View, Package, Digest, Manifest, Build, SetupFile, Workspace, Diagnostic)
 STEPS = 2
 HEAD = """\
 # What a rule can ask
 
 A rule gets a `View`: the workspace (`view.workspace`) as one target (`view.target`) sees it. It yields `Diagnostic`s.
-Of a package, `package.manifest` is what its package.xml says and `package.build` what its CMakeLists.txt or setup.py
-builds. These are their public attributes and methods, and those of the types that they return, each with the first
-sentence of its docstring. What no row explains is explained where the type is defined.
+
+| to know | ask |
+|---|---|
+| which packages to report on, and all of them | `for package in view`, `for package in view.everyone()` |
+| what package.xml says | `package.manifest` |
+| what builds it: `ament_python`, `catkin` ... | `package.build_type` |
+| what CMakeLists.txt builds, installs and exports | `package.build` |
+| what setup.py, setup.cfg and pyproject.toml install | `package.digest.setup` |
+| what its files include and import | `package.digest.includes`, `package.digest.imports` |
+| which programs, files and plugins its launch files and scripts mention | `package.digest.references` |
+| what a package uses of others, with who provides it | `view.needs(package)` |
+| which ROS, which distro, which version of a package or library | `view.target` |
+| whether something outside of the workspace is there | `view.availability(symbol)` |
+
+These are the public attributes and methods of these types and of those that they return. What is not explained here is
+explained where the type is defined.
 """
 
 
@@ -64,7 +79,7 @@ def find_rows(kind: type) -> Iterator[tuple[type, Row]]:
         annotations = vars(owner).get("__annotations__", {})
         for name, gives in annotations.items():
             if not name.startswith("_"):
-                yield owner, Row(name, str(getattr(gives, "__forward_arg__", gives)), "")
+                yield owner, Row(name, name_type(gives), "")
         for name, value in vars(owner).items():
             if name.startswith("_") or name in annotations:
                 continue
@@ -75,6 +90,13 @@ def find_rows(kind: type) -> Iterator[tuple[type, Row]]:
                 function = value.__func__ if isinstance(value, (staticmethod, classmethod)) else value
                 parameters = [each for each in inspect.signature(function).parameters if each not in ("self", "cls")]
                 yield owner, Row(f"{name}({', '.join(parameters)})", returned(function), first_sentence(function))
+
+
+def name_type(annotation: object) -> str:
+    """An annotation as it is written."""
+    if isinstance(annotation, type) and not hasattr(annotation, "__args__"):
+        return annotation.__name__
+    return str(getattr(annotation, "__forward_arg__", annotation))
 
 
 def returned(function: object) -> str:
@@ -89,17 +111,34 @@ def first_sentence(of: object) -> str:
     return (match.group() if match else text).rstrip(".;")
 
 
+def explain(kind: type, names: Collection[str]) -> tuple[str, dict[str, str]]:
+    """The docstring of a type: what it says of the type itself, and of each of these attributes (`name: ...` or
+    `name, other: ...` at the start of a sentence)."""
+    text = " ".join((inspect.getdoc(kind) or "").split()).replace("<", "&lt;")
+    listed = "|".join(map(re.escape, names)) or r"(?!)"
+    marks = list(re.finditer(rf"(?:\A|(?<=[.;:] ))((?:{listed})(?:, (?:{listed}))*): ", text))
+    ends = [*(mark.start() for mark in marks), len(text)]
+    of_each = {
+        name: text[mark.end() : end].strip().rstrip(".;")
+        for mark, end in zip(marks, ends[1:], strict=True)
+        for name in mark[1].split(", ")
+    }
+    return text[: ends[0]].strip(), of_each
+
+
 def print_type(kind: type) -> str:
     """The section of a type."""
     path = "../" + kind.__module__.removeprefix("rosimpact.").replace(".", "/") + ".py"
     if not (Path(__file__).parent / path).exists():
         path = path.removesuffix(".py") + "/__init__.py"
     rows = [row for _, row in find_rows(kind)]
-    lines = [f"\n## `{kind.__name__}`\n", f"{first_sentence(kind)}. Defined in [{path.removeprefix('../')}]({path}).\n"]
+    itself, of_each = explain(kind, [row.use for row in rows if "(" not in row.use])
+    lines = [f"\n## `{kind.__name__}`\n", f"{itself} Defined in [{path.removeprefix('../')}]({path}).\n".lstrip()]
     lines += ["| | gives | |", "|---|---|---|"]
     for row in rows:
         gives = f"`{row.gives}`".replace("|", "\\|") if row.gives else ""
-        lines.append(f"| `{row.use}` | {gives} | {row.says.replace('|', chr(92) + '|')} |")
+        says = row.says or of_each.get(row.use, "")
+        lines.append(f"| `{row.use}` | {gives} | {says.replace('|', chr(92) + '|')} |")
     return "\n".join(lines) + "\n"
 
 

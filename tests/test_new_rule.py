@@ -51,8 +51,9 @@ def test_a_new_rule_finds_what_its_cases_expect(checkout, say, cache, monkeypatc
 @pytest.mark.parametrize(
     ("name", "family", "words"),
     [
-        ("Bad-Name", "api", ("Bad-Name", "small letters with dashes")),
-        ("../bad", "api", ("small letters with dashes",)),
+        ("Bad-Name", "api", ("Bad-Name: not a rule name", "such as bad-name")),
+        ("bad_name", "api", ("such as bad-name",)),
+        ("../bad", "api", ("such as removed-header",)),
         ("bad-name", "qos", ("--family qos: unknown; choose one of api, packages",)),
         ("removed-header", "packages", ("impact/rules/api/removed_header.py: exists",)),
     ],
@@ -66,7 +67,7 @@ def test_what_cannot_be_a_rule_is_named_and_nothing_is_written(name, family, wor
 
 def test_elsewhere_than_in_a_checkout_it_says_where_to_start(tmp_path, say):
     said = say("dev", "new-rule", "bad-name", "--family", "api", "--root", tmp_path)
-    assert said.status == 2 and "start the command where impact/ and tests/ are" in said.err
+    assert said.status == 2 and "run the command where impact/ and tests/ are" in said.err
 
 
 def test_it_is_no_part_of_the_ordinary_help(say):

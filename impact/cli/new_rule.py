@@ -19,7 +19,7 @@ Why it breaks
     What happens to whom, and when: configuring, compiling, linking, installing, starting.
 
 Severity
-    warning. Say when it is graver or milder.
+    warning. Say what makes a finding more or less severe.
 
 Example
     <export><{subject}/></export>
@@ -121,9 +121,11 @@ def write_rule(root: Path, name: str, family: str) -> tuple[Path, Path]:
     """
     rules, cases = root / "impact/rules", root / "tests/rules"
     if not rules.is_dir() or not cases.is_dir():
-        raise UserError(f"{root}: no checkout of rosimpact; start the command where impact/ and tests/ are")
+        raise UserError(f"{root}: not a checkout of rosimpact; run the command where impact/ and tests/ are")
     if not _NAME.fullmatch(name):
-        raise UserError(f"{name}: no name of a rule; write words of small letters with dashes, as removed-header")
+        example = name.lower().replace("_", "-").replace(" ", "-")
+        example = example if _NAME.fullmatch(example) else "removed-header"
+        raise UserError(f"{name}: not a rule name; write lower-case words joined by dashes, such as {example}")
     families = sorted(folder.parent.name for folder in rules.glob("*/__init__.py"))
     if family not in families:
         raise UserError(f"--family {family}: unknown; choose one of {', '.join(families)}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import msgspec
@@ -25,7 +25,8 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     os.path.join(...) of literals become a pattern such as `launch/*.launch.py`. scripts, packages: as written, `*` when
     find_packages. requires: install_requires names. unresolved: what was not a literal, in one clause each.
     python: of a setup.py, its imports and syntax like those of any Python file.
-    install_scripts: of a setup.cfg, where executables go (`$base/lib/package`, without which `ros2 run` misses them).
+    script_folders: (command, folder, line) of the commands `install` and `develop` (--symlink-install): where programs
+    are installed, as written (`$base/lib/package`, without which `ros2 run` does not find them).
     """
 
     packages: tuple[str, ...] = ()
@@ -37,7 +38,7 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     unresolved: tuple[str, ...] = ()
     problems: tuple[Problem, ...] = ()
     python: PythonFile | None = None
-    install_scripts: str = ""
+    script_folders: tuple[tuple[str, str, int], ...] = ()
 
 
 def extract(data: bytes, kind: str) -> SetupFile:
@@ -54,6 +55,8 @@ def extract(data: bytes, kind: str) -> SetupFile:
 _TOO_DEEP = Problem(1, "nested too deeply to be read")
 REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)")
 ENTRY_POINT = re.compile(r"\s*([^=\s][^=]*)=\s*([\w.]+)(?:\s*:[\w.]+)?(?:\s*\[.*\])?\s*\Z")
+# What each command of setuptools calls the folder that it installs programs into.
+_FOLDER_OPTIONS = {"install": "install_scripts", "develop": "script_dir"}
 SETUP_CALLS = frozenset({"setup", "generate_distutils_setup"})
 
 
@@ -134,7 +137,8 @@ class _Reader(Constants):
             tuple(self.data_files(given.get("data_files"))),
             tuple(self.strings("scripts")),
             tuple(_requirements(self.strings("install_requires"))),
-            tuple(self.unresolved),
+            script_folders=tuple(self.script_folders(given.get("options"))),
+            unresolved=tuple(self.unresolved),
         )
 
     def strings(self, argument: str) -> list[str]:
@@ -174,6 +178,20 @@ class _Reader(Constants):
         elif isinstance(value, Unresolved):
             self.unresolved.append(f"entry_points: {value.what}")
         return found
+
+    def script_folders(self, value: Any) -> Iterator[tuple[str, str, int]]:
+        """Of setup(options={"install": {"install_scripts": ...}})."""
+        if isinstance(value, Unresolved):
+            self.unresolved.append(f"options: {value.what}")
+        if not isinstance(value, dict):
+            return
+        for command, option in _FOLDER_OPTIONS.items():
+            options = value.get(command)
+            folder = options.get(option) if isinstance(options, dict) else options
+            if isinstance(folder, str):
+                yield command, str(folder), getattr(folder, "line", 1)
+            elif isinstance(folder, Unresolved):
+                self.unresolved.append(f"options: {folder.what}")
 
     def data_files(self, value: Any) -> list[tuple[str, str, int]]:
         found: list[tuple[str, str, int]] = []
@@ -248,14 +266,12 @@ def _setup_cfg(data: bytes) -> SetupFile:
     if parser.has_section("options.data_files"):
         for destination in parser.options("options.data_files"):
             files.extend((destination, f, lines.of(f, destination)) for f in entries("options.data_files", destination))
-    scripts_to = next(
-        (
-            parser.get("install", o) or ""
-            for o in ("install_scripts", "install-scripts")
-            if parser.has_option("install", o)
-        ),
-        "",
-    )
+    folders = [
+        (command, (parser.get(command, option) or "").strip(), lines.of(option))
+        for command, wanted in _FOLDER_OPTIONS.items()
+        for option in (parser.options(command) if parser.has_section(command) else ())
+        if option.replace("-", "_") == wanted
+    ]
     return SetupFile(
         tuple(packages + entries("options", "py_modules")),
         directories,
@@ -263,7 +279,7 @@ def _setup_cfg(data: bytes) -> SetupFile:
         tuple(files),
         tuple(entries("options", "scripts")),
         tuple(_requirements(entries("options", "install_requires"))),
-        install_scripts=scripts_to.strip(),
+        script_folders=tuple(folder for folder in folders if folder[1]),
     )
 
 
@@ -292,6 +308,12 @@ def _pyproject(data: bytes) -> SetupFile:
         for destination, patterns in _table(setuptools, "data-files").items()
         for file in _texts(patterns)
     ]
+    folders = [
+        (command, folder, lines.of(option))
+        for command, wanted in _FOLDER_OPTIONS.items()
+        for option, folder in _table(document, "tool", "distutils", command).items()
+        if option.replace("-", "_") == wanted and isinstance(folder, str)
+    ]
     return SetupFile(
         ("*",) if isinstance(packages, dict) else (*_texts(packages), *_texts(setuptools.get("py-modules"))),
         {k: v for k, v in _table(setuptools, "package-dir").items() if isinstance(v, str)},
@@ -299,6 +321,7 @@ def _pyproject(data: bytes) -> SetupFile:
         tuple(files),
         tuple(_texts(setuptools.get("script-files"))),
         tuple(_requirements(_texts(project.get("dependencies")))),
+        script_folders=tuple(folders),
     )
 
 

@@ -186,7 +186,13 @@ class SettingUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Digest(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """All that rules ask of one package."""
+    """All that rules ask of one package. Paths are relative to the workspace.
+
+    path: the package's folder, empty for the workspace itself. includes: of C++ files. imports: of Python files, those
+    that no module of the package answers. references: what launch files, scripts and URDF mention, of other packages
+    and of this one. setup: each setup.py, setup.cfg and pyproject.toml with its path, also those in folders below.
+    mains: C++ files with a main(). scripts: Python files whose first line names an interpreter.
+    """
 
     name: str
     path: str

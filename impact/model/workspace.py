@@ -38,7 +38,19 @@ _ALONE_FILES = 100
 
 
 class Package:
-    """A package of the workspace: its digest, with indices made when first asked for."""
+    """A package of the workspace: its digest, with indices made when first asked for.
+
+    digest: all that was read of its files. path: its folder, relative to the workspace and empty for the workspace
+    itself. manifest: what package.xml says. build: what CMakeLists.txt builds, installs and exports. build_type:
+    `catkin`, `ament_cmake`, `ament_python`, `cmake` ..., for the generation of the workspace.
+    """
+
+    digest: Digest
+    name: str
+    path: str
+    manifest: Manifest
+    build: Build
+    build_type: str
 
     def __init__(self, digest: Digest):
         self.digest = digest
@@ -64,10 +76,12 @@ class Package:
 
     @cached_property
     def files(self) -> frozenset[str]:
+        """Paths of its files, relative to the workspace."""
         return frozenset(self.digest.files)
 
     @cached_property
     def folders(self) -> frozenset[str]:
+        """Paths of the folders of its files, relative to the workspace."""
         found = set()
         for path in self.digest.files:
             while "/" in path:

@@ -91,6 +91,10 @@ GIVEN = [
     ("setup(entry_points='''\n[console_scripts]\na = b.c:main\n''')", "entry_points", (("a", "b.c", 3),)),
     ("setup(entry_points={'gui_scripts': ['a=b:c [x]']})", "entry_points", (("a", "b", 1),)),
     ("setup(entry_points={'ros2cli.command': ['a=b:c']})", "entry_points", ()),
+    ("setup(options={'install': {'install_scripts': 'a'},\n'develop': {'script_dir': 'b', 'user': True}})",
+     "script_folders", (("install", "a", 1), ("develop", "b", 2))),
+    ("setup(options={'develop': read(), 'build': {}})", "unresolved", ("options: `read()`",)),
+    ("setup(options=read())", "unresolved", ("options: `read()`",)),
     ("print 'a'\nsetup(packages=['b'])", "packages", ("b",)),  # as Python 2 has it
     ("setup(**read())", "unresolved", ("arguments are `read()`",)),
 ]  # fmt: skip
@@ -153,7 +157,7 @@ def test_setup_cfg():
         ("share/walker/launch", "launch/a.py", 20),
         ("share/walker/launch", "launch/b.py", 21),
     )
-    assert facts.install_scripts == "$base/lib/walker"
+    assert facts.script_folders == (("install", "$base/lib/walker", 6), ("develop", "$base/lib/walker", 4))
 
 
 PYPROJECT = """\
@@ -168,6 +172,8 @@ package-dir = {"" = "src"}
 script-files = ["bin/x"]
 [tool.setuptools.data-files]
 "share/walker" = ["package.xml"]
+[tool.distutils.install]
+install-scripts = "$base/lib/walker"
 """
 
 

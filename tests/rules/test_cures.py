@@ -20,6 +20,7 @@ CURED = (
     "packages/missing_interface_wiring",
     "packages/missing_interface_wiring__group",
     "packages/undeclared_package",
+    "packages/unreachable_script__copied",
     "packages/unresolvable_key",
     "packages/unresolvable_key__spelling",
     "packages/wrong_dependency_kind",

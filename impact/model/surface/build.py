@@ -326,7 +326,8 @@ class _Surface:
 
     def entry_points(self) -> Iterator[Program]:
         files = {path: file for path, file in self.package.digest.setup}
-        place = next((f.install_scripts.removeprefix("$base/") for f in files.values() if f.install_scripts), "bin")
+        folders = (folder for f in files.values() for command, folder, _ in f.script_folders if command == "install")
+        place = next(folders, "bin").removeprefix("$base/")
         for name in ("setup.py", "setup.cfg", "pyproject.toml"):
             file = files.get(f"{self.prefix}{name}")
             if file is None:
