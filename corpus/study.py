@@ -164,7 +164,12 @@ def _execute(path: Path, settings: dict[str, Any], output: Path, progress: Calla
         if cell.cell_type == "code" and sys.stderr.isatty():
             progress(f"    cell {cell_index + 1} of {total}")
 
-    environment = {**os.environ, SETTINGS: json.dumps(settings), "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1"}
+    # Notebooks import the modules that lie beside them.
+    paths = [str(path.parent.resolve()), *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = {
+        **os.environ, SETTINGS: json.dumps(settings), "PYTHONPATH": os.pathsep.join(paths),
+        "PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1",
+    }  # fmt: skip
     failure = ""
     with tempfile.TemporaryDirectory(prefix="rosimpact-") as sockets:
         # No kernel of the user's own: the notebook runs with the Python that runs this. Sockets are files, where files

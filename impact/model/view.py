@@ -734,16 +734,9 @@ class View:
     def _library_names(self) -> frozenset[str]:
         return self.target.library_names()
 
-    @cached_property
-    def _changes(self) -> dict[str, list[Change]]:
-        found: dict[str, list[Change]] = {}
-        for change in self.target.changes():
-            found.setdefault(change.kind, []).append(change)
-        return found
-
     def changes(self, *kinds: str) -> list[Change]:
         """Known upstream changes of these kinds that are in force on the target."""
-        return [c for kind in kinds for c in self._changes.get(kind, ())]
+        return [c for kind in kinds for c in self.target.changes().by_kind.get(kind, ())]
 
     @cached_property
     def horizons(self) -> tuple[Horizon, ...]:

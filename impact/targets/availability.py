@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable
 from functools import cache, cached_property
 from typing import Literal, NamedTuple
 
-from .changes import DISTROS, Row, all_rows, changes_in_force, reached, version_of
+from .changes import DISTROS, Row, all_rows, reached, version_of
 from .distro.known import known_distros
 from .evidence import Evidence, evidence_of, of_offered
 from .providers.providers import Providers, default_providers
@@ -23,7 +23,6 @@ from .surface.fields import before, default_fields, there
 from .surface.offers import Offer, Offered, Offers
 from .surface.surface import BuildSurface
 from .target import Change, Target
-from .uses import uses_in_force
 
 State = Literal["present", "removed", "not yet", "changed", "deprecated", "upcoming", "unknown"]
 
@@ -141,15 +140,21 @@ def coming_changes(target: Target, ahead: Horizon) -> tuple[Change, ...]:
     """Reviewed changes that remove something on a horizon which a target has: of packages and libraries that are
     there in another version."""
 
+    here = target.changes().removed
+
     @cache
     def moves(package: str, library: bool) -> bool:
         if ahead.platform and not library:
             return False
         return version_of(package, library, target) != version_of(package, library, ahead.target)
 
-    here = {(c.kind, c.package, c.old) for c in target.changes() if c.state == "removed"}
-    found = (*changes_in_force(ahead.target, asked=moves), *uses_in_force(ahead.target, moves))
-    return tuple(c for c in found if c.state == "removed" and (c.kind, c.package, c.old) not in here)
+    return tuple(
+        change
+        for change in ahead.target.changes()
+        if change.state == "removed"
+        and (change.kind, change.package, change.old) not in here
+        and moves(change.package, change.library)
+    )
 
 
 class Availabilities:
@@ -349,7 +354,7 @@ class Availabilities:
     def _reviewed(self, symbol: Symbol) -> Availability | None:
         name = symbol.name.lower() if symbol.kind == "command" else symbol.name
         for kind in _ROWS.get(symbol.kind, ()):
-            for change in self._rows.get((kind, name), ()):
+            for change in self.target.changes().by_name.get((kind, name), ()):
                 if not symbol.packages or change.library or change.package in symbol.packages:
                     return of_row(symbol, change)
         for row in _removals().get(name, ()):
@@ -359,15 +364,6 @@ class Availabilities:
             if version and not reached(row.removed_in, version, self.target):
                 return Availability(symbol, "present", row.package, version, library=True)
         return None
-
-    @cached_property
-    def _rows(self) -> dict[tuple[str, str], list[Change]]:
-        found: dict[tuple[str, str], list[Change]] = {}
-        for change in self.target.changes():
-            name = change.new if change.state == "absent" else change.old
-            name = name.lower() if change.kind.startswith("cmake") and "::" not in name else name
-            found.setdefault((change.kind, name), []).append(change)
-        return found
 
 
 @cache

@@ -7,7 +7,6 @@ for headers of ROS packages whose source trees are in the provider table, by wha
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from typing import Literal, NamedTuple
 
@@ -162,24 +161,22 @@ DISTROS: dict[str, int] = {
 State = Literal["removed", "deprecated", "absent"]
 
 
-Asked = Callable[[str, bool], bool]
-"""Whether rows on a package, or on a platform library (True), are asked for."""
-
-
-def changes_in_force(
-    target: Target, providers: Providers | None = None, asked: Asked | None = None
-) -> tuple[Change, ...]:
+def changes_in_force(target: Target, providers: Providers | None = None) -> tuple[Change, ...]:
     """Known changes that hold on a target, deprecations and not yet existing new names included.
 
-    asked: without it, all rows are. A row whose package or library the target does not have, or has in an unknown
-    version, is left out, except for packages that are themselves gone.
+    A row whose package or library the target does not have, or has in an unknown version, is left out, except for
+    packages that are themselves gone.
     """
     table = providers or default_providers()
     found = []
+    versions: dict[tuple[str, bool, bool], str | None] = {}
     for row in all_rows():
-        if (row.ros and row.ros != target.ros) or (asked is not None and not asked(row.package, row.library)):
+        if row.ros and row.ros != target.ros:
             continue
-        version = version_of(row.package, row.library, target, bool(row.last_in))
+        owner = row.package, row.library, bool(row.last_in)
+        if owner not in versions:
+            versions[owner] = version_of(row.package, row.library, target, bool(row.last_in))
+        version = versions[owner]
         if not version:
             if row.kind in ("package-removed", "package-renamed") and reached(row.removed_in, "", target):
                 found.append(_change(row, "removed", ""))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
@@ -57,6 +58,33 @@ class Change(NamedTuple):
     since: str
     source: str
     library: bool = False
+
+
+class ChangeTable(tuple[Change, ...]):
+    """The changes that are in force on a target, in order, and by what they are asked for."""
+
+    @cached_property
+    def by_kind(self) -> dict[str, list[Change]]:
+        """The changes of each kind."""
+        found: dict[str, list[Change]] = {}
+        for change in self:
+            found.setdefault(change.kind, []).append(change)
+        return found
+
+    @cached_property
+    def by_name(self) -> dict[tuple[str, str], list[Change]]:
+        """The changes by kind and the name that the target does not have, or warns of; CMake commands in lower case."""
+        found: dict[tuple[str, str], list[Change]] = {}
+        for change in self:
+            name = change.new if change.state == "absent" else change.old
+            name = name.lower() if change.kind.startswith("cmake") and "::" not in name else name
+            found.setdefault((change.kind, name), []).append(change)
+        return found
+
+    @cached_property
+    def removed(self) -> frozenset[tuple[str, str, str]]:
+        """Kind, package and old name of what is removed."""
+        return frozenset((c.kind, c.package, c.old) for c in self if c.state == "removed")
 
 
 class Target(Protocol):
@@ -174,7 +202,7 @@ class Target(Protocol):
         """How the target stands to a package, header, name, CMake name, program, plugin, field or parameter."""
         ...
 
-    def changes(self) -> tuple[Change, ...]:
+    def changes(self) -> ChangeTable:
         """Known upstream changes that are in force here, deprecations included."""
         ...
 

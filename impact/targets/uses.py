@@ -13,7 +13,7 @@ import msgspec
 
 from ..facts.usage import Pattern
 from . import behaviour
-from .changes import Asked, reached, version_of
+from .changes import reached, version_of
 from .snapshot import DATA, SnapshotError
 from .target import Change, Target
 
@@ -123,12 +123,10 @@ def _functions() -> dict[str, str]:
     return {row.label: row.pattern.word for row in all_uses() if row.pattern.calls}
 
 
-def uses_in_force(target: Target, asked: Asked | None = None) -> tuple[Change, ...]:
-    """Uses that a target does not take: state `removed` for no longer, `absent` for not yet. asked: see changes.py."""
+def uses_in_force(target: Target) -> tuple[Change, ...]:
+    """Uses that a target does not take: state `removed` for no longer, `absent` for not yet."""
     found = []
     for row in all_uses():
-        if asked is not None and not asked(row.package, row.library):
-            continue
         version = version_of(row.package, row.library, target, bool(row.last_in))
         if not version:
             continue

@@ -20,7 +20,7 @@ from ....edges.console import UserError
 from .. import snapshot as snapshots
 from ..platform import library_name, normal_platform, python_minor
 from ..snapshot import KINDS, Snapshot
-from ..target import Change, ReleasedDependency, Resolution, Target
+from ..target import Change, ChangeTable, ReleasedDependency, Resolution, Target
 from ..version import number_of
 from .known import DistroFacts, _upstream, day_of, end_of_day, known_distros
 from .rosdep import decode_rule, resolve_rule, split_platform
@@ -56,6 +56,11 @@ def version_key(version: str) -> list[int]:
 
 # Letters of KINDS for what is installed along with a package.
 _COMES_ALONG = frozenset("eox")
+
+
+_MOST_TABLES = 32
+_tables: dict[str, ChangeTable] = {}
+"""What DistroTarget.changes() worked out last in this process, by the identity of the target."""
 
 
 class DistroTarget(Target):
@@ -113,7 +118,7 @@ class DistroTarget(Target):
         self._all_keys: dict[str, Resolution] | None = None
         self._by_debian: dict[str, tuple[str, ...]] | None = None
         self._with_manifests: bool | None = None
-        self._changes: tuple[Change, ...] | None = None
+        self._changes: ChangeTable | None = None
         self._availabilities: Availabilities | None = None
 
     def __reduce__(self):
@@ -649,11 +654,15 @@ class DistroTarget(Target):
 
     def has_changes(self) -> bool:
         """True when changes() answers without working them out."""
-        return self._changes is not None
+        return self._changes is not None or self.identity() in _tables
 
     def set_changes(self, changes: tuple[Change, ...]) -> None:
         """What changes() is to answer, worked out by an earlier run on the same data."""
-        self._changes = changes
+        self._changes = ChangeTable(changes)
+        if self._data is snapshots.default():
+            _tables[self.identity()] = self._changes
+            if len(_tables) > _MOST_TABLES:
+                del _tables[next(iter(_tables))]
 
     def availability(self, symbol: Symbol) -> Availability:
         if self._availabilities is None:
@@ -662,14 +671,14 @@ class DistroTarget(Target):
             self._availabilities = Availabilities(self)
         return self._availabilities.on_horizon(symbol)
 
-    def changes(self) -> tuple[Change, ...]:
+    def changes(self) -> ChangeTable:
         if self._changes is None:
             from ..changes import changes_in_force
             from ..uses import uses_in_force
 
-            found: tuple[Change, ...] = (*changes_in_force(self), *uses_in_force(self))
-            self._changes = found
-            return found
+            self._changes = _tables.get(self.identity()) if self._data is snapshots.default() else None
+            if self._changes is None:
+                self.set_changes((*changes_in_force(self), *uses_in_force(self)))
         return self._changes
 
 

@@ -3,11 +3,15 @@
 import datetime
 import json
 import sqlite3
+import sys
+from pathlib import Path
 
 import pytest
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
-from rosimpact.impact.targets.distro.history import Behind, Graph, History, Life, Sync, behind, kind_of_step, lags
 from rosimpact.impact.targets.snapshot import FACT_SCHEMA, SCHEMA
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "notebooks"))
+from distro_history import Behind, Graph, History, Life, Sync, behind, kind_of_step, lags
 
 
 @pytest.mark.parametrize(
