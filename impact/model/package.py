@@ -16,12 +16,12 @@ import msgspec
 from ..facts.condition import Condition
 from ..facts.cpp import CppFile, Include
 from ..facts.interface import Interface
-from ..facts.launch import PluginClass
-from ..facts.launch_actions import LaunchFile
+from ..facts.launch.actions import LaunchFile
+from ..facts.launch.references import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
-from ..facts.python import PythonFile
-from ..facts.python_objects import PythonUse
+from ..facts.python.source import PythonFile
+from ..facts.python.uses import PythonUse
 from ..facts.searches import DeclaredCpp, SearchedCpp, WordUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, Table

@@ -3,8 +3,8 @@
 import msgspec
 import pytest
 import zstandard
-from rosimpact.impact.facts import python_interfaces
 from rosimpact.impact.facts.cpp.code import Code
+from rosimpact.impact.facts.python import interfaces as python_interfaces
 from rosimpact.impact.model.cpp.resolver import Known, Resolver
 from rosimpact.impact.model.cpp.uses import MemberUses
 from rosimpact.impact.model.members import Scope, interface_named, interfaces_included

@@ -8,9 +8,9 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ...facts.flow_launch import substitutions
-from ...facts.flow_parameters import Entry, scalar
-from ...facts.launch_actions import Action, Piece, Value, literal
+from ...facts.launch.actions import Action, Piece, Value, literal
+from ...facts.launch.flow import substitutions
+from ...facts.launch.parameter_files import Entry, scalar
 from .result import At, Remap, Setting, SettingFile, Sources, Unresolved
 from .text import (
     CannotTell,

@@ -14,9 +14,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ...facts.flow_parameters import Entry
-from ...facts.flow_parameters import extract as parameters
-from ...facts.launch_actions import Action, Condition, LaunchFile, literal, plain
+from ...facts.launch.actions import Action, Condition, LaunchFile, literal, plain
+from ...facts.launch.parameter_files import Entry
+from ...facts.launch.parameter_files import extract as parameters
 from ..flow.names import canonical, ros2_rule
 from .fill import Filling, Scope
 from .result import (

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ...facts.python import PythonFile
-from ...facts.python_interfaces import ELEMENT, KINDS, MemberUse
+from ...facts.python.interfaces import ELEMENT, KINDS, MemberUse
+from ...facts.python.source import PythonFile
 from ...targets.surface.fields import Fields
 from ..members import Found, Interface, Scope, Type, interfaces_imported, section_of
 

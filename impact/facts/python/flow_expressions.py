@@ -13,10 +13,10 @@ import ast
 from collections.abc import Callable
 from itertools import pairwise
 
-from .flow import Access, Assignment, Call, Expr, Member, Parameter
-from .flow_python_body import Body, ClassBody
-from .flow_python_reading import ANY, LONGEST_OTHER
-from .flow_python_strings import Strings
+from ..flow import Access, Assignment, Call, Expr, Member, Parameter
+from .flow_body import Body, ClassBody
+from .flow_reading import ANY, LONGEST_OTHER
+from .flow_strings import Strings
 
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500

@@ -6,13 +6,13 @@ import ast
 import re
 from collections.abc import Callable, Iterator
 
-from .flow import Access, Alias, Assignment, Expr, FlowFile
-from .flow_python_body import Body, ClassBody
-from .flow_python_conditions import EXITS, JUMPS, STAYS, Condition, Leaving, Test, breaks, either, test, within
-from .flow_python_expressions import Expressions
-from .flow_python_reading import ANY
-from .place import Problem
-from .python import Source, read
+from ..flow import Access, Alias, Assignment, Expr, FlowFile
+from ..place import Problem
+from .flow_body import Body, ClassBody
+from .flow_conditions import EXITS, JUMPS, STAYS, Condition, Leaving, Test, breaks, either, test, within
+from .flow_expressions import Expressions
+from .flow_reading import ANY
+from .source import Source, read
 
 _OPERATORS = {
     ast.Add: "+=", ast.Sub: "-=", ast.Mult: "*=", ast.Div: "/=", ast.FloorDiv: "//=", ast.Mod: "%=", ast.Pow: "**=",

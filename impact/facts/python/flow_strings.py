@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 
-from .flow import Expr
-from .flow_python_reading import ANY, LONGEST_OTHER, Reading
-from .flow_python_text import format_pieces, percent_pieces, printable
+from ..flow import Expr
+from .flow_reading import ANY, LONGEST_OTHER, Reading
+from .text import format_pieces, percent_pieces, printable
 
 
 class Strings(Reading):

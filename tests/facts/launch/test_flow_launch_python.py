@@ -3,9 +3,9 @@
 import textwrap
 
 import pytest
-from rosimpact.impact.facts.flow_launch import extract
-from rosimpact.impact.facts.flow_launch_python import MOST_STEPS
-from rosimpact.impact.facts.launch_actions import LaunchFile, plain
+from rosimpact.impact.facts.launch.actions import LaunchFile, plain
+from rosimpact.impact.facts.launch.flow import extract
+from rosimpact.impact.facts.launch.python import MOST_STEPS
 
 
 def said(value):

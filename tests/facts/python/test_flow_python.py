@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.impact.facts.flow import FlowFile
-from rosimpact.impact.facts.flow_python import extract
+from rosimpact.impact.facts.python.flow import extract
 
 
 def facts(text):

@@ -10,8 +10,12 @@ import ast
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from .flow_launch_calls import MAKERS, MOST_TURNS, Call
-from .flow_launch_values import (
+from ..place import Problem
+from ..python.source import read
+from .actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, plain, together
+from .parameter_files import DEEPEST
+from .python_calls import MAKERS, MOST_TURNS, Call
+from .python_values import (
     Asked,
     Class,
     Constant,
@@ -38,10 +42,6 @@ from .flow_launch_values import (
     place_in,
     source_of,
 )
-from .flow_parameters import DEEPEST
-from .launch_actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, plain, together
-from .place import Problem
-from .python import read
 
 MOST_STEPS = 200_000
 STEPS = f"takes more than {MOST_STEPS} steps"

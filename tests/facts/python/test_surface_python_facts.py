@@ -6,7 +6,7 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.surface_python import ModuleSurface, extract
+from rosimpact.impact.facts.python.surface import ModuleSurface, extract
 
 
 def surface(text):

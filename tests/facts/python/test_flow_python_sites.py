@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.facts.flow_python import extract
+from rosimpact.impact.facts.python.flow import extract
 
 READ = [
     json.loads(line) for line in (Path(__file__).parent / "data" / "python_sites_read.jsonl").read_text().splitlines()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from .flow import Access, Assignment, Call, Class, Expr, Function, Guard, Member, Parameter
+from ..flow import Access, Assignment, Call, Class, Expr, Function, Guard, Member, Parameter
 
 
 class ClassBody:

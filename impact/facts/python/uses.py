@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import msgspec
 
-from .condition import Condition
-from .python_values import Scope, Values
+from ..condition import Condition
+from .values import Scope, Values
 
 
 class Given(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 import msgspec
 
-from .condition import Condition
-from .place import Problem, Reference
-from .python_objects import SURE_TO_RUN, Objects
-from .python_values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, VALUED, WRAPPERS, PackagePath, Scope
+from ..condition import Condition
+from ..place import Problem, Reference
+from .uses import SURE_TO_RUN, Objects
+from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, VALUED, WRAPPERS, PackagePath, Scope
 
 
 class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):

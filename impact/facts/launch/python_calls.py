@@ -11,7 +11,8 @@ import json
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .flow_launch_values import (
+from .actions import Action, Condition, Piece, Value, literal, named, other, plain, together
+from .python_values import (
     NOTHING,
     Asked,
     Constant,
@@ -31,10 +32,9 @@ from .flow_launch_values import (
     folder_of,
     source_of,
 )
-from .launch_actions import Action, Condition, Piece, Value, literal, named, other, plain, together
 
 if TYPE_CHECKING:
-    from .flow_launch_python import Walker
+    from .python import Walker
 
 MOST_TURNS = 200
 

@@ -4,10 +4,10 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.impact.facts.flow_launch import extract, substitutions, words
-from rosimpact.impact.facts.flow_parameters import ParameterFile, scalar
-from rosimpact.impact.facts.flow_parameters import extract as parameters
-from rosimpact.impact.facts.launch_actions import LaunchFile, Piece, plain
+from rosimpact.impact.facts.launch.actions import LaunchFile, Piece, plain
+from rosimpact.impact.facts.launch.flow import extract, substitutions, words
+from rosimpact.impact.facts.launch.parameter_files import ParameterFile, scalar
+from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 
 
 def said(value):

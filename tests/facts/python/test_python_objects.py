@@ -3,9 +3,9 @@
 import textwrap
 
 import pytest
-from rosimpact.impact.facts.launch import extract as extract_launch
-from rosimpact.impact.facts.python import extract
-from rosimpact.impact.facts.python_objects import Given, PythonUse
+from rosimpact.impact.facts.launch.references import extract as extract_launch
+from rosimpact.impact.facts.python.source import extract
+from rosimpact.impact.facts.python.uses import Given, PythonUse
 
 
 def uses(source: str) -> list[PythonUse]:

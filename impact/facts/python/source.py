@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import msgspec
 
+from ..markup import text_encoding
+from ..place import Problem, Reference
+from ..words import words_of
 from . import python2
-from .markup import text_encoding
-from .place import Problem, Reference
-from .python_objects import PythonUse
-from .python_tree import TRY, Attribute, Import, Reader
-from .words import words_of
+from .reader import TRY, Attribute, Import, Reader
+from .uses import PythonUse
 
 
 class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):

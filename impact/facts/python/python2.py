@@ -5,7 +5,7 @@ Sources: the lists of syntax changes in "What's New In Python 3.0" and 3.7; PEP 
 
 import re
 
-from .place import Problem
+from ..place import Problem
 
 # Strings and comments, blanked before anything is looked for. A prefix stays, so that ur"" is seen.
 _HIDDEN = re.compile(

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable, Iterator
 
 import msgspec
 
-from .flow_python_text import Text
-from .place import Problem
-from .python import read
+from ..place import Problem
+from .source import read
+from .text import Text
 
 KINDS = frozenset(("msg", "srv", "action"))
 SECTIONS = frozenset(("Request", "Response", "Goal", "Result", "Feedback"))

@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.launch import PluginClass, extract
+from rosimpact.impact.facts.launch.references import PluginClass, extract
 from rosimpact.impact.facts.place import Reference
 
 

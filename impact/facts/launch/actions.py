@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import msgspec
 
-from .place import Problem
+from ..place import Problem
 
 
 class Piece(msgspec.Struct, frozen=True, array_like=True, gc=False):

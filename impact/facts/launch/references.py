@@ -10,9 +10,9 @@ from typing import Any
 import msgspec
 from msgspec import structs
 
-from .markup import TOKEN, Attribute, Document, Element, decode, line_starts, scan, well_formed
-from .place import Problem, Reference
-from .words import words_of
+from ..markup import TOKEN, Attribute, Document, Element, decode, line_starts, scan, well_formed
+from ..place import Problem, Reference
+from ..words import words_of
 
 
 class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):

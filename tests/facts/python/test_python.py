@@ -6,7 +6,7 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.python import PythonFile, extract
+from rosimpact.impact.facts.python.source import PythonFile, extract
 
 
 def conditions_of(item):

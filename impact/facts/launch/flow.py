@@ -10,10 +10,10 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from .flow_parameters import DEEPEST, MOST_ENTRIES, YamlNode, yaml_tree
-from .launch_actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, together
-from .markup import TOKEN, Document, Element, decode, scan, unescape
-from .place import Problem
+from ..markup import TOKEN, Document, Element, decode, scan, unescape
+from ..place import Problem
+from .actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, together
+from .parameter_files import DEEPEST, MOST_ENTRIES, YamlNode, yaml_tree
 
 
 def extract(data: bytes, kind: str) -> LaunchFile:
@@ -21,7 +21,7 @@ def extract(data: bytes, kind: str) -> LaunchFile:
     it. Never raises."""
     kind = kind.removeprefix("flow_")
     if kind == "launch_python":
-        from .flow_launch_python import extract as extract_python
+        from .python import extract as extract_python
 
         return extract_python(data)
     try:

@@ -7,7 +7,7 @@ import ast
 import re
 from typing import NamedTuple
 
-from .condition import Condition
+from ..condition import Condition
 
 # Functions and launch substitutions whose first argument is a package's name.
 PACKAGE_CALLS = frozenset(

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from .launch_actions import Condition, Piece, Value, literal
+from .actions import Condition, Piece, Value, literal
 
 
 class TooMuch(Exception):

@@ -8,8 +8,8 @@ from typing import Any
 
 import msgspec
 
-from .markup import decode
-from .place import Problem
+from ..markup import decode
+from ..place import Problem
 
 
 class Entry(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
-from .condition import Condition
-from .place import Problem
-from .python import read
-from .python_tree import EXCEPT, TRY
+from ..condition import Condition
+from ..place import Problem
+from .reader import EXCEPT, TRY
+from .source import read
 
 
 class Parameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -109,7 +109,7 @@ def is_private(part: str) -> bool:
 
 
 def extract(data: bytes) -> ModuleSurface:
-    """What a Python source offers; Python 2 as far as facts/python2.py rewrites it. Never raises.
+    """What a Python source offers; Python 2 as far as python2.py rewrites it. Never raises.
 
     A source that does not parse gives nothing, with `parsed` False.
     """

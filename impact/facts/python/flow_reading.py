@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 
-from .flow import Access, Assignment, Call, Expr, Guard, Member
-from .flow_python_body import Body, ClassBody
-from .flow_python_text import Text, printable
+from ..flow import Access, Assignment, Call, Expr, Guard, Member
+from .flow_body import Body, ClassBody
+from .text import Text, printable
 
 LONGEST_OTHER = 120
 ANY = Expr("other")
