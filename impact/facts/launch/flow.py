@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any
 
-from ..markup import TOKEN, Document, Element, decode, scan, unescape
+from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
 from .actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, together
-from .parameter_files import DEEPEST, MOST_ENTRIES, YamlNode, yaml_tree
+from .documents import launch_document
+from .parameter_files import DEEPEST
 
 
 def extract(data: bytes, kind: str) -> LaunchFile:
@@ -25,7 +25,7 @@ def extract(data: bytes, kind: str) -> LaunchFile:
 
         return extract_python(data)
     try:
-        return _launch_yaml(data) if kind == "launch_yaml" else _launch_xml(data)
+        return _launch(data, kind)
     except RecursionError:
         return LaunchFile(kind.removeprefix("launch_"), 0, (), (Problem(1, "nested too deeply to be read"),))
 
@@ -209,20 +209,30 @@ class _Entity:
         self.text = ""
 
 
-def _launch_xml(data: bytes) -> LaunchFile:
-    document = scan(data)
+def _launch(data: bytes, kind: str) -> LaunchFile:
+    document = launch_document(data, kind)
+    is_yaml = kind == "launch_yaml"
+    language = "yaml" if is_yaml else "xml"
     if not document.elements or document.elements[0].name != "launch":
-        return LaunchFile("xml", 0, (), (*document.problems, Problem(1, "has no `<launch>` element")))
-    generation = _generation(document)
+        lacking = Problem(1, "has no `launch:` list" if is_yaml else "has no `<launch>` element")
+        return LaunchFile(language, 2 if is_yaml else 0, (), (*document.problems, lacking))
+    generation = 2 if is_yaml else _generation(document)
     entities: list[_Entity] = []
     depths: list[int] = []
     problems = list(document.problems)
     for element in document.elements:
         depth = depths[element.parent] + 1 if element.parent >= 0 else 0
-        entity = _Entity(element.name.lower(), document.place(element.offset)[0])
-        # XML's readers make blanks of line ends and tabs in values; the first of two attributes of a name counts.
+        entity = _Entity(element.name if is_yaml else element.name.lower(), document.place(element.offset)[0])
         for attribute in element.attributes:
-            entity.attributes.setdefault(attribute.name, _BLANK.sub(" ", attribute.value))
+            if attribute.listed:
+                items = entity.attributes.setdefault(attribute.name, [])
+                if isinstance(items, list):
+                    items.append(attribute.value)
+            elif is_yaml:
+                entity.attributes[attribute.name] = attribute.value
+            else:
+                # XML's readers make blanks of line ends and tabs in values; the first of two of a name counts.
+                entity.attributes.setdefault(attribute.name, _BLANK.sub(" ", attribute.value))
         entity.text = _own_text(document, element) if element.text and entity.tag == "rosparam" else ""
         entities.append(entity)
         depths.append(depth)
@@ -232,7 +242,7 @@ def _launch_xml(data: bytes) -> LaunchFile:
             entities[element.parent].children.append(entity)
     reader = _Reader(generation)
     actions = reader.actions(entities[0].children)
-    return LaunchFile("xml", generation, actions, (*problems, *reader.problems))
+    return LaunchFile(language, generation, actions, (*problems, *reader.problems))
 
 
 _BLANK = re.compile(r"\r\n|[\r\n\t]")
@@ -466,61 +476,3 @@ def words(value: Value) -> list[Value]:
     if word or begun:
         found.append(together(word))
     return found
-
-
-# YAML
-
-
-def _launch_yaml(data: bytes) -> LaunchFile:
-    root, problems = yaml_tree(decode(data))
-    top = dict(root.value) if root is not None and root.kind == "map" else {}
-    body = top.get("launch")
-    if body is None:
-        return LaunchFile("yaml", 2, (), (*problems, Problem(1, "has no `launch:` list")))
-    reader = _Reader(2)
-    budget = [MOST_ENTRIES]
-    actions = reader.actions(_entities(body, budget))
-    if budget[0] <= 0:
-        problems.append(Problem(1, f"has more than {MOST_ENTRIES} elements"))
-    return LaunchFile("yaml", 2, actions, (*problems, *reader.problems))
-
-
-def _entities(node: YamlNode, budget: list[int]) -> list[_Entity]:
-    """The entities of a list of one-key mappings, or of one mapping."""
-    found: list[_Entity] = []
-    for item in node.value if node.kind == "list" else [node]:
-        if item.kind != "map":
-            continue
-        for tag, body in item.value:
-            budget[0] -= 1
-            if budget[0] <= 0:
-                return found
-            found += _entity(tag, body, budget)
-    return found
-
-
-def _entity(tag: str, body: YamlNode, budget: list[int]) -> list[_Entity]:
-    entity = _Entity(tag, body.line)
-    if body.kind == "list":
-        entity.children = _entities(body, budget)
-    elif body.kind == "map":
-        for key, value in body.value:
-            if value.kind == "scalar":
-                entity.attributes[key] = _as_text(value.value)
-            elif key == "children":
-                entity.children += _entities(value, budget)
-            elif value.kind == "list" and all(item.kind == "scalar" for item in value.value):
-                entity.attributes[key] = [_as_text(item.value) for item in value.value]
-            else:
-                for item in value.value if value.kind == "list" else [value]:
-                    entity.children += _entity(key, item, budget)
-    elif body.value is not None:
-        entity.text = _as_text(body.value)
-    return [entity]
-
-
-def _as_text(value: Any) -> str:
-    """A scalar as launch would write it."""
-    if value is None:
-        return ""
-    return ("true" if value else "false") if isinstance(value, bool) else str(value)

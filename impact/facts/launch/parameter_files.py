@@ -33,14 +33,16 @@ MOST_ENTRIES = 50_000
 
 
 class YamlNode:
-    """A node of a YAML file. value: a scalar's value, the items of a list, or the (key, node) pairs of a mapping."""
+    """A node of a YAML file. value: a scalar's value, the items of a list, or the (key, node) pairs of a mapping. line,
+    offset: where a scalar begins behind its quote; of a block the place of its key."""
 
-    __slots__ = ("height", "kind", "line", "value")
+    __slots__ = ("height", "kind", "line", "offset", "value")
 
-    def __init__(self, kind: str, value: Any, line: int):
+    def __init__(self, kind: str, value: Any, line: int, offset: int = 0):
         self.kind = kind
         self.value = value
         self.line = line
+        self.offset = offset
         self.height = 0
 
 
@@ -88,7 +90,7 @@ def yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     problems: list[Problem] = []
     root: list[YamlNode] = []
-    # Each level: the node, the key that waits for its value, and that key's line, which is also a block's.
+    # Each level: the node, the key that waits for its value, and that key's node, whose place is also a block's.
     levels: list[list[Any]] = []
     anchors: dict[str, YamlNode] = {}
     pending: list[str] = []
@@ -103,11 +105,11 @@ def yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
             above.value.append(node)
         elif key is None:
             levels[-1][1] = str(node.value) if node.kind == "scalar" and node.value is not None else "~"
-            levels[-1][2] = node.line
+            levels[-1][2] = node
             return
         else:
-            if node.kind != "scalar":
-                node.line = min(node.line, levels[-1][2])
+            if node.kind != "scalar" and levels[-1][2].line <= node.line:
+                node.line, node.offset = levels[-1][2].line, levels[-1][2].offset
             above.value.append((key, node))
             levels[-1][1] = None
         above.height = max(above.height, node.height + 1)
@@ -124,7 +126,8 @@ def yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
                 value = scalar(event.value) if bare else _clean(event.value)
                 if event.tag is not None and not is_key:
                     value = _tagged(event.tag, value)
-                node = YamlNode("scalar", value, event.start_mark.line + 1)
+                mark = event.start_mark
+                node = YamlNode("scalar", value, mark.line + 1, mark.index + (event.style in ("'", '"')))
                 if event.anchor:
                     anchors[event.anchor] = node
                 add(node)
@@ -132,7 +135,8 @@ def yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
                 kind = "map" if isinstance(event, yaml.MappingStartEvent) else "list"
                 if len(levels) >= DEEPEST:
                     raise ValueError(f"nested more than {DEEPEST} deep")
-                levels.append([YamlNode(kind, [], event.start_mark.line + 1), None, 0])
+                mark = event.start_mark
+                levels.append([YamlNode(kind, [], mark.line + 1, mark.index), None, None])
                 pending.append(event.anchor or "")
             elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
                 node = levels.pop()[0]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable
+from functools import partial
 
 import msgspec
 from msgspec import structs
@@ -13,6 +13,7 @@ from msgspec import structs
 from ..markup import TOKEN, Attribute, Document, Element, decode, line_starts, scan, well_formed
 from ..place import Problem, Reference
 from ..words import words_of
+from .documents import launch_document
 
 
 class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -141,7 +142,7 @@ def _xml(data: bytes) -> ReferenceFile:
     if root in ("class_libraries", "library"):
         return _plugin_description(data)
     if root == "launch":
-        return _launch_xml(data)
+        return _launch(data)
     if root in ("robot", "sdf", "gazebo", "world", "model"):
         return _robot_description(data)
     return ReferenceFile(())
@@ -154,7 +155,7 @@ def _plugin_xml(data: bytes) -> ReferenceFile:
 def _test(data: bytes) -> ReferenceFile:
     """A .launch or .test file; one that has no <launch> is something else of the same name."""
     if _root(data) == "launch":
-        return _launch_xml(data)
+        return _launch(data)
     document = scan(data)
     return ReferenceFile((), (), document.problems or (Problem(1, "has no `<launch>` element"),))
 
@@ -218,8 +219,10 @@ def _everything(found: _Found, element: Element, conditional: bool) -> None:
 NODES = frozenset({"node", "test", "node_container", "lifecycle_node", "composable_node_container"})
 
 
-def _launch_xml(data: bytes) -> ReferenceFile:
-    document = scan(data)
+def _launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
+    document = launch_document(data, kind)
+    if kind == "launch_yaml" and not document.elements:  # arguments or parameters, called like a launch file
+        return structs.replace(_values(data), problems=document.problems)
     found = _Found(document.place)
     given = _given_to_includes(document)
     for at, (element, conditional) in enumerate(zip(document.elements, _conditional(document), strict=True)):
@@ -228,9 +231,9 @@ def _launch_xml(data: bytes) -> ReferenceFile:
         if name in NODES:
             _node(found, element, conditional)
         elif name in ("composable_node", "load_composable_node"):
-            package, plugin = element.get("pkg"), _attribute(element, "plugin")
+            package, plugin = _package(found, element), _attribute(element, "plugin")
             if plugin is not None and CLASS.match(plugin.value):
-                known = package if PACKAGE.match(package) else ""
+                known = package.value if package is not None else ""
                 found.add("plugin", known, plugin.value, plugin.offset, conditional)
         elif name == "executable":
             _command(found, _attribute(element, "cmd"), conditional)
@@ -260,14 +263,20 @@ def _given_to_includes(document: Document) -> dict[int, tuple[str, ...]]:
     return {at: tuple(names) for at, names in given.items() if not any("$" in name for name in names)}
 
 
-def _node(found: _Found, element: Element, conditional: bool) -> None:
+def _package(found: _Found, element: Element) -> Attribute | None:
+    """The attribute that names an element's package; one that only running tells is unresolved, and None."""
     package = _attribute(element, "pkg")
+    if package is None or PACKAGE.match(package.value):
+        return package
+    if "$" in package.value:
+        found.unresolved.append(Problem(found.place(package.offset)[0], package.value[:80]))
+    return None
+
+
+def _node(found: _Found, element: Element, conditional: bool) -> None:
+    package = _package(found, element)
     executable = _attribute(element, "exec", "type")
     if package is None:
-        return
-    if not PACKAGE.match(package.value):
-        if "$" in package.value:
-            found.unresolved.append(Problem(found.place(package.offset)[0], package.value[:80]))
         return
     if executable is None or "$" in executable.value or not executable.value.strip():
         found.add("package", package.value, "", package.offset, conditional)
@@ -389,7 +398,12 @@ def _plugin_values(found: _Found, text: str, offset: int, conditional: bool) -> 
 
 def _params(data: bytes) -> ReferenceFile:
     if data[:4096].lstrip().startswith(b"launch:"):
-        return _launch_yaml(data)
+        return _launch(data, "launch_yaml")
+    return _values(data)
+
+
+def _values(data: bytes) -> ReferenceFile:
+    """References of YAML that is no launch file."""
     # Most YAML of a workspace (calibration, CI, statistics) mentions nothing; a search is cheaper than a reading.
     if not YAML_WORTH_READING.search(data):
         return ReferenceFile(())
@@ -405,109 +419,6 @@ def _params(data: bytes) -> ReferenceFile:
 
 
 YAML_WORTH_READING = re.compile(rb"plugin|type|adapters|kinematics_solver|_layer|package://|model://|\$\(find")
-
-
-def _launch_yaml(data: bytes) -> ReferenceFile:
-    import yaml
-
-    text = decode(data)
-    found = _Found(lambda _: (1, 1))
-    loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    scalars: list[tuple[Any, int, str, str, int, int]] = []
-    problems: list[Problem] = []
-    try:
-        # Events, not nodes: they cost no recursion, and an alias stays one event whatever it stands for.
-        for mapping, key, value, line, column in _yaml_scalars(yaml.parse(text, loader)):
-            mapping.values[key] = value
-            scalars.append((mapping, len(scalars), key, value, line, column))
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = min(mark.line if mark is not None else 0, text.count("\n")) + 1
-        problems.append(Problem(line, f"not readable as YAML: {getattr(error, 'problem', None) or 'syntax error'}"))
-    except (RecursionError, ValueError) as error:
-        problems.append(Problem(1, f"not readable as YAML: {error}"))
-    for mapping, _, key, value, line, column in scalars:
-        found.place = lambda offset, line=line, column=column: (line, column + offset)
-        conditional = mapping.conditional()
-        package = mapping.values.get("pkg", "")
-        if key == "pkg" and not PACKAGE.match(value):
-            if "$" in value:
-                found.unresolved.append(Problem(line, value[:80]))
-        elif key == "pkg" and "exec" in mapping.values:
-            executable = mapping.values["exec"]
-            if "$" in executable:
-                found.add("package", value, "", 0, conditional)
-            else:
-                found.add("executable", value, executable, 0, conditional)
-        elif key == "plugin" and package and CLASS.match(value):
-            found.add("plugin", package if PACKAGE.match(package) else "", value, 0, conditional)
-        elif key == "cmd" and mapping.name == "executable":
-            _command(found, Attribute("cmd", value, 0), conditional)
-        if any(mark in value for mark in MARKS):
-            found.mentions(value, 0, conditional)
-    return found.file(*problems)
-
-
-DEEPEST = 200
-"""Levels of YAML beyond which nothing is a launch file, and reading becomes slow."""
-
-
-class _Mapping:
-    """A mapping of a YAML file: its key in the mapping around it, and its scalar values."""
-
-    __slots__ = ("_conditional", "name", "parent", "values")
-
-    def __init__(self, name: str, parent: _Mapping | None):
-        self.name = name
-        self.parent = parent
-        self.values: dict[str, str] = {}
-        self._conditional: bool | None = None
-
-    def conditional(self) -> bool:
-        """Whether it or a mapping around it has an `if` or `unless`."""
-        chain: list[_Mapping] = []
-        at: _Mapping | None = self
-        while at is not None and at._conditional is None:
-            chain.append(at)
-            at = at.parent
-        flag = at is not None and bool(at._conditional)
-        for mapping in reversed(chain):
-            flag = flag or "if" in mapping.values or "unless" in mapping.values
-            mapping._conditional = flag
-        return flag
-
-
-def _yaml_scalars(events: Any) -> Iterator[tuple[_Mapping, str, str, int, int]]:
-    """(mapping, key, value, line, column) of every scalar of YAML events; items of a list have their list's key."""
-    import yaml
-
-    root = _Mapping("", None)
-    # Each level: the mapping that scalars belong to, whether it is a mapping, and the key that waits for its value.
-    levels: list[tuple[_Mapping, bool, str | None]] = [(root, False, "")]
-    for event in events:
-        mapping, keyed, key = levels[-1]
-        if len(levels) > DEEPEST:
-            raise ValueError(f"nested more than {DEEPEST} deep")
-        if isinstance(event, yaml.ScalarEvent):
-            if keyed and key is None:
-                levels[-1] = (mapping, keyed, event.value)
-                continue
-            mark = event.start_mark
-            quoted = 1 if event.style in ("'", '"') else 0
-            yield mapping, key or "", event.value, mark.line + 1, mark.column + 1 + quoted
-        elif isinstance(event, yaml.MappingStartEvent):
-            levels.append((_Mapping(key or "", mapping), True, None))
-            continue
-        elif isinstance(event, yaml.SequenceStartEvent):
-            levels.append((mapping, False, key or ""))
-            continue
-        elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
-            levels.pop()
-            mapping, keyed, key = levels[-1]
-        elif not isinstance(event, yaml.AliasEvent):
-            continue
-        if keyed:
-            levels[-1] = (mapping, True, "" if key is None else None)
 
 
 # A command where a command can stand: at a line's start, after a separator, or inside a substitution. Text in quotes
@@ -590,7 +501,7 @@ def _shell_command(found: _Found, match: re.Match[str], start: int, conditional:
 
 READERS: dict[str, Callable[[bytes], ReferenceFile]] = {
     "launch_xml": _test,
-    "launch_yaml": _launch_yaml,
+    "launch_yaml": partial(_launch, kind="launch_yaml"),
     "xacro": _robot_description,
     "plugin_xml": _plugin_xml,
     "xml": _xml,
