@@ -636,7 +636,7 @@ class Walker:
         if isinstance(function, Module):
             maker = MAKERS.get(function.path.rpartition(".")[2])
             if maker is not None:
-                return maker(self, Call(node, function.path, arguments, keywords))
+                return maker(Call(self, node, function.path, arguments, keywords))
         return Unknown(source_of(node))
 
     def call_function(self, function: Function, arguments: list[Any], keywords: dict[str, Any]) -> Any:

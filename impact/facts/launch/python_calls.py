@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .actions import Action, Condition, Piece, Value, literal, named, other, plain, together
@@ -37,15 +37,27 @@ if TYPE_CHECKING:
     from .python import Walker
 
 MOST_TURNS = 200
+_TYPES = {"bool": "bool", "int": "int", "float": "double", "str": "str"}
+_UNSCOPED = (("scoped", literal("false")),)
 
 
 class Call(NamedTuple):
     """A call of a known name. path: as imported."""
 
+    walker: Walker
     node: ast.Call
     path: str
     arguments: list[Any]
     keywords: dict[str, Any]
+
+    @property
+    def line(self) -> int:
+        return self.node.lineno
+
+    @property
+    def unknown(self) -> Unknown:
+        """What the call gives where that is not known."""
+        return Unknown(source_of(self.node))
 
     def get(self, place: int, *names: str) -> Any:
         """The argument of a name, or at a place (-1 for none); None when it is not given."""
@@ -54,149 +66,160 @@ class Call(NamedTuple):
                 return self.keywords[name]
         return self.arguments[place] if 0 <= place < len(self.arguments) else None
 
+    def source(self, keyword: str) -> str:
+        """The source of a keyword argument, its name where it is not given."""
+        return next((source_of(each.value) for each in self.node.keywords if each.arg == keyword), keyword)
 
-class _Making(NamedTuple):
-    """What a maker of actions needs: the walker and the call."""
-
-    walker: Walker
-    call: Call
+    def text(self, value: Any) -> Value:
+        return self.walker.text(value, self.node)
 
     def texts(self, value: Any) -> list[Value]:
         """A list of texts, one each."""
-        if isinstance(value, Items):
-            return [
-                self.walker.text(item.value if isinstance(item, Guarded) else item, self.call.node)
-                for item in value.items
-            ]
-        return [self.walker.text(value, self.call.node)]
+        items = value.items if isinstance(value, Items) else [value]
+        return [self.text(item.value if isinstance(item, Guarded) else item) for item in items]
+
+    def piece(self, kind: str, *values: Any, is_str: bool = False) -> Text:
+        """A substitution of several values."""
+        return Text((Piece(kind, "", tuple(self.text(value) for value in values)),), is_str)
+
+    def items(self, items: Iterable[Any], kind: str = "list") -> Items:
+        return Items(list(items), len(self.walker.conditions), kind)
+
+    def pairs(self, pairs: Iterable[tuple[Any, Any]] = ()) -> Pairs:
+        return Pairs(list(pairs), len(self.walker.conditions))
+
+    def branches(self, value: Any, extra: tuple[Condition, ...] = ()) -> Iterator[tuple[Any, tuple[Condition, ...]]]:
+        """What a value may be, with the conditions under which it is; nothing for None."""
+        if isinstance(value, Guarded):
+            yield from self.branches(value.value, (*extra, *value.conditions))
+        elif isinstance(value, Either):
+            yield from self.branches(value.yes, (*extra, Condition("if", value.condition, self.line)))
+            yield from self.branches(value.no, (*extra, Condition("unless", value.condition, self.line)))
+        elif is_given(value):
+            yield value, extra
+
+    # Actions
+
+    def action(
+        self,
+        kind: str,
+        attributes: Iterable[tuple[str, Value]],
+        children: Iterable[Action] = (),
+        more: tuple[Condition, ...] = (),
+    ) -> Action:
+        """An action under the call's own conditions and more."""
+        return Action(kind, self.line, tuple(attributes), (*self.conditions(), *more), tuple(children))
+
+    def group(self, children: Iterable[Action], *more: Condition) -> Action:
+        """Actions that need no scope of their own."""
+        return self.action("group", _UNSCOPED, children, more)
+
+    def actions(self, value: Any) -> Iterator[Action]:
+        return self.walker.actions(value, self.line)
+
+    def lost(self, keyword: str, value: Any, extra: tuple[Condition, ...]) -> Action:
+        """An argument that cannot be followed."""
+        source = value.source if isinstance(value, Unknown) else self.source(keyword)
+        text = other(f"{keyword.replace('_', ' ')}: {source}")
+        return Action("unknown", self.line, (("text", (text,)),), extra)
 
     def attributes(self, *wanted: tuple[str, Any]) -> list[tuple[str, Value]]:
-        given = [(key, value) for key, value in wanted if value is not None and value != Constant(None)]
-        return [(key, self.walker.text(value, self.call.node)) for key, value in given]
+        return [(key, self.text(value)) for key, value in wanted if is_given(value)]
 
     def conditions(self) -> tuple[Condition, ...]:
-        given = self.call.keywords.get("condition")
-        if given is None or given == Constant(None):
+        given = self.keywords.get("condition")
+        if not is_given(given):
             return ()
-        line = self.call.node.lineno
         if isinstance(given, Asked):
             return given.conditions
-        if isinstance(given, Either):
-            return (Condition("if", (other(_keyword_source(self.call.node, "condition")),), line),)
-        source = given.source if isinstance(given, Unknown) else _keyword_source(self.call.node, "condition")
-        return (Condition("if", (other(source),), line),)
+        source = given.source if isinstance(given, Unknown) else self.source("condition")
+        return (Condition("if", (other(source),), self.line),)
 
     def remaps(self, value: Any, extra: tuple[Condition, ...] = ()) -> Iterator[Action]:
-        line = self.call.node.lineno
-        if isinstance(value, Guarded):
-            yield from self.remaps(value.value, (*extra, *value.conditions))
-        elif isinstance(value, Either):
-            yield from self.remaps(value.yes, (*extra, Condition("if", value.condition, line)))
-            yield from self.remaps(value.no, (*extra, Condition("unless", value.condition, line)))
-        elif isinstance(value, Items):
-            items = value.items
-            first = items[0] if len(items) == 2 else None
-            of_tuples = isinstance(first, Items) and first.kind == "tuple"
-            pair = isinstance(first, Text) or (value.kind == "tuple" and first is not None and not of_tuples)
-            if pair:
-                old, new = (self.walker.text(item, self.call.node) for item in items)
-                yield Action("remap", line, (("from", old), ("to", new)), extra)
-                return
-            for item in items:
-                yield from self.remaps(item, extra)
-        elif isinstance(value, Pairs):
-            for old, new in value.items:
-                yield from self.remaps(Items([old, new], 0, "tuple"), extra)
-        elif value is not None and value != Constant(None):
-            source = value.source if isinstance(value, Unknown) else _keyword_source(self.call.node, "remappings")
-            yield Action("unknown", line, (("text", (other(f"remappings: {source}"),)),), extra)
+        for held, conditions in self.branches(value, extra):
+            if isinstance(held, Items):
+                items = held.items
+                first = items[0] if len(items) == 2 else None
+                of_tuples = isinstance(first, Items) and first.kind == "tuple"
+                if isinstance(first, Text) or (held.kind == "tuple" and first is not None and not of_tuples):
+                    old, new = map(self.text, items)
+                    yield Action("remap", self.line, (("from", old), ("to", new)), conditions)
+                    continue
+                for item in items:
+                    yield from self.remaps(item, conditions)
+            elif isinstance(held, Pairs):
+                for pair in held.items:
+                    yield from self.remaps(Items(list(pair), 0, "tuple"), conditions)
+            else:
+                yield self.lost("remappings", held, conditions)
 
     def parameters(self, value: Any, extra: tuple[Condition, ...] = ()) -> Iterator[Action]:
-        line = self.call.node.lineno
-        if isinstance(value, Guarded):
-            yield from self.parameters(value.value, (*extra, *value.conditions))
-        elif isinstance(value, Either):
-            yield from self.parameters(value.yes, (*extra, Condition("if", value.condition, line)))
-            yield from self.parameters(value.no, (*extra, Condition("unless", value.condition, line)))
-        elif isinstance(value, Items):
-            for item in value.items:
-                yield from self.parameters(item, extra)
-        elif isinstance(value, Pairs):
-            for key, held in value.items:
-                yield from self.one(self.walker.text(key, self.call.node), held, extra)
-        elif isinstance(value, Text):
-            yield Action("parameter-file", line, (("file", value.value),), extra)
-        elif isinstance(value, YamlContent):
-            yield self.below(value, None, extra)
-        elif isinstance(value, FilledFile):
-            yield Action("parameter-file", line, (("file", value.value), ("substitute", literal("true"))), extra)
-        elif isinstance(value, Unknown):
-            yield Action("unknown", line, (("text", (other(f"parameters: {value.source}"),)),), extra)
-        elif value is not None and value != Constant(None):
-            source = _keyword_source(self.call.node, "parameters")
-            yield Action("unknown", line, (("text", (other(f"parameters: {source}"),)),), extra)
+        for held, conditions in self.branches(value, extra):
+            if isinstance(held, Items):
+                for item in held.items:
+                    yield from self.parameters(item, conditions)
+            elif isinstance(held, Pairs):
+                for key, each in held.items:
+                    yield from self.parameter(self.text(key), each, conditions)
+            elif isinstance(held, (Text, FilledFile)):
+                fill = () if isinstance(held, Text) else (("substitute", literal("true")),)
+                yield Action("parameter-file", self.line, (("file", held.value), *fill), conditions)
+            elif isinstance(held, YamlContent):
+                yield self.below(held, None, conditions)
+            else:
+                yield self.lost("parameters", held, conditions)
 
     def below(self, value: YamlContent, name: Value | None, extra: tuple[Condition, ...]) -> Action:
         """The values of a YAML file that is loaded by the launch file, under a name if one is given."""
         attributes = [("file", value.file), *(("below", key) for key in value.keys)]
         if name is not None:
             attributes.append(("name", name))
-        return Action("parameter-file", self.call.node.lineno, tuple(attributes), extra)
+        return Action("parameter-file", self.line, tuple(attributes), extra)
 
-    def one(self, name: Value, value: Any, extra: tuple[Condition, ...]) -> Iterator[Action]:
+    def parameter(self, name: Value, value: Any, extra: tuple[Condition, ...] = ()) -> Iterator[Action]:
         """A parameter, or those of a nested dict."""
-        line = self.call.node.lineno
         if isinstance(value, Guarded):
-            yield from self.one(name, value.value, (*extra, *value.conditions))
+            yield from self.parameter(name, value.value, (*extra, *value.conditions))
         elif isinstance(value, Pairs):
             for key, held in value.items:
-                yield from self.one(together([name, literal("."), self.walker.text(key, self.call.node)]), held, extra)
+                yield from self.parameter(together([name, literal("."), self.text(key)]), held, extra)
         elif isinstance(value, YamlContent):
             yield self.below(value, name, extra)
         else:
             text, type_ = self.typed(value)
-            attributes = [("name", name), ("value", text)]
-            if type_:
-                attributes.append(("type", literal(type_)))
-            yield Action("parameter", line, tuple(attributes), extra)
+            typed = (("type", literal(type_)),) if type_ else ()
+            yield Action("parameter", self.line, (("name", name), ("value", text), *typed), extra)
 
     def typed(self, value: Any) -> tuple[Value, str]:
         """A parameter's value and type; no type where YAML's rules decide, as for substitutions."""
-        node = self.call.node
         if isinstance(value, Typed):
-            return self.walker.text(value.value, node), value.type
+            return self.text(value.value), value.type
         if isinstance(value, Constant):
-            type_ = _TYPES.get(type(value.value).__name__, "")
-            return self.walker.text(value, node), type_
+            return self.text(value), _TYPES.get(type(value.value).__name__, "")
         if isinstance(value, Text):
             return value.value, "str" if value.is_str else ""
-        if isinstance(value, Items):
-            # A list of substitutions is one text; a list of values is a list.
-            if any(isinstance(item, Text) and not item.is_str for item in value.items):
-                return self.walker.text(value, node), ""
-            parts: list[Value] = []
-            for item in value.items:
-                text = self.walker.text(item, node)
-                known = plain(text) if isinstance(item, Text) else None
-                parts += (
-                    literal(", ") if parts else literal(""),
-                    literal(json.dumps(known)) if known is not None else text,
-                )
-            return together([literal("["), *parts, literal("]")]), "list"
-        return self.walker.text(value, node), ""
+        # A list of substitutions is one text; a list of values is a list.
+        if not isinstance(value, Items) or any(isinstance(item, Text) and not item.is_str for item in value.items):
+            return self.text(value), ""
+        parts: list[Value] = []
+        for item in value.items:
+            text = self.text(item)
+            known = plain(text) if isinstance(item, Text) else None
+            parts += (literal(", " if parts else ""), text if known is None else literal(json.dumps(known)))
+        return together([literal("["), *parts, literal("]")]), "list"
 
 
-_TYPES = {"bool": "bool", "int": "int", "float": "double", "str": "str"}
+Maker = Callable[[Call], Any]
 
 
-def _keyword_source(node: ast.Call, name: str) -> str:
-    return next((source_of(keyword.value) for keyword in node.keywords if keyword.arg == name), name)
+def is_given(value: Any) -> bool:
+    """False for an argument that is left out or None."""
+    return value is not None and value != Constant(None)
 
 
-def _node(kind: str) -> Callable[[Walker, Call], Any]:
-    def make(walker: Walker, call: Call) -> Any:
-        making = _Making(walker, call)
-        attributes = making.attributes(
+def _node(kind: str) -> Maker:
+    def make(call: Call) -> Any:
+        attributes = call.attributes(
             ("package", call.get(-1, "package")),
             ("plugin", call.get(-1, "plugin", "node_plugin")),
             ("executable", call.get(-1, "executable", "node_executable")),
@@ -205,459 +228,358 @@ def _node(kind: str) -> Callable[[Walker, Call], Any]:
         )
         for key in ("arguments", "ros_arguments"):
             given = call.get(-1, key)
-            if given is not None and given != Constant(None):
+            if is_given(given):
                 if key == "ros_arguments":
                     attributes.append(("arguments", literal("--ros-args")))
-                attributes += [("arguments", text) for text in making.texts(given)]
-        children = [*making.remaps(call.get(-1, "remappings")), *making.parameters(call.get(-1, "parameters"))]
+                attributes += [("arguments", text) for text in call.texts(given)]
+        children = [*call.remaps(call.get(-1, "remappings")), *call.parameters(call.get(-1, "parameters"))]
         inner = call.get(-1, "composable_node_descriptions")
         if kind == "container" and inner is not None:
-            children += walker.actions(inner, call.node.lineno)
-        return Action(kind, call.node.lineno, tuple(attributes), making.conditions(), tuple(children))
+            children += call.actions(inner)
+        return call.action(kind, attributes, children)
 
     return make
 
 
-def _load(walker: Walker, call: Call) -> Any:
-    making = _Making(walker, call)
+def _load(call: Call) -> Any:
     target = call.get(1, "target_container")
     if isinstance(target, Action):
-        name = target.get("name") or (other(_keyword_source(call.node, "target_container")),)
+        name = target.get("name") or (other(call.source("target_container")),)
         space = target.get("namespace")
         full = together([space, literal("/"), name]) if space is not None and plain(space) != "" else name
         attributes = [("container-node", full)]
     else:
-        attributes = making.attributes(("container", target))
-    children = tuple(walker.actions(call.get(0, "composable_node_descriptions"), call.node.lineno))
-    return Action("load", call.node.lineno, tuple(attributes), making.conditions(), children)
+        attributes = call.attributes(("container", target))
+    return call.action("load", attributes, call.actions(call.get(0, "composable_node_descriptions")))
 
 
-def _simple(kind: str, *names: tuple[str, int, str]) -> Callable[[Walker, Call], Any]:
+def _simple(kind: str, *names: tuple[str, int, str]) -> Maker:
     """An action of nothing but attributes: (attribute, place, keyword) each."""
-
-    def make(walker: Walker, call: Call) -> Any:
-        making = _Making(walker, call)
-        attributes = making.attributes(*((key, call.get(place, keyword)) for key, place, keyword in names))
-        return Action(kind, call.node.lineno, tuple(attributes), making.conditions())
-
-    return make
+    return lambda call: call.action(
+        kind, call.attributes(*((key, call.get(place, keyword)) for key, place, keyword in names))
+    )
 
 
-def _set_parameter(walker: Walker, call: Call) -> Any:
-    making = _Making(walker, call)
-    found = list(making.one(walker.text(call.get(0, "name"), call.node), call.get(1, "value"), ()))
-    made = [Action(a.kind, a.line, a.attributes, (*making.conditions(), *a.conditions)) for a in found]
-    return made[0] if len(made) == 1 else Items(made, len(walker.conditions))
+def _set_parameter(call: Call) -> Any:
+    found = call.parameter(call.text(call.get(0, "name")), call.get(1, "value"))
+    made = [Action(a.kind, a.line, a.attributes, (*call.conditions(), *a.conditions)) for a in found]
+    return made[0] if len(made) == 1 else call.items(made)
 
 
-def _sim_time(walker: Walker, call: Call) -> Any:
-    text, type_ = _Making(walker, call).typed(call.get(0, "value"))
-    attributes = (("name", literal("use_sim_time")), ("value", text), ("type", literal(type_ or "bool")))
-    return Action("parameter", call.node.lineno, attributes, _Making(walker, call).conditions())
+def _sim_time(call: Call) -> Any:
+    text, type_ = call.typed(call.get(0, "value"))
+    named_ = ("name", literal("use_sim_time"))
+    return call.action("parameter", (named_, ("value", text), ("type", literal(type_ or "bool"))))
 
 
-def _group(walker: Walker, call: Call) -> Any:
-    making = _Making(walker, call)
-    line = call.node.lineno
-    attributes = making.attributes(("scoped", call.get(-1, "scoped")), ("forwarding", call.get(-1, "forwarding")))
-    lets: list[Action] = []
+def _group(call: Call) -> Any:
+    attributes = call.attributes(("scoped", call.get(-1, "scoped")), ("forwarding", call.get(-1, "forwarding")))
     configurations = call.get(-1, "launch_configurations")
-    if isinstance(configurations, Pairs):
-        for key, value in configurations.items:
-            pair = (("name", walker.text(key, call.node)), ("value", walker.text(value, call.node)))
-            lets.append(Action("let", line, pair))
-    children = (*lets, *walker.actions(call.get(0, "actions"), line))
-    return Action("group", line, tuple(attributes), making.conditions(), children)
+    lets = [
+        Action("let", call.line, (("name", call.text(key)), ("value", call.text(value))))
+        for key, value in (configurations.items if isinstance(configurations, Pairs) else ())
+    ]
+    return call.action("group", attributes, (*lets, *call.actions(call.get(0, "actions"))))
 
 
-def _include(walker: Walker, call: Call) -> Any:
-    making = _Making(walker, call)
+def _include(call: Call) -> Any:
     source = call.get(0, "launch_description_source")
     if isinstance(source, Items) and source.is_launch:
-        return Action("group", call.node.lineno, (("scoped", literal("false")),), making.conditions(),
-                      tuple(walker.actions(source, call.node.lineno)))  # fmt: skip
-    attributes = making.attributes(("file", source))
-    children = tuple(_passed(making, call.get(1, "launch_arguments"), ()))
-    return Action("include", call.node.lineno, tuple(attributes), making.conditions(), children)
+        return call.group(call.actions(source))
+    return call.action("include", call.attributes(("file", source)), _passed(call, call.get(1, "launch_arguments")))
 
 
-def _passed(making: _Making, value: Any, extra: tuple[Condition, ...]) -> Iterator[Action]:
+def _passed(call: Call, value: Any, extra: tuple[Condition, ...] = ()) -> Iterator[Action]:
     """Arguments given to an include: pairs, or a dict."""
-    line = making.call.node.lineno
-    if isinstance(value, Guarded):
-        yield from _passed(making, value.value, (*extra, *value.conditions))
-    elif isinstance(value, Either):
-        yield from _passed(making, value.yes, (*extra, Condition("if", value.condition, line)))
-        yield from _passed(making, value.no, (*extra, Condition("unless", value.condition, line)))
-    elif isinstance(value, Pairs):
-        for key, held in value.items:
-            yield from _passed(making, Items([key, held], 0), extra)
-    elif isinstance(value, Items):
-        items = value.items
-        if len(items) == 2 and isinstance(items[0], Text):
-            extra_value = items[1]
-            if isinstance(extra_value, Guarded):
-                extra, extra_value = (*extra, *extra_value.conditions), extra_value.value
-            name, text = (making.walker.text(item, making.call.node) for item in (items[0], extra_value))
-            yield Action("pass", line, (("name", name), ("value", text)), extra)
+    for held, conditions in call.branches(value, extra):
+        if isinstance(held, Pairs):
+            for pair in held.items:
+                yield from _passed(call, Items(list(pair), 0), conditions)
+        elif not isinstance(held, Items):
+            yield call.lost("launch_arguments", held, conditions)
+        elif len(held.items) == 2 and isinstance(held.items[0], Text):
+            name, given = held.items
+            if isinstance(given, Guarded):
+                conditions, given = (*conditions, *given.conditions), given.value
+            yield Action("pass", call.line, (("name", call.text(name)), ("value", call.text(given))), conditions)
         else:
-            for item in items:
-                yield from _passed(making, item, extra)
-    elif value is not None and value != Constant(None):
-        source = value.source if isinstance(value, Unknown) else _keyword_source(making.call.node, "launch_arguments")
-        yield Action("unknown", line, (("text", (other(f"launch arguments: {source}"),)),), extra)
+            for item in held.items:
+                yield from _passed(call, item, conditions)
 
 
-def _opaque(walker: Walker, call: Call) -> Any:
-    making = _Making(walker, call)
+def _opaque(call: Call) -> Any:
     function = call.get(0, "function")
-    line = call.node.lineno
     if not isinstance(function, Function):
-        source = _keyword_source(call.node, "function") if call.keywords else source_of(call.node)
-        return Action("unknown", line, (("text", (other(f"OpaqueFunction({source})"),)),), making.conditions())
+        source = call.source("function") if call.keywords else source_of(call.node)
+        return call.action("unknown", (("text", (other(f"OpaqueFunction({source})"),)),))
     args, kwargs = call.get(-1, "args"), call.get(-1, "kwargs")
     given = list(args.items) if isinstance(args, Items) else []
-    named_ = (
-        {plain(k.value) or "": v for k, v in kwargs.items if isinstance(k, Text)} if isinstance(kwargs, Pairs) else {}
-    )
-    result = walker.call_function(function, [Context(), *given], named_)
-    children = tuple(walker.actions(result, line))
-    if not children and not making.conditions():
-        return Items([], len(walker.conditions))
-    return Action("group", line, (("scoped", literal("false")),), making.conditions(), children)
+    pairs = kwargs.items if isinstance(kwargs, Pairs) else ()
+    keywords = {plain(key.value) or "": value for key, value in pairs if isinstance(key, Text)}
+    children = tuple(call.actions(call.walker.call_function(function, [Context(), *given], keywords)))
+    return call.group(children) if children or call.conditions() else call.items(())
 
 
-def _for_each(walker: Walker, call: Call) -> Any:
+def _for_each(call: Call) -> Any:
     """ForEach and ForLoop: what their function makes, for each of what is only known at launch."""
-    making = _Making(walker, call)
     function = call.get(1, "function")
     if not isinstance(function, Function):
-        return Unknown(source_of(call.node))
-    line = call.node.lineno
-    each = Condition("each", (other(source_of(call.node)),), line)
-    children = tuple(walker.actions(walker.call_function(function, [], {}), line))
-    return Action("group", line, (("scoped", literal("false")),), (*making.conditions(), each), children)
+        return call.unknown
+    each = Condition("each", (other(source_of(call.node)),), call.line)
+    return call.group(call.actions(call.walker.call_function(function, [], {})), each)
 
 
-def _timer(walker: Walker, call: Call) -> Any:
-    making = _Making(walker, call)
-    line = call.node.lineno
-    period = together([walker.text(call.get(-1, "period"), call.node), literal(" s")])
-    children = tuple(walker.actions(call.get(-1, "actions"), line))
-    conditions = (*making.conditions(), Condition("after", period, line))
-    return Action("group", line, (("scoped", literal("false")),), conditions, children)
+def _timer(call: Call) -> Any:
+    period = together([call.text(call.get(-1, "period")), literal(" s")])
+    return call.group(call.actions(call.get(-1, "actions")), Condition("after", period, call.line))
 
 
-def _handler(walker: Walker, call: Call) -> Any:
+_HANDLED = ("on_exit", "on_start", "entities", "on_completion", "on_shutdown", "on_stdout", "on_stderr", "on_output")
+
+
+def _handler(call: Call) -> Any:
     """An event handler: its actions, under the event."""
-    event = call.path.rpartition(".")[2]
     held: list[Action] = []
-    for key in (
-        "on_exit",
-        "on_start",
-        "entities",
-        "on_completion",
-        "on_shutdown",
-        "on_stdout",
-        "on_stderr",
-        "on_output",
-    ):
+    for key in _HANDLED:
         value = call.get(-1, key)
         if isinstance(value, Function):
-            value = walker.call_function(value, [Unknown("event"), Context()], {})
+            value = call.walker.call_function(value, [Unknown("event"), Context()], {})
         if value is not None:
-            held += walker.actions(value, call.node.lineno)
-    after = (Condition("after", literal(event), call.node.lineno),)
-    return Action("group", call.node.lineno, (("scoped", literal("false")),), after, tuple(held))
+            held += call.actions(value)
+    after = Condition("after", literal(call.path.rpartition(".")[2]), call.line)
+    return Action("group", call.line, _UNSCOPED, (after,), tuple(held))
 
 
-def _register(walker: Walker, call: Call) -> Any:
+def _register(call: Call) -> Any:
     handler = call.get(0, "event_handler")
     if isinstance(handler, Action):
         if not handler.children:
-            return Items([], len(walker.conditions))
-        conditions = (*_Making(walker, call).conditions(), *handler.conditions)
+            return call.items(())
+        conditions = (*call.conditions(), *handler.conditions)
         return Action(handler.kind, handler.line, handler.attributes, conditions, handler.children)
-    return handler if handler is not None else Unknown(source_of(call.node))
+    return handler if handler is not None else call.unknown
 
 
-def _process(walker: Walker, call: Call) -> Any:
-    making = _Making(walker, call)
-    command = [("command", text) for text in making.texts(call.get(-1, "cmd"))]
-    return Action("process", call.node.lineno, tuple(command), making.conditions())
+def _process(call: Call) -> Any:
+    return call.action("process", [("command", text) for text in call.texts(call.get(-1, "cmd"))])
 
 
-def _description(walker: Walker, call: Call) -> Any:
+def _description(call: Call) -> Any:
     given = call.get(0, "initial_entities")
-    made = Items([], len(walker.conditions), "launch")
-    if isinstance(given, Items):
-        made.items = list(given.items)
-    elif given is not None and given != Constant(None):
-        made.items = [given]
-    return made
+    return call.items(given.items if isinstance(given, Items) else [given] if is_given(given) else (), "launch")
 
 
-def _idle(walker: Walker, call: Call) -> Any:
-    return NOTHING
+def _condition(kind: str) -> Maker:
+    return lambda call: Asked((Condition(kind, call.text(call.get(0, "predicate_expression")), call.line),))
 
 
-def _condition(kind: str) -> Callable[[Walker, Call], Any]:
-    def make(walker: Walker, call: Call) -> Any:
-        value = walker.text(call.get(0, "predicate_expression"), call.node)
-        return Asked((Condition(kind, value, call.node.lineno),))
+def _configuration_is(kind: str) -> Maker:
+    def make(call: Call) -> Any:
+        name = (named("arg", call.text(call.get(0, "launch_configuration_name"))),)
+        value = (Piece("equals", "", (name, call.text(call.get(1, "expected_value")))),)
+        return Asked((Condition(kind, value, call.line),))
 
     return make
 
 
-def _configuration_is(kind: str) -> Callable[[Walker, Call], Any]:
-    def make(walker: Walker, call: Call) -> Any:
-        name = walker.text(call.get(0, "launch_configuration_name"), call.node)
-        expected = call.get(1, "expected_value")
-        value = (Piece("equals", "", ((named("arg", name),), walker.text(expected, call.node))),)
-        return Asked((Condition(kind, value, call.node.lineno),))
-
-    return make
-
-
-def _substitution(kind: str, *names: tuple[int, str]) -> Callable[[Walker, Call], Any]:
+def _substitution(kind: str, *names: tuple[int, str]) -> Maker:
     """A substitution with a name, the first of its arguments, and what else it is given."""
 
-    def make(walker: Walker, call: Call) -> Any:
+    def make(call: Call) -> Any:
         given = [call.get(place, keyword) for place, keyword in names]
         if given[0] is None:
-            return Unknown(source_of(call.node))
-        values = [walker.text(value, call.node) for value in given if value is not None and value != Constant(None)]
-        return Text((named(kind, values[0], *values[1:]),), False)
+            return call.unknown
+        return Text((named(kind, *(call.text(value) for value in given if is_given(value))),), False)
 
     return make
 
 
-def _share(walker: Walker, call: Call) -> Any:
+def _share(call: Call) -> Any:
     given = call.get(0, "package_name", "package")
-    if given is None:
-        return Unknown(source_of(call.node))
     kind = "prefix" if call.path.endswith("prefix") else "find"
-    return Text((named(kind, walker.text(given, call.node)),))
+    return call.unknown if given is None else Text((named(kind, call.text(given)),))
 
 
-def _parts(kind: str, is_str: bool) -> Callable[[Walker, Call], Any]:
+def _parts(kind: str, is_str: bool = False) -> Maker:
     """A substitution of several values, given each or as one list."""
 
-    def make(walker: Walker, call: Call) -> Any:
+    def make(call: Call) -> Any:
         given = [*call.arguments, *call.keywords.values()]
         if len(given) == 1 and isinstance(given[0], Items):
             given = given[0].items
-        return Text((Piece(kind, "", tuple(walker.text(value, call.node) for value in given)),), is_str)
+        return call.piece(kind, *given, is_str=is_str)
 
     return make
 
 
-def _path_join(walker: Walker, call: Call) -> Any:
+def _piece(kind: str, *names: str, is_str: bool = False) -> Maker:
+    """A substitution of arguments by their places and names."""
+    return lambda call: call.piece(
+        kind, *(call.get(place, name) for place, name in enumerate(names)), is_str=is_str
+    )
+
+
+def _path_join(call: Call) -> Any:
     # os.path.join and not str.join, whose receiver is no module
-    return _parts("join", True)(walker, call) if call.path.endswith("path.join") else Unknown(source_of(call.node))
+    return _parts("join", True)(call) if call.path.endswith("path.join") else call.unknown
 
 
-def _first(is_str: bool) -> Callable[[Walker, Call], Any]:
+def _first(is_str: bool) -> Maker:
     """A wrapper through which its first argument passes."""
 
-    def make(walker: Walker, call: Call) -> Any:
+    def make(call: Call) -> Any:
         given = call.get(0, "text", "launch_file_path", "variable")
         if given is None:
-            return Unknown(source_of(call.node))
-        if isinstance(given, Text):
-            return Text(given.value, is_str)
-        return Text(walker.text(given, call.node), is_str)
+            return call.unknown
+        return Text(given.value if isinstance(given, Text) else call.text(given), is_str)
 
     return make
 
 
-def _path(walker: Walker, call: Call) -> Any:
-    if len(call.arguments) > 1:
-        return _parts("join", True)(walker, call)
-    return _first(True)(walker, call)
+def _path(call: Call) -> Any:
+    return _parts("join", True)(call) if len(call.arguments) > 1 else _first(True)(call)
 
 
-def _str(walker: Walker, call: Call) -> Any:
+def _str(call: Call) -> Any:
     given = call.get(0, "object")
-    return given if isinstance(given, Text) and given.is_str else Text(walker.text(given, call.node))
+    return given if isinstance(given, Text) and given.is_str else Text(call.text(given))
 
 
-def _performed(walker: Walker, call: Call) -> Any:
+def _performed(call: Call) -> Any:
     given = call.get(1, "subs")
-    return Unknown(source_of(call.node)) if given is None else Text(walker.text(given, call.node))
+    return call.unknown if given is None else Text(call.text(given))
 
 
-def _dirname(walker: Walker, call: Call) -> Any:
+def _dirname(call: Call) -> Any:
     given = call.get(0, "p")
-    return Text(folder_of(given.value)) if isinstance(given, Text) else Unknown(source_of(call.node))
+    return Text(folder_of(given.value)) if isinstance(given, Text) else call.unknown
 
 
-def _environment(walker: Walker, call: Call) -> Any:
+def _environment(call: Call) -> Any:
     """os.getenv() and os.environ.get()."""
-    if not call.path.endswith(("os.getenv", "environ.get")):
-        return Unknown(source_of(call.node))
     key, default = call.get(0, "key", "varname"), call.get(1, "default")
-    if key is None:
-        return Unknown(source_of(call.node))
-    given = [walker.text(value, call.node) for value in (key, default) if value not in (None, Constant(None))]
-    return Text((named("env", *given),))
+    if key is None or not call.path.endswith(("os.getenv", "environ.get")):
+        return call.unknown
+    return Text((named("env", *(call.text(value) for value in (key, default) if is_given(value))),))
 
 
-def _executable(walker: Walker, call: Call) -> Any:
-    given = (call.get(0, "executable"), call.get(1, "package"))
-    return Text((Piece("executable", "", tuple(walker.text(value, call.node) for value in given)),), False)
+def _choice(call: Call) -> Any:
+    given = (call.get(0, "condition"), call.get(1, "if_value"), call.get(2, "else_value"))
+    values = (literal("") if value is None else call.text(value) for value in given)
+    return Text((Piece("choose", "", tuple(values)),), False)
 
 
-def _expression(walker: Walker, call: Call) -> Any:
-    given = call.get(0, "expression")
-    return Text((Piece("eval", "launch", (walker.text(given, call.node),)),), False)
+def _not_equals(call: Call) -> Any:
+    return Text((Piece("not", "", (_parts("equals")(call).value,)),), False)
 
 
-def _command(walker: Walker, call: Call) -> Any:
-    given = call.get(0, "command")
-    return Text((Piece("command", "", (walker.text(given, call.node),)),), False)
-
-
-def _not_equals(walker: Walker, call: Call) -> Any:
-    return Text((Piece("not", "", (_parts("equals", False)(walker, call).value,)),), False)
-
-
-def _parameter_value(walker: Walker, call: Call) -> Any:
+def _parameter_value(call: Call) -> Any:
     type_ = call.get(1, "value_type")
-    name = type_.path if isinstance(type_, Module) else ""
-    return Typed(call.get(0, "value"), _TYPES.get(name, ""))
+    return Typed(call.get(0, "value"), _TYPES.get(type_.path if isinstance(type_, Module) else "", ""))
 
 
-def _parameter_file(walker: Walker, call: Call) -> Any:
-    value = walker.text(call.get(0, "param_file"), call.node)
+def _parameter_file(call: Call) -> Any:
+    value = call.text(call.get(0, "param_file"))
     allow = call.get(-1, "allow_substs")
     return Text(value, False) if allow is None or allow == Constant(False) else FilledFile(value)
 
 
-def _content(walker: Walker, call: Call) -> Any:
-    """The content of a file: open() and FileContent."""
-    return Text((Piece("content", "", (walker.text(call.get(0, "file"), call.node),)),))
-
-
-def _loaded(walker: Walker, call: Call) -> Any:
+def _loaded(call: Call) -> Any:
     """yaml.safe_load() of an open file."""
     given = call.get(0, "stream")
     if isinstance(given, Text) and len(given.value) == 1 and given.value[0].kind == "content":
         return YamlContent(given.value[0].parts[0])
-    return Unknown(source_of(call.node))
+    return call.unknown
 
 
-def _boolean_argument(walker: Walker, call: Call) -> Any:
-    """DeclareBooleanLaunchArg of moveit_configs_utils: its default is given as a bool."""
-    making = _Making(walker, call)
-    default = call.get(1, "default_value")
-    attributes = making.attributes(("name", call.get(0, "name")), ("default", default))
-    return Action("argument", call.node.lineno, tuple(attributes), making.conditions())
-
-
-def _has_node(walker: Walker, call: Call) -> Any:
-    """HasNodeParams of nav2_common."""
-    given = (call.get(0, "source_file"), call.get(1, "node_name"))
-    return Text((Piece("has-node", "", tuple(walker.text(value, call.node) for value in given)),), False)
-
-
-def _rewritten(walker: Walker, call: Call) -> Any:
+def _rewritten(call: Call) -> Any:
     """RewrittenYaml of nav2_common."""
-    parts = [walker.text(call.get(0, "source_file"), call.node)]
     root = call.get(2, "root_key")
-    parts.append(walker.text(root, call.node) if root is not None else literal(""))
+    parts = [call.text(call.get(0, "source_file")), literal("") if root is None else call.text(root)]
     rewrites = call.get(1, "param_rewrites")
-    if isinstance(rewrites, Pairs):
-        for key, value in rewrites.items:
-            held = value.value if isinstance(value, Guarded) else value
-            parts += (walker.text(key, call.node), walker.text(held, call.node))
+    for key, value in rewrites.items if isinstance(rewrites, Pairs) else ():
+        parts += (call.text(key), call.text(value.value if isinstance(value, Guarded) else value))
     value = (Piece("rewritten", "", tuple(parts)),)
     # Values that stand for others, wherever they are
     values = call.get(-1, "value_rewrites")
-    pairs = values.items if isinstance(values, Pairs) else []
-    if pairs:
-        replaced = [walker.text(item, call.node) for pair in pairs for item in pair]
-        value = (Piece("replaced", "", (value, *replaced)),)
+    if isinstance(values, Pairs) and values.items:
+        value = (Piece("replaced", "", (value, *(call.text(item) for pair in values.items for item in pair))),)
     return Text(value, False)
 
 
-def _replaced(walker: Walker, call: Call) -> Any:
+def _replaced(call: Call) -> Any:
     """ReplaceString of nav2_common."""
-    parts = [walker.text(call.get(0, "source_file"), call.node)]
     replacements = call.get(1, "replacements")
-    if isinstance(replacements, Pairs):
-        for key, value in replacements.items:
-            parts += (walker.text(key, call.node), walker.text(value, call.node))
-    value = (Piece("replaced", "", tuple(parts)),)
-    asked = _Making(walker, call).conditions()
+    pairs = replacements.items if isinstance(replacements, Pairs) else ()
+    parts = (call.text(call.get(0, "source_file")), *(call.text(item) for pair in pairs for item in pair))
+    value = (Piece("replaced", "", parts),)
+    asked = call.conditions()
     return Text((Piece("choose", "", (all_of(asked), value, parts[0])),) if asked else value, False)
 
 
-def _range(walker: Walker, call: Call) -> Any:
+def _range(call: Call) -> Any:
     bounds = [value.value for value in call.arguments if isinstance(value, Constant) and isinstance(value.value, int)]
     if len(bounds) != len(call.arguments) or not 1 <= len(bounds) <= 3 or (len(bounds) == 3 and bounds[2] == 0):
-        return Unknown(source_of(call.node))
+        return call.unknown
     numbers = range(*bounds)
-    if len(numbers) > MOST_TURNS:
-        return Unknown(source_of(call.node))
-    return Items([Constant(number) for number in numbers], len(walker.conditions))
+    return call.unknown if len(numbers) > MOST_TURNS else call.items(map(Constant, numbers))
 
 
-def _enumerated(walker: Walker, call: Call) -> Any:
-    turns = walker.turns(call.get(0, "iterable"))
+def _enumerated(call: Call) -> Any:
+    turns = _sure(call, call.get(0, "iterable"))
     start = call.get(1, "start")
     first = start.value if isinstance(start, Constant) and isinstance(start.value, int) else 0
-    if turns is None or any(isinstance(turn, Guarded) for turn in turns):
-        return Unknown(source_of(call.node))
-    depth = len(walker.conditions)
-    return Items([Items([Constant(n), turn], depth) for n, turn in enumerate(turns, first)], depth)
+    if turns is None:
+        return call.unknown
+    return call.items(call.items((Constant(n), turn)) for n, turn in enumerate(turns, first))
 
 
-def _zipped(walker: Walker, call: Call) -> Any:
-    lists = [walker.turns(argument) for argument in call.arguments]
-    if any(items is None or any(isinstance(item, Guarded) for item in items) for items in lists):
-        return Unknown(source_of(call.node))
-    depth = len(walker.conditions)
-    return Items([Items(list(row), depth) for row in zip(*(items or [] for items in lists), strict=False)], depth)
+def _zipped(call: Call) -> Any:
+    lists = [_sure(call, argument) for argument in call.arguments]
+    known = [turns for turns in lists if turns is not None]
+    return call.items(map(call.items, zip(*known, strict=False))) if len(known) == len(lists) else call.unknown
 
 
-def _listed(walker: Walker, call: Call) -> Any:
+def _sure(call: Call, value: Any) -> list[Any] | None:
+    """What a loop over a value walks through, None where it is not known or hangs on conditions."""
+    turns = call.walker.turns(value)
+    return None if turns is None or any(isinstance(turn, Guarded) for turn in turns) else turns
+
+
+def _listed(call: Call) -> Any:
     given = call.get(0, "iterable")
-    if given is None:
-        return Items([], len(walker.conditions))
-    turns = walker.turns(given)
-    return Unknown(source_of(call.node)) if turns is None else Items(list(turns), len(walker.conditions))
+    turns = [] if given is None else call.walker.turns(given)
+    return call.unknown if turns is None else call.items(turns)
 
 
-def _dict(walker: Walker, call: Call) -> Any:
-    made = Pairs([], len(walker.conditions))
+def _dict(call: Call) -> Any:
     given = call.get(0)
-    if isinstance(given, Pairs):
-        made.items = list(given.items)
-    elif isinstance(given, Items) and all(isinstance(i, Items) and len(i.items) == 2 for i in given.items):
-        made.items = [(pair.items[0], pair.items[1]) for pair in given.items]
-    elif given is not None:
-        return Unknown(source_of(call.node))
+    if isinstance(given, Items) and all(isinstance(item, Items) and len(item.items) == 2 for item in given.items):
+        made = call.pairs((pair.items[0], pair.items[1]) for pair in given.items)
+    elif given is None or isinstance(given, Pairs):
+        made = call.pairs(() if given is None else given.items)
+    else:
+        return call.unknown
     for key, value in call.keywords.items():
         made.set(Text(literal(key)), value)
     return made
 
 
-def _length(walker: Walker, call: Call) -> Any:
+def _length(call: Call) -> Any:
     given = call.get(0)
     if isinstance(given, (Items, Pairs)) and not any(isinstance(item, Guarded) for item in given.items):
         return Constant(len(given.items))
-    return Unknown(source_of(call.node))
+    return call.unknown
 
 
-def _copied(walker: Walker, call: Call) -> Any:
+def _copied(call: Call) -> Any:
     given = call.get(0)
     if isinstance(given, Items):
-        return Items(list(given.items), len(walker.conditions), given.kind)
-    return Pairs(list(given.items), len(walker.conditions)) if isinstance(given, Pairs) else given
+        return call.items(given.items, given.kind)
+    return call.pairs(given.items) if isinstance(given, Pairs) else given
 
 
-MAKERS: dict[str, Callable[[Walker, Call], Any]] = {
+MAKERS: dict[str, Maker] = {
     "LaunchDescription": _description,
     "Node": _node("node"),
     "LifecycleNode": _node("lifecycle"),
@@ -691,7 +613,7 @@ MAKERS: dict[str, Callable[[Walker, Call], Any]] = {
         ("LogInfo", "EmitEvent", "Shutdown", "UnsetEnvironmentVariable", "UnsetLaunchConfiguration",
          "AppendEnvironmentVariable", "PrependEnvironmentVariable", "SetROSLogDir", "LifecycleTransition",
          "ReadyToTest", "KeepAliveProc", "print", "ResetEnvironment", "PushEnvironment", "PopEnvironment"),
-        _idle,
+        lambda call: NOTHING,
     ),
     "IfCondition": _condition("if"),
     "UnlessCondition": _condition("unless"),
@@ -709,22 +631,20 @@ MAKERS: dict[str, Callable[[Walker, Call], Any]] = {
     "get_package_share_directory": _share,
     "get_package_share_path": _share,
     "get_package_prefix": _share,
-    "ExecutableInPackage": _executable,
-    "PathJoinSubstitution": _parts("join", False),
-    "ThisLaunchFileDir": lambda walker, call: Text((Piece("dirname"),), False),
-    "ThisLaunchFile": lambda walker, call: Text((Piece("filename"),), False),
-    "PythonExpression": _expression,
-    "Command": _command,
-    "EqualsSubstitution": _parts("equals", False),
+    "ExecutableInPackage": _piece("executable", "executable", "package"),
+    "PathJoinSubstitution": _parts("join"),
+    "ThisLaunchFileDir": lambda call: Text((Piece("dirname"),), False),
+    "ThisLaunchFile": lambda call: Text((Piece("filename"),), False),
+    "PythonExpression": lambda call: Text((Piece("eval", "launch", (call.text(call.get(0, "expression")),)),), False),
+    "Command": _piece("command", "command"),
+    "EqualsSubstitution": _parts("equals"),
     "NotEqualsSubstitution": _not_equals,
-    "NotSubstitution": _parts("not", False),
-    "AndSubstitution": _parts("and", False),
-    "OrSubstitution": _parts("or", False),
-    "AllSubstitution": _parts("and", False),
-    "AnySubstitution": _parts("or", False),
-    "IfElseSubstitution": lambda walker, call: Text((Piece("choose", "", tuple(
-        walker.text(value, call.node) if value is not None else literal("")
-        for value in (call.get(0, "condition"), call.get(1, "if_value"), call.get(2, "else_value")))),), False),
+    "NotSubstitution": _parts("not"),
+    "AndSubstitution": _parts("and"),
+    "OrSubstitution": _parts("or"),
+    "AllSubstitution": _parts("and"),
+    "AnySubstitution": _parts("or"),
+    "IfElseSubstitution": _choice,
     "TextSubstitution": _first(True),
     **dict.fromkeys(
         ("PythonLaunchDescriptionSource", "AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource",
@@ -733,16 +653,16 @@ MAKERS: dict[str, Callable[[Walker, Call], Any]] = {
     ),
     "ParameterFile": _parameter_file,
     "ParameterValue": _parameter_value,
-    "Parameter": lambda walker, call: Pairs([(call.get(0, "name"), call.get(1, "value"))], len(walker.conditions)),
+    "Parameter": lambda call: call.pairs([(call.get(0, "name"), call.get(1, "value"))]),
     "ForEach": _for_each,
     "ForLoop": _for_each,
-    "FileContent": _content,
-    "open": _content,
+    **dict.fromkeys(("FileContent", "open"), _piece("content", "file", is_str=True)),
     "safe_load": _loaded,
     "full_load": _loaded,
     "load": _loaded,
-    "DeclareBooleanLaunchArg": _boolean_argument,
-    "HasNodeParams": _has_node,
+    # of moveit_configs_utils: its default is given as a bool
+    "DeclareBooleanLaunchArg": _simple("argument", ("name", 0, "name"), ("default", 1, "default_value")),
+    "HasNodeParams": _piece("has-node", "source_file", "node_name"),  # of nav2_common
     "RewrittenYaml": _rewritten,
     "ReplaceString": _replaced,
     "perform_substitutions": _performed,
