@@ -9,7 +9,7 @@ import msgspec
 
 from ..condition import Condition
 from ..place import Problem, Reference
-from .uses import SURE_TO_RUN, Objects
+from .uses import CALLING_BACK, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, VALUED, WRAPPERS, PackagePath, Scope
 
 
@@ -198,19 +198,28 @@ class Reader(Objects):
             self.hold(node.id, "")
 
     def attribute(self, node: ast.Attribute, call: ast.Call | None = None) -> None:
-        parts = [node.attr]
+        steps = [node]
         value = node.value
         while value.__class__ is ast.Attribute:
-            parts.append(value.attr)  # type: ignore[attr-defined]
+            steps.append(value)  # type: ignore[arg-type]
             value = value.value  # type: ignore[attr-defined]
+        steps.reverse()
         if value.__class__ is not ast.Name:
-            self.use_of_value(value, parts[-1], call if len(parts) == 1 else None, node)
+            if value.__class__ is ast.Call and getattr(value.func, "id", "") == "super":  # type: ignore[attr-defined]
+                self.use_of_super(steps[0].attr, call if len(steps) == 1 else None, node)
+            elif type_ := self.type_of(value):
+                self.use_member(type_, steps, call)
             self.visit(value)
             return
         head = value.id  # type: ignore[attr-defined]
-        parts.reverse()
-        if node.ctx.__class__ is ast.Load:
-            self.use_member(head, parts, call, node)
+        parts = [step.attr for step in steps]
+        own = head == self.me and self.inside_class is not None
+        if type_ := f"{OWN}{id(self.inside_class)}" if own else self.object(head):
+            self.use_member(type_, steps, call)
+        elif self.has_interfaces:
+            self.use_constant(steps, call)
+        if own and len(steps) == 1 and node.ctx.__class__ is ast.Store:
+            self.hold_own(node, "")
         if head == "self" or head == "cls":
             return
         if node.ctx.__class__ is ast.Store:
@@ -295,8 +304,47 @@ class Reader(Objects):
         if use is not None:
             self.use_conditions = (*self.use_conditions, use)
         self.conditional = True
-        self.block(nodes)
+        self.branch(nodes)
         self.conditions, self.use_conditions, self.conditional = before
+
+    def branch(self, nodes) -> None:
+        """Visits statements, what these bind is noted in `ways` and holds no longer."""
+        scope = self.scope
+        before = scope.objects
+        scope.objects = dict(before)
+        self.block(nodes)
+        self.ways.append(scope.objects)
+        scope.objects = before
+
+    def loop(self, node) -> None:
+        """A `for` or `while`, in which nothing is known that it binds itself."""
+        first = len(self.ways)
+        self.repeat(node)
+        if node.__class__ is ast.While:
+            self.visit(node.test)
+        else:
+            self.visit(node.iter)
+            self.bind_element(node.target, node.iter)
+        self.branch(node.body)
+        self.branch(node.orelse)
+        self.merge(first)
+
+    def bind_element(self, target, over) -> None:
+        """The variable of a loop, which holds an element of what is walked through."""
+        self.visit(target)
+        if self.has_interfaces and target.__class__ is ast.Name and (type_ := self.type_of(over)):
+            self.hold(target.id, field_type(type_, ELEMENT))
+
+    def comprehension(self, node) -> None:
+        outer = self.scope
+        self.scope = Scope(outer, False)
+        self.scope.parameters = outer.parameters
+        for generator in node.generators:
+            self.visit(generator.iter)
+            self.bind_element(generator.target, generator.iter)
+            self.block(generator.ifs)
+        self.block([node.key, node.value] if node.__class__ is ast.DictComp else [node.elt])
+        self.scope = outer
 
     def if_(self, node: ast.If) -> None:
         test = self.source(node.test)
@@ -315,10 +363,11 @@ class Reader(Objects):
             test = "TYPE_CHECKING"
         condition = Condition("python", test, negated)
         about_machine = _ABOUT_MACHINE.search(test) is not None
+        first = len(self.ways)
         self.under(node.body, condition, condition if about_machine else None)
-        if node.orelse:
-            condition = Condition("python", test, not negated)
-            self.under(node.orelse, condition, condition if about_machine else None)
+        condition = Condition("python", test, not negated)
+        self.under(node.orelse, condition, condition if about_machine else None)
+        self.merge(first)
 
     def if_expression(self, node: ast.IfExp) -> None:
         self.visit(node.test)
@@ -347,7 +396,11 @@ class Reader(Objects):
         outside = self.call_conditions
         refusal = "TypeError" in caught and not covers_use
         self.call_conditions = (*outside, TRY) if refusal else outside
+        first, before = len(self.ways), self.scope.objects
         self.under(node.body, TRY if covers_import else None, TRY if covers_use else None)
+        done = self.ways[-1]
+        # Handlers run after any part of the body.
+        self.scope.objects = {name: type_ if done.get(name) == type_ else "" for name, type_ in before.items()}
         self.call_conditions = (*outside, EXCEPT) if refusal else outside
         for handler in node.handlers:
             if handler.type is not None:
@@ -357,7 +410,10 @@ class Reader(Objects):
                 self.hold(handler.name, "")
             self.under(handler.body, EXCEPT if covers_import else None, EXCEPT if covers_use else None)
         self.call_conditions = outside
+        self.scope.objects = done
         self.under(node.orelse, TRY if covers_import else None, TRY if covers_use else None)
+        self.ways[first] = self.ways.pop()
+        self.merge(first)
         self.block(node.finalbody)
 
     def try_star(self, node) -> None:
@@ -377,6 +433,7 @@ class Reader(Objects):
             self.need(9, node, "parenthesised context managers")
         if suppressed:
             self.under(node.body, TRY, TRY)
+            self.merge(len(self.ways) - 1, self.scope.objects)
         else:
             self.block(node.body)
 
@@ -432,9 +489,10 @@ class Reader(Objects):
             if argument.annotation is not None and (type_ := self.annotated(argument.annotation))
         ]
         self.scope = Scope(self.scope, False)
-        self.scope.objects.update(types)
         self.function = True
         self.parameters(arguments)
+        self.handed(node)
+        self.scope.objects.update(types)
         self.block(node.body)
         self.scope, self.function, self.defining, self.lazy, self.me = before
 
@@ -504,29 +562,39 @@ class Reader(Objects):
         if node.value is not None:
             self.visit(node.value)
             if isinstance(node.target, ast.Name):
-                self.remember(node.target.id, node.value)
+                self.remember(node.target.id, node.value, self.annotated(node.annotation))
                 return
         if isinstance(node.target, ast.Attribute) and self.hold_own(node.target, self.annotated(node.annotation)):
             return
         self.visit(node.target)
+        if isinstance(node.target, ast.Name):
+            self.hold(node.target.id, self.annotated(node.annotation))
 
-    def remember(self, name: str, node: ast.expr) -> None:
+    def remember(self, name: str, node: ast.expr, annotated: str = "") -> None:
         scope = self.scope
         scope.bound.add(name)
         value = self.value(node, []) if node.__class__ in VALUED else None
         if name in scope.values and scope.values[name] != value:
             value = None
         scope.values[name] = value
-        self.hold(name, self.type_of(node))
+        if node.__class__ is ast.Constant and node.value is None:  # type: ignore[attr-defined]
+            scope.objects.pop(name, None)
+        else:
+            self.hold(name, annotated or self.type_of(node))
 
     def walrus(self, node: ast.NamedExpr) -> None:
         self.need(8, node, "assignment expression")
         self.visit(node.value)
         self.visit(node.target)
+        self.hold(node.target.id, self.type_of(node.value))
 
     def match(self, node) -> None:
         self.need(10, node, "match statement")
-        self.inside(node)
+        self.visit(node.subject)
+        first = len(self.ways)
+        for case in node.cases:
+            self.branch([case])
+        self.merge(first, self.scope.objects)
 
     def template(self, node) -> None:
         self.need(14, node, "t-string")
@@ -657,6 +725,8 @@ class Reader(Objects):
                 self.refer("package", told if named is not None else f"{told}_moveit_config", "", node)
         elif node.func.__class__ is ast.Name:
             self.calls.append((self.scope, node.func.id, node, self.conditional))  # type: ignore[attr-defined]
+        if function in CALLING_BACK and self.has_interfaces:
+            self.call_back(node, function)
         self.use_call(node)
         if node.func.__class__ is ast.Attribute:
             self.attribute(node.func, node)  # type: ignore[arg-type]
@@ -776,6 +846,13 @@ _HANDLERS = {
     ast.ImportFrom: Reader.import_from,
     ast.If: Reader.if_,
     ast.IfExp: Reader.if_expression,
+    ast.For: Reader.loop,
+    ast.AsyncFor: Reader.loop,
+    ast.While: Reader.loop,
+    ast.ListComp: Reader.comprehension,
+    ast.SetComp: Reader.comprehension,
+    ast.GeneratorExp: Reader.comprehension,
+    ast.DictComp: Reader.comprehension,
     ast.Try: Reader.try_,
     ast.With: Reader.with_,
     ast.AsyncWith: Reader.with_,

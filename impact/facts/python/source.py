@@ -14,7 +14,7 @@ from ..place import Problem, Reference
 from ..words import words_of
 from . import python2
 from .reader import TRY, Attribute, Import, Reader
-from .uses import PythonUse
+from .uses import FieldUse, PythonUse
 
 
 class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -24,7 +24,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     the file does not parse, and `print >>f`, which parses and then fails. needs: the highest minor version of Python 3
     its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
     has and Python 2 has not), or None. interpreter: the first line when it is a `#!` that names python. main: has an
-    `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes.
+    `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes. fields: of interfaces.
     words: see words_of().
     """
 
@@ -38,6 +38,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     problems: tuple[Problem, ...] = ()
     uses: tuple[PythonUse, ...] = ()
     words: str = ""
+    fields: tuple[FieldUse, ...] = ()
 
 
 class Source(NamedTuple):
@@ -159,6 +160,7 @@ def extract(data: bytes) -> PythonFile:
                 problems=problems,
                 uses=reader.object_uses(reader.column),
                 words=words_of(data),
+                fields=reader.field_uses(reader.column),
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))
