@@ -7,9 +7,10 @@ what is only known at launch are walked both, and what they add stands under the
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+from ....edges.dispatch import node_methods
 from ..place import Problem
 from ..python.source import read
 from .actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, plain, together
@@ -133,19 +134,19 @@ class Walker:
             if added:
                 del self.conditions[-added:]
 
-    def expression(self, statement: ast.Expr) -> None:
+    def run_Expr(self, statement: ast.Expr) -> None:
         self.value(statement.value)
 
-    def assign(self, statement: ast.Assign) -> None:
+    def run_Assign(self, statement: ast.Assign) -> None:
         value = self.value(statement.value)
         for target in statement.targets:
             self.bind(target, value)
 
-    def annotated(self, statement: ast.AnnAssign) -> None:
+    def run_AnnAssign(self, statement: ast.AnnAssign) -> None:
         if statement.value is not None:
             self.bind(statement.target, self.value(statement.value))
 
-    def augmented(self, statement: ast.AugAssign) -> None:
+    def run_AugAssign(self, statement: ast.AugAssign) -> None:
         added = self.value(statement.value)
         before = self.value(statement.target)
         if isinstance(before, Items) and isinstance(added, Items):
@@ -178,18 +179,20 @@ class Walker:
             if isinstance(holder, Object):
                 holder.attributes[target.attr] = value
 
-    def returned(self, statement: ast.Return) -> bool:
+    def run_Return(self, statement: ast.Return) -> bool:
         value = Constant(None) if statement.value is None else self.value(statement.value)
         self.returns.append((tuple(self.conditions[self.base :]), value))
         return True
 
-    def raised(self, statement: ast.Raise) -> bool:
+    def run_Raise(self, statement: ast.Raise) -> bool:
         return True
 
-    def jumped(self, statement: ast.stmt) -> bool:
+    def run_Break(self, statement: ast.stmt) -> bool:
         return True
 
-    def branch(self, statement: ast.If) -> bool | Condition | None:
+    run_Continue = run_Break
+
+    def run_If(self, statement: ast.If) -> bool | Condition | None:
         decided = self.truth(statement.test)
         if isinstance(decided, bool):
             return self.block(statement.body if decided else statement.orelse)
@@ -218,7 +221,7 @@ class Walker:
                 names[name] = Either(decided, value, names[name])
         return None
 
-    def loop(self, statement: ast.For) -> None:
+    def run_For(self, statement: ast.For) -> None:
         turns = self.turns(self.value(statement.iter))
         if turns is None:
             over = f"for {source_of(statement.target)} in {source_of(statement.iter)}"
@@ -253,35 +256,37 @@ class Walker:
             return None
         return items if len(items) <= MOST_TURNS else None
 
-    def while_(self, statement: ast.While) -> None:
+    def run_While(self, statement: ast.While) -> None:
         self.conditions.append(Condition("each", (other(f"while {source_of(statement.test)}"),), statement.lineno))
         self.block(statement.body)
         self.conditions.pop()
 
-    def with_(self, statement: ast.With) -> bool:
+    def run_With(self, statement: ast.With) -> bool:
         for item in statement.items:
             value = self.value(item.context_expr)
             if item.optional_vars is not None:
                 self.bind(item.optional_vars, value)
         return self.block(statement.body)
 
-    def try_(self, statement: ast.Try) -> bool:
+    def run_Try(self, statement: ast.Try) -> bool:
         jumps = self.block(statement.body)
         if not jumps:
             jumps = self.block(statement.orelse)
         return self.block(statement.finalbody) or jumps
 
-    def define(self, statement: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
+    def run_FunctionDef(self, statement: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
         self.scope.names[statement.name] = Function(statement, self.scope)
 
-    def class_(self, statement: ast.ClassDef) -> None:
+    run_AsyncFunctionDef = run_FunctionDef
+
+    def run_ClassDef(self, statement: ast.ClassDef) -> None:
         type_ = Class(statement.name, self.scope)
         for inner in statement.body:
             if isinstance(inner, (ast.FunctionDef, ast.AsyncFunctionDef)):
                 type_.methods[inner.name] = Function(inner, self.scope)
         self.scope.names[statement.name] = type_
 
-    def import_(self, statement: ast.Import) -> None:
+    def run_Import(self, statement: ast.Import) -> None:
         for alias in statement.names:
             if alias.asname:
                 self.scope.names[alias.asname] = Module(alias.name)
@@ -289,7 +294,7 @@ class Walker:
                 top = alias.name.partition(".")[0]
                 self.scope.names[top] = Module(top)
 
-    def import_from(self, statement: ast.ImportFrom) -> None:
+    def run_ImportFrom(self, statement: ast.ImportFrom) -> None:
         for alias in statement.names:
             self.scope.names[alias.asname or alias.name] = Module(f"{statement.module or ''}.{alias.name}")
 
@@ -320,7 +325,7 @@ class Walker:
             return True
         return (other(source_of(node)),)
 
-    def comparison(self, node: ast.Compare) -> Any:
+    def value_Compare(self, node: ast.Compare) -> Any:
         if len(node.ops) != 1:
             return Unknown(source_of(node))
         op = node.ops[0]
@@ -376,18 +381,18 @@ class Walker:
             return Unknown(source_of(node))
         return handler(self, node)
 
-    def constant(self, node: ast.Constant) -> Any:
+    def value_Constant(self, node: ast.Constant) -> Any:
         if isinstance(node.value, str):
             return Text(literal(node.value))
         if node.value is None or isinstance(node.value, (bool, int, float)):
             return Constant(node.value)
         return Unknown(source_of(node))
 
-    def name(self, node: ast.Name) -> Any:
+    def value_Name(self, node: ast.Name) -> Any:
         found = self.scope.look(node.id)
         return Module(node.id) if found is None else found
 
-    def attribute(self, node: ast.Attribute) -> Any:
+    def value_Attribute(self, node: ast.Attribute) -> Any:
         receiver = self.value(node.value)
         name = node.attr
         if isinstance(receiver, Module):
@@ -407,7 +412,7 @@ class Walker:
             return Unknown(source_of(node))
         return Method(receiver, name)
 
-    def subscript(self, node: ast.Subscript) -> Any:
+    def value_Subscript(self, node: ast.Subscript) -> Any:
         holder = self.value(node.value)
         key = self.value(node.slice) if not isinstance(node.slice, ast.Slice) else None
         if isinstance(holder, Module) and holder.path == "os.environ" and isinstance(key, Text):
@@ -424,7 +429,7 @@ class Walker:
             return holder.items[place]
         return Unknown(source_of(node))
 
-    def sequence(self, node: ast.List | ast.Tuple) -> Any:
+    def value_List(self, node: ast.List | ast.Tuple) -> Any:
         items: list[Any] = []
         for element in node.elts:
             if isinstance(element, ast.Starred):
@@ -437,7 +442,9 @@ class Walker:
                 items.append(self.value(element))
         return Items(items, len(self.conditions), "tuple" if isinstance(node, ast.Tuple) else "list")
 
-    def mapping(self, node: ast.Dict) -> Any:
+    value_Tuple = value_List
+
+    def value_Dict(self, node: ast.Dict) -> Any:
         made = Pairs([], len(self.conditions))
         for key, item in zip(node.keys, node.values, strict=True):
             value = self.value(item)
@@ -450,14 +457,14 @@ class Walker:
                 made.set(Unknown(source_of(item)), value)
         return made
 
-    def formatted(self, node: ast.JoinedStr) -> Any:
+    def value_JoinedStr(self, node: ast.JoinedStr) -> Any:
         values: list[Value] = []
         for part in node.values:
             inner = part.value if isinstance(part, ast.FormattedValue) else part
             values.append(self.text(self.value(inner), inner))
         return Text(together(values))
 
-    def operation(self, node: ast.BinOp) -> Any:
+    def value_BinOp(self, node: ast.BinOp) -> Any:
         left, right = self.value(node.left), self.value(node.right)
         if isinstance(node.op, ast.Add):
             return self.add(left, right, node)
@@ -499,7 +506,7 @@ class Walker:
             return calculated(node, left.value, right.value)
         return Unknown(source_of(node))
 
-    def boolean(self, node: ast.BoolOp) -> Any:
+    def value_BoolOp(self, node: ast.BoolOp) -> Any:
         """`and` and `or`: known where what comes first decides, else a value that tells at launch."""
         is_or = isinstance(node.op, ast.Or)
         open_: list[Value] = []
@@ -517,7 +524,7 @@ class Walker:
             open_.append(truth)
         return Text((Piece("or" if is_or else "and", "", tuple(open_)),)) if len(open_) > 1 else Text(open_[0])
 
-    def unary(self, node: ast.UnaryOp) -> Any:
+    def value_UnaryOp(self, node: ast.UnaryOp) -> Any:
         if isinstance(node.op, ast.Not):
             truth = self.truth(node.operand)
             return Constant(not truth) if isinstance(truth, bool) else Text((Piece("not", "", (truth,)),))
@@ -529,24 +536,24 @@ class Walker:
                 return value
         return Unknown(source_of(node))
 
-    def either(self, node: ast.IfExp) -> Any:
+    def value_IfExp(self, node: ast.IfExp) -> Any:
         truth = self.truth(node.test)
         if isinstance(truth, bool):
             return self.value(node.body if truth else node.orelse)
         return Either(truth, self.value(node.body), self.value(node.orelse))
 
-    def lambda_(self, node: ast.Lambda) -> Any:
+    def value_Lambda(self, node: ast.Lambda) -> Any:
         return Function(node, self.scope)
 
-    def walrus(self, node: ast.NamedExpr) -> Any:
+    def value_NamedExpr(self, node: ast.NamedExpr) -> Any:
         value = self.value(node.value)
         self.bind(node.target, value)
         return value
 
-    def starred(self, node: ast.Starred) -> Any:
+    def value_Starred(self, node: ast.Starred) -> Any:
         return self.value(node.value)
 
-    def comprehension(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp) -> Any:
+    def value_ListComp(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp) -> Any:
         outer, self.scope = self.scope, Scope(self.scope)
         made: list[Any] = []
         depth = len(self.conditions)
@@ -590,6 +597,10 @@ class Walker:
             del self.conditions[depth:]
         return Pairs(made, depth) if isinstance(node, ast.DictComp) else Items(made, depth)
 
+    value_GeneratorExp = value_ListComp
+    value_SetComp = value_ListComp
+    value_DictComp = value_ListComp
+
     # Lists under conditions
 
     def guarded(self, value: Any, depth: int) -> Any:
@@ -603,7 +614,7 @@ class Walker:
 
     # Calls
 
-    def call(self, node: ast.Call) -> Any:
+    def value_Call(self, node: ast.Call) -> Any:
         function = self.value(node.func)
         self.line = node.lineno
         arguments: list[Any] = []
@@ -861,46 +872,5 @@ def _continues(body: Sequence[ast.stmt]) -> bool:
     )
 
 
-_STATEMENTS: dict[type, Callable[[Walker, Any], Any]] = {
-    ast.Expr: Walker.expression,
-    ast.Assign: Walker.assign,
-    ast.AnnAssign: Walker.annotated,
-    ast.AugAssign: Walker.augmented,
-    ast.Return: Walker.returned,
-    ast.Raise: Walker.raised,
-    ast.Break: Walker.jumped,
-    ast.Continue: Walker.jumped,
-    ast.If: Walker.branch,
-    ast.For: Walker.loop,
-    ast.While: Walker.while_,
-    ast.With: Walker.with_,
-    ast.Try: Walker.try_,
-    ast.FunctionDef: Walker.define,
-    ast.AsyncFunctionDef: Walker.define,
-    ast.ClassDef: Walker.class_,
-    ast.Import: Walker.import_,
-    ast.ImportFrom: Walker.import_from,
-}
-_EXPRESSIONS: dict[type, Callable[[Walker, Any], Any]] = {
-    ast.Constant: Walker.constant,
-    ast.Name: Walker.name,
-    ast.Attribute: Walker.attribute,
-    ast.Subscript: Walker.subscript,
-    ast.List: Walker.sequence,
-    ast.Tuple: Walker.sequence,
-    ast.Dict: Walker.mapping,
-    ast.JoinedStr: Walker.formatted,
-    ast.BinOp: Walker.operation,
-    ast.BoolOp: Walker.boolean,
-    ast.UnaryOp: Walker.unary,
-    ast.Compare: Walker.comparison,
-    ast.IfExp: Walker.either,
-    ast.Lambda: Walker.lambda_,
-    ast.NamedExpr: Walker.walrus,
-    ast.Starred: Walker.starred,
-    ast.ListComp: Walker.comprehension,
-    ast.GeneratorExp: Walker.comprehension,
-    ast.SetComp: Walker.comprehension,
-    ast.DictComp: Walker.comprehension,
-    ast.Call: Walker.call,
-}
+_STATEMENTS = node_methods(Walker, "run_")
+_EXPRESSIONS = node_methods(Walker, "value_")

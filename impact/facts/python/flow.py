@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
+from ....edges.dispatch import node_methods
 from ..flow import Access, Alias, Assignment, Expr, FlowFile
 from ..place import Problem
 from .flow_body import Body, ClassBody
@@ -131,7 +132,7 @@ class Statements(Expressions):
         self.guard = saved
         return leaving
 
-    def if_(self, node: ast.If) -> Leaving:
+    def read_If(self, node: ast.If) -> Leaving:
         """An if with its chain of elifs."""
         saved = self.guard
         branches: list[tuple[Test, Leaving]] = []
@@ -154,7 +155,7 @@ class Statements(Expressions):
             last = either(asked, leaving, last)
         return last
 
-    def while_(self, node: ast.While) -> Leaving:
+    def read_While(self, node: ast.While) -> Leaving:
         self.visit(node.test)
         text = self.source(node.test)
         self.under("while", text, node.lineno, node.body)
@@ -167,7 +168,7 @@ class Statements(Expressions):
             return (Condition("if", "break", node.lineno),) if left is None else STAYS
         return JUMPS if endless else left
 
-    def for_(self, node: ast.For) -> Leaving:
+    def read_For(self, node: ast.For) -> Leaving:
         saved = self.guard
         self.walked(node.target, node.iter, node.lineno)
         self.block(node.body)
@@ -180,7 +181,9 @@ class Statements(Expressions):
             return (Condition("if", "break", node.lineno),)
         return STAYS
 
-    def try_(self, node: ast.Try) -> Leaving:
+    read_AsyncFor = read_For
+
+    def read_Try(self, node: ast.Try) -> Leaving:
         saved = self.guard
         left = self.block(node.body)
         caught: list[tuple[str, int, Leaving]] = []
@@ -213,7 +216,9 @@ class Statements(Expressions):
         )
         return (*jumping, *last) if going_on else (*left, *jumping, *last)
 
-    def with_(self, node: ast.With) -> Leaving:
+    read_TryStar = read_Try
+
+    def read_With(self, node: ast.With) -> Leaving:
         heads: list[str] = []
         for item in node.items:
             variable = item.optional_vars
@@ -228,7 +233,9 @@ class Statements(Expressions):
         swallows = leaving is None and any(_SWALLOWS.match(head) for head in heads)
         return STAYS if swallows else leaving
 
-    def match(self, node: ast.Match) -> Leaving:
+    read_AsyncWith = read_With
+
+    def read_Match(self, node: ast.Match) -> Leaving:
         subject = self.value(node.subject, "read")
         head = self.source(node.subject)
         if node.subject.__class__ not in (ast.Name, ast.Attribute, ast.Call, ast.Subscript):
@@ -313,7 +320,7 @@ class Statements(Expressions):
 
     # Jumps
 
-    def returned(self, node: ast.Return) -> Leaving:
+    def read_Return(self, node: ast.Return) -> Leaving:
         if node.value is not None:
             value = self.value(node.value, "escape", target="return")
             self.add_assignment("", value, node.lineno, "return")
@@ -323,17 +330,19 @@ class Statements(Expressions):
         """The body of a lambda, which is what it returns."""
         self.add_assignment("", self.value(node, "escape", target="return"), node.lineno, "return")
 
-    def raised_(self, node: ast.Raise) -> Leaving:
+    def read_Raise(self, node: ast.Raise) -> Leaving:
         if node.exc is not None:
             self.value(node.exc, "escape")
         if node.cause is not None:
             self.visit(node.cause)
         return JUMPS
 
-    def jump(self, node: ast.stmt) -> Leaving:
+    def read_Break(self, node: ast.stmt) -> Leaving:
         return JUMPS
 
-    def asserted(self, node: ast.Assert) -> Leaving:
+    read_Continue = read_Break
+
+    def read_Assert(self, node: ast.Assert) -> Leaving:
         self.visit(node.test)
         if node.msg is not None:
             self.visit(node.msg)
@@ -341,14 +350,14 @@ class Statements(Expressions):
 
     # Plain statements
 
-    def expression(self, node: ast.Expr) -> Leaving:
+    def read_Expr(self, node: ast.Expr) -> Leaving:
         value = node.value
         if value.__class__ is ast.Call:
             return JUMPS if self.call(value)[0] in EXITS else STAYS  # type: ignore[arg-type]
         self.visit(value)
         return JUMPS if node.lineno in self.raised and value.__class__ is ast.Tuple else STAYS
 
-    def assign(self, node: ast.Assign) -> Leaving:
+    def read_Assign(self, node: ast.Assign) -> Leaving:
         targets = node.targets
         first = targets[0]
         if len(targets) == 1 and first.__class__ in (ast.Tuple, ast.List):
@@ -374,7 +383,7 @@ class Statements(Expressions):
             return Expr("list", "", tuple(self.value(each, "escape", target=self.spelt(part)) for part, each in pairs))
         return self.value(value, "escape")
 
-    def annotated(self, node: ast.AnnAssign) -> Leaving:
+    def read_AnnAssign(self, node: ast.AnnAssign) -> Leaving:
         type = self.annotation(node.annotation)
         target = node.target
         if node.value is not None:
@@ -398,7 +407,7 @@ class Statements(Expressions):
         if self.body.cls is not None:
             self.body.cls.member(name, type, line, None)
 
-    def changed(self, node: ast.AugAssign) -> Leaving:
+    def read_AugAssign(self, node: ast.AugAssign) -> Leaving:
         target = node.target
         self.visit(target)
         path = self.spelt(target)
@@ -406,7 +415,7 @@ class Statements(Expressions):
         self.bind(target, value, node.lineno, operator=_OPERATORS[node.op.__class__])
         return STAYS
 
-    def deleted(self, node: ast.Delete) -> Leaving:
+    def read_Delete(self, node: ast.Delete) -> Leaving:
         for target in node.targets:
             if target.__class__ is ast.Attribute or target.__class__ is ast.Subscript:
                 path, local = self.reach(target)
@@ -414,16 +423,18 @@ class Statements(Expressions):
                     self.accesses.append(Access(path, "write", target.lineno, self.guard))
         return STAYS
 
-    def elsewhere(self, node: ast.Global | ast.Nonlocal) -> Leaving:
+    def read_Global(self, node: ast.Global | ast.Nonlocal) -> Leaving:
         for name in node.names:
             self.body.outside[name] = node.__class__
             self.locals.discard(name)
         return STAYS
 
-    def nothing(self, node: ast.stmt) -> Leaving:
+    read_Nonlocal = read_Global
+
+    def read_Pass(self, node: ast.stmt) -> Leaving:
         return STAYS
 
-    def imported(self, node: ast.Import) -> Leaving:
+    def read_Import(self, node: ast.Import) -> Leaving:
         scope = self.body.name
         for alias in node.names:
             if alias.asname:
@@ -433,7 +444,7 @@ class Statements(Expressions):
                 self.aliases.append(Alias(head, head, scope))
         return STAYS
 
-    def imported_from(self, node: ast.ImportFrom) -> Leaving:
+    def read_ImportFrom(self, node: ast.ImportFrom) -> Leaving:
         scope = self.body.name
         module = "." * node.level + (node.module or "")
         for alias in node.names:
@@ -455,7 +466,7 @@ class Statements(Expressions):
                 found.append(self.reach(decorator)[0])
         return tuple(found)
 
-    def define(self, node) -> Leaving:
+    def read_FunctionDef(self, node) -> Leaving:
         decorators = self.decorators(node)
         current = self.body
         method = self.in_class
@@ -476,7 +487,9 @@ class Statements(Expressions):
         self.waiting.append((body, node.body))
         return STAYS
 
-    def define_class(self, node: ast.ClassDef) -> Leaving:
+    read_AsyncFunctionDef = read_FunctionDef
+
+    def read_ClassDef(self, node: ast.ClassDef) -> Leaving:
         self.decorators(node)
         outer, saved, in_class, own = self.body, self.guard, self.in_class, self.own
         name = f"{outer.name}.{node.name}" if outer.name else node.name
@@ -528,33 +541,4 @@ def _definitions(statements: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.A
 
 
 _SWALLOWS = re.compile(r"(?:[\w.]+\.)?(?:suppress|raises|assertRaises\w*)\(")
-_STATEMENTS: dict[type, Callable[..., Leaving]] = {
-    ast.If: Statements.if_,
-    ast.While: Statements.while_,
-    ast.For: Statements.for_,
-    ast.AsyncFor: Statements.for_,
-    ast.Try: Statements.try_,
-    ast.With: Statements.with_,
-    ast.AsyncWith: Statements.with_,
-    ast.Match: Statements.match,
-    ast.Return: Statements.returned,
-    ast.Raise: Statements.raised_,
-    ast.Break: Statements.jump,
-    ast.Continue: Statements.jump,
-    ast.Assert: Statements.asserted,
-    ast.Expr: Statements.expression,
-    ast.Assign: Statements.assign,
-    ast.AnnAssign: Statements.annotated,
-    ast.AugAssign: Statements.changed,
-    ast.Delete: Statements.deleted,
-    ast.Global: Statements.elsewhere,
-    ast.Nonlocal: Statements.elsewhere,
-    ast.Pass: Statements.nothing,
-    ast.Import: Statements.imported,
-    ast.ImportFrom: Statements.imported_from,
-    ast.FunctionDef: Statements.define,
-    ast.AsyncFunctionDef: Statements.define,
-    ast.ClassDef: Statements.define_class,
-}
-if hasattr(ast, "TryStar"):
-    _STATEMENTS[ast.TryStar] = Statements.try_  # type: ignore[attr-defined]
+_STATEMENTS = node_methods(Statements, "read_")

@@ -10,9 +10,9 @@ Assignment tells what goes on from there; what is kept elsewhere, returned or li
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
 from itertools import pairwise
 
+from ....edges.dispatch import node_methods
 from ..flow import Access, Assignment, Call, Expr, Member, Parameter
 from .flow_body import Body, ClassBody
 from .flow_reading import ANY, LONGEST_OTHER
@@ -67,20 +67,22 @@ class Expressions(Strings):
             elif child is not None:
                 self.visit(child)
 
-    def visit_constant(self, node) -> None:
+    def visit_Constant(self, node) -> None:
         pass
 
-    def visit_name(self, node: ast.Name) -> None:
+    def visit_Name(self, node: ast.Name) -> None:
         name = node.id
         if name in self.locals or self.sees(name):
             self.accesses.append(Access(name, "read", node.lineno, self.guard))
 
-    def visit_path(self, node) -> None:
+    def visit_Attribute(self, node) -> None:
         path, local = self.reach(node)
         if local:
             self.accesses.append(Access(path, "read", node.lineno, self.guard))
 
-    def visit_and_or(self, node: ast.BoolOp) -> None:
+    visit_Subscript = visit_Attribute
+
+    def visit_BoolOp(self, node: ast.BoolOp) -> None:
         saved, count = self.guard, len(self.guards)
         kind = "if" if node.op.__class__ is ast.And else "unless"
         values = node.values
@@ -93,27 +95,33 @@ class Expressions(Strings):
         if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
             del self.guards[count:]
 
-    def visit_choice(self, node: ast.IfExp) -> None:
+    def visit_IfExp(self, node: ast.IfExp) -> None:
         self.value(node, "read")
 
-    def visit_lambda(self, node: ast.Lambda) -> None:
-        self.lambda_(node, "")
+    def visit_Lambda(self, node: ast.Lambda) -> None:
+        self.value_Lambda(node, "")
 
-    def visit_named(self, node: ast.NamedExpr) -> None:
-        self.named(node, "read")
+    def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
+        self.value_NamedExpr(node, "read")
 
-    def visit_comprehension(self, node) -> None:
-        self.comprehension(node, "")
+    def visit_ListComp(self, node) -> None:
+        self.value_ListComp(node, "")
 
-    def visit_string(self, node: ast.JoinedStr) -> None:
-        self.joined(node, "read")
+    visit_SetComp = visit_ListComp
+    visit_GeneratorExp = visit_ListComp
+    visit_DictComp = visit_ListComp
 
-    def visit_call(self, node: ast.Call) -> None:
+    def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
+        self.value_JoinedStr(node, "read")
+
+    def visit_Call(self, node: ast.Call) -> None:
         self.call(node)
 
-    def visit_yield(self, node) -> None:
+    def visit_Yield(self, node) -> None:
         if node.value is not None:
             self.value(node.value, "escape")
+
+    visit_YieldFrom = visit_Yield
 
     # Paths
 
@@ -190,7 +198,7 @@ class Expressions(Strings):
         self.visit(node)
         return self.other(node)
 
-    def subscript(self, node: ast.Subscript, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_Subscript(self, node: ast.Subscript, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
         mark = len(self.accesses)
         container = self.value(node.value, "read")
         if node.slice.__class__ is ast.Slice:
@@ -210,7 +218,7 @@ class Expressions(Strings):
                     break
         return Expr("index", "", (container, index))
 
-    def choice(self, node: ast.IfExp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_IfExp(self, node: ast.IfExp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
         saved = self.guard
         self.visit(node.test)
         text, line = self.source(node.test), node.test.lineno
@@ -226,7 +234,7 @@ class Expressions(Strings):
             del self.guards[count:]
         return Expr("choice", "", (Expr("other", text[:LONGEST_OTHER]), true, false))
 
-    def and_or(self, node: ast.BoolOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_BoolOp(self, node: ast.BoolOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
         """`a or b` is a choice between a and b; `a and b` one between b and a."""
         saved, count = self.guard, len(self.guards)
         both = node.op.__class__ is ast.And
@@ -251,14 +259,14 @@ class Expressions(Strings):
             result = Expr("choice", "", (asked, result, first) if both else (asked, first, result))
         return result
 
-    def minus(self, node: ast.UnaryOp, *_: object) -> Expr:
+    def value_UnaryOp(self, node: ast.UnaryOp, *_: object) -> Expr:
         operand = node.operand
         if node.op.__class__ is ast.USub and operand.__class__ is ast.Constant:
             return Expr("number", self.source(node))
         self.visit(operand)
         return self.other(node)
 
-    def listed(self, node, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_Tuple(self, node, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
         element = target + ".[]" if target and target != "return" else ""
         elements = node.elts
         if len(elements) > LONGEST_LIST:
@@ -269,7 +277,10 @@ class Expressions(Strings):
             return Expr("list", "", tuple(kept))
         return Expr("list", "", tuple([self.value(each, "escape", to, target=element) for each in elements]))
 
-    def mapping(self, node: ast.Dict, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    value_List = value_Tuple
+    value_Set = value_Tuple
+
+    def value_Dict(self, node: ast.Dict, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
         element = target + ".[]" if target and target != "return" else ""
         pairs: list[Expr] = []
         for key, value in zip(node.keys, node.values, strict=False):
@@ -284,19 +295,19 @@ class Expressions(Strings):
                 pairs.append(Expr("list", "", (name, self.value(value, "escape", to, target=element))))
         return Expr("list", "", tuple(pairs))
 
-    def starred(self, node: ast.Starred, use: str, to: str, *_: object) -> Expr:
+    def value_Starred(self, node: ast.Starred, use: str, to: str, *_: object) -> Expr:
         return Expr("keyword", "*", (self.value(node.value, "escape", to),))
 
-    def awaited(self, node: ast.Await, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_Await(self, node: ast.Await, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
         return self.value(node.value, use, to, position, keyword, target)
 
-    def named(self, node: ast.NamedExpr, use: str, *_: object) -> Expr:
+    def value_NamedExpr(self, node: ast.NamedExpr, use: str, *_: object) -> Expr:
         target = self.spelt(node.target)
         value = self.value(node.value, "read", target, target=target)
         self.bind(node.target, value, node.lineno)
         return value
 
-    def lambda_(self, node: ast.Lambda, use: str, *_: object) -> Expr:
+    def value_Lambda(self, node: ast.Lambda, use: str, *_: object) -> Expr:
         around = self.body.name
         own = f"lambda@{node.lineno}:{self.column(node.lineno, node.col_offset)}"
         name = f"{around}.{own}" if around else own
@@ -337,7 +348,7 @@ class Expressions(Strings):
             found.append(Parameter("**" + arguments.kwarg.arg, self.annotation(arguments.kwarg.annotation)))
         return tuple(found)
 
-    def comprehension(
+    def value_ListComp(
         self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = ""
     ) -> Expr:
         saved, in_class = self.guard, self.in_class
@@ -355,6 +366,10 @@ class Expressions(Strings):
             each = self.value(node.elt, "escape", to, target=element)
         self.guard, self.in_class = saved, in_class
         return Expr("other", self.other(node).text, (each,))
+
+    value_SetComp = value_ListComp
+    value_GeneratorExp = value_ListComp
+    value_DictComp = value_ListComp
 
     def walked(self, target, iterated, line: int) -> None:
         """The head of a for: what is walked through and the variable that is each of it, under the loop's guard."""
@@ -513,41 +528,5 @@ def made(value: Expr) -> str:
     return value.text if value.kind == "make" else ""
 
 
-_VISITORS: dict[type, Callable[[Expressions, ast.AST], None]] = {
-    ast.Constant: Expressions.visit_constant,
-    ast.Name: Expressions.visit_name,
-    ast.Attribute: Expressions.visit_path,
-    ast.Subscript: Expressions.visit_path,
-    ast.BoolOp: Expressions.visit_and_or,
-    ast.IfExp: Expressions.visit_choice,
-    ast.Lambda: Expressions.visit_lambda,
-    ast.NamedExpr: Expressions.visit_named,
-    ast.ListComp: Expressions.visit_comprehension,
-    ast.SetComp: Expressions.visit_comprehension,
-    ast.GeneratorExp: Expressions.visit_comprehension,
-    ast.DictComp: Expressions.visit_comprehension,
-    ast.JoinedStr: Expressions.visit_string,
-    ast.Call: Expressions.visit_call,
-    ast.Yield: Expressions.visit_yield,
-    ast.YieldFrom: Expressions.visit_yield,
-}  # type: ignore[dict-item]
-_VALUES: dict[type, Callable[..., Expr]] = {
-    ast.Subscript: Expressions.subscript,
-    ast.IfExp: Expressions.choice,
-    ast.BoolOp: Expressions.and_or,
-    ast.BinOp: Expressions.operation,
-    ast.JoinedStr: Expressions.joined,
-    ast.UnaryOp: Expressions.minus,
-    ast.Tuple: Expressions.listed,
-    ast.List: Expressions.listed,
-    ast.Set: Expressions.listed,
-    ast.Dict: Expressions.mapping,
-    ast.Starred: Expressions.starred,
-    ast.Await: Expressions.awaited,
-    ast.NamedExpr: Expressions.named,
-    ast.Lambda: Expressions.lambda_,
-    ast.ListComp: Expressions.comprehension,
-    ast.SetComp: Expressions.comprehension,
-    ast.GeneratorExp: Expressions.comprehension,
-    ast.DictComp: Expressions.comprehension,
-}
+_VISITORS = node_methods(Expressions, "visit_")
+_VALUES = node_methods(Expressions, "value_")

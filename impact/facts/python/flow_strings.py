@@ -12,7 +12,7 @@ from .text import format_pieces, percent_pieces, printable
 class Strings(Reading):
     """The reader of strings that are put together."""
 
-    def operation(self, node: ast.BinOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+    def value_BinOp(self, node: ast.BinOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
         op = node.op.__class__
         if op is ast.Add:
             # Long sums lean to the left.
@@ -90,7 +90,7 @@ class Strings(Reading):
             return self.other(node)
         return self.put_together(node, format_pieces(node.func.value.value), values)  # type: ignore[attr-defined]
 
-    def joined(self, node: ast.JoinedStr, use: str, *_: object) -> Expr:
+    def value_JoinedStr(self, node: ast.JoinedStr, use: str, *_: object) -> Expr:
         outermost = not self.unplaced and node.lineno != node.end_lineno
         if outermost:
             # Where things stand in a string of several lines, interpreters before 3.12 do not know.

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import msgspec
 
+from ....edges.dispatch import node_methods
 from ..condition import Condition
 from ..place import Problem, Reference
 from .uses import CALLING_BACK, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
@@ -163,8 +164,11 @@ class Reader(Objects):
                 else:
                     self.inside(child)
 
-    def nothing(self, node) -> None:
+    def visit_Pass(self, node) -> None:
         pass
+
+    visit_Break = visit_Pass
+    visit_Continue = visit_Pass
 
     def column(self, line: int, offset: int) -> int:
         """A parser's offset in UTF-8 bytes as a column in characters, from 1."""
@@ -192,12 +196,12 @@ class Reader(Objects):
 
     # Names
 
-    def name(self, node: ast.Name) -> None:
+    def visit_Name(self, node: ast.Name) -> None:
         if node.ctx.__class__ is ast.Store:
             self.scope.bound.add(node.id)
             self.hold(node.id, "")
 
-    def attribute(self, node: ast.Attribute, call: ast.Call | None = None) -> None:
+    def visit_Attribute(self, node: ast.Attribute, call: ast.Call | None = None) -> None:
         steps = [node]
         value = node.value
         while value.__class__ is ast.Attribute:
@@ -267,7 +271,7 @@ class Reader(Objects):
         if (dotted, relevant) not in known:
             known.append((dotted, relevant))
 
-    def import_(self, node: ast.Import) -> None:
+    def visit_Import(self, node: ast.Import) -> None:
         for alias in node.names:
             column = self.column(alias.lineno, alias.col_offset)
             module = sys.intern(alias.name)
@@ -278,7 +282,7 @@ class Reader(Objects):
                 head = module.partition(".")[0]
                 self.bind_import(head, head, self.use_conditions)
 
-    def import_from(self, node: ast.ImportFrom) -> None:
+    def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
         module = sys.intern(node.module or "")
         dotted = "." * node.level + module
         column = self.column(node.lineno, node.col_offset)
@@ -316,7 +320,7 @@ class Reader(Objects):
         self.ways.append(scope.objects)
         scope.objects = before
 
-    def loop(self, node) -> None:
+    def visit_For(self, node) -> None:
         """A `for` or `while`, in which nothing is known that it binds itself."""
         first = len(self.ways)
         self.repeat(node)
@@ -329,13 +333,16 @@ class Reader(Objects):
         self.branch(node.orelse)
         self.merge(first)
 
+    visit_AsyncFor = visit_For
+    visit_While = visit_For
+
     def bind_element(self, target, over) -> None:
         """The variable of a loop, which holds an element of what is walked through."""
         self.visit(target)
         if self.has_interfaces and target.__class__ is ast.Name and (type_ := self.type_of(over)):
             self.hold(target.id, field_type(type_, ELEMENT))
 
-    def comprehension(self, node) -> None:
+    def visit_ListComp(self, node) -> None:
         outer = self.scope
         self.scope = Scope(outer, False)
         self.scope.parameters = outer.parameters
@@ -346,7 +353,11 @@ class Reader(Objects):
         self.block([node.key, node.value] if node.__class__ is ast.DictComp else [node.elt])
         self.scope = outer
 
-    def if_(self, node: ast.If) -> None:
+    visit_SetComp = visit_ListComp
+    visit_GeneratorExp = visit_ListComp
+    visit_DictComp = visit_ListComp
+
+    def visit_If(self, node: ast.If) -> None:
         test = self.source(node.test)
         self.visit(node.test)
         if "__main__" in test and "__name__" in test:
@@ -369,7 +380,7 @@ class Reader(Objects):
         self.under(node.orelse, condition, condition if about_machine else None)
         self.merge(first)
 
-    def if_expression(self, node: ast.IfExp) -> None:
+    def visit_IfExp(self, node: ast.IfExp) -> None:
         self.visit(node.test)
         test = self.source(node.test)
         before = self.use_conditions, self.conditional
@@ -384,7 +395,7 @@ class Reader(Objects):
             self.visit(node.orelse)
         self.use_conditions, self.conditional = before
 
-    def try_(self, node) -> None:
+    def visit_Try(self, node) -> None:
         caught: set[str] = set()
         for handler in node.handlers:
             kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
@@ -416,11 +427,11 @@ class Reader(Objects):
         self.merge(first)
         self.block(node.finalbody)
 
-    def try_star(self, node) -> None:
+    def visit_TryStar(self, node) -> None:
         self.need(11, node, "`except*`")
-        self.try_(node)
+        self.visit_Try(node)
 
-    def with_(self, node) -> None:
+    def visit_With(self, node) -> None:
         suppressed = False
         for item in node.items:
             call = item.context_expr
@@ -436,6 +447,8 @@ class Reader(Objects):
             self.merge(len(self.ways) - 1, self.scope.objects)
         else:
             self.block(node.body)
+
+    visit_AsyncWith = visit_With
 
     def parenthesised(self, node) -> bool:
         """`with (a as b, c as d):`. The tree does not tell; the text around the items does."""
@@ -459,7 +472,7 @@ class Reader(Objects):
 
     # Definitions
 
-    def function_(self, node) -> None:
+    def visit_FunctionDef(self, node) -> None:
         self.scope.bound.add(node.name)
         for decorator in node.decorator_list:
             self.visit(decorator)
@@ -496,9 +509,9 @@ class Reader(Objects):
         self.block(node.body)
         self.scope, self.function, self.defining, self.lazy, self.me = before
 
-    def async_function(self, node) -> None:
+    def visit_AsyncFunctionDef(self, node) -> None:
         self.need(5, node, "async functions")
-        self.function_(node)
+        self.visit_FunctionDef(node)
 
     def arguments(self, arguments: ast.arguments) -> None:
         for default in (*arguments.defaults, *arguments.kw_defaults):
@@ -519,7 +532,7 @@ class Reader(Objects):
             if argument is not None:
                 self.scope.bound.add(argument.arg)
 
-    def lambda_(self, node: ast.Lambda) -> None:
+    def visit_Lambda(self, node: ast.Lambda) -> None:
         self.arguments(node.args)
         before = self.scope, self.function, self.lazy
         self.scope = Scope(self.scope, False)
@@ -528,7 +541,7 @@ class Reader(Objects):
         self.visit(node.body)
         self.scope, self.function, self.lazy = before
 
-    def class_(self, node: ast.ClassDef) -> None:
+    def visit_ClassDef(self, node: ast.ClassDef) -> None:
         self.scope.bound.add(node.name)
         self.block(node.decorator_list)
         self.block(node.bases)
@@ -543,12 +556,12 @@ class Reader(Objects):
         self.inside_class.members |= self.scope.bound
         self.scope, self.inside_class, self.me = before
 
-    def global_(self, node: ast.Global) -> None:
+    def visit_Global(self, node: ast.Global) -> None:
         # An import or assignment here binds the module's name.
         for name in node.names:
             self.scope.imports.setdefault(name, self.scope.module.imports.setdefault(name, []))
 
-    def assign(self, node: ast.Assign) -> None:
+    def visit_Assign(self, node: ast.Assign) -> None:
         self.visit(node.value)
         for target in node.targets:
             if target.__class__ is ast.Name:
@@ -556,7 +569,7 @@ class Reader(Objects):
             elif target.__class__ is not ast.Attribute or not self.hold_own(target, self.type_of(node.value)):  # type: ignore
                 self.visit(target)
 
-    def annotated_assign(self, node: ast.AnnAssign) -> None:
+    def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
         self.need(6, node, "variable annotations")
         self.visit(node.annotation)
         if node.value is not None:
@@ -582,13 +595,13 @@ class Reader(Objects):
         else:
             self.hold(name, annotated or self.type_of(node))
 
-    def walrus(self, node: ast.NamedExpr) -> None:
+    def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
         self.need(8, node, "assignment expression")
         self.visit(node.value)
         self.visit(node.target)
         self.hold(node.target.id, self.type_of(node.value))
 
-    def match(self, node) -> None:
+    def visit_Match(self, node) -> None:
         self.need(10, node, "match statement")
         self.visit(node.subject)
         first = len(self.ways)
@@ -596,29 +609,29 @@ class Reader(Objects):
             self.branch([case])
         self.merge(first, self.scope.objects)
 
-    def template(self, node) -> None:
+    def visit_TemplateStr(self, node) -> None:
         self.need(14, node, "t-string")
         self.inside(node)
 
-    def type_alias(self, node) -> None:
+    def visit_TypeAlias(self, node) -> None:
         self.need(12, node, "type alias statement")
         self.inside(node)
 
-    def nonlocal_(self, node: ast.Nonlocal) -> None:
+    def visit_Nonlocal(self, node: ast.Nonlocal) -> None:
         self.need(0, node, "nonlocal")
 
-    def yield_from(self, node: ast.YieldFrom) -> None:
+    def visit_YieldFrom(self, node: ast.YieldFrom) -> None:
         self.need(3, node, "yield from")
         self.visit(node.value)
 
-    def raise_(self, node: ast.Raise) -> None:
+    def visit_Raise(self, node: ast.Raise) -> None:
         if node.cause is not None:
             self.need(0, node, "raise from")
         self.inside(node)
 
     # Mentions
 
-    def constant(self, node: ast.Constant) -> None:
+    def visit_Constant(self, node: ast.Constant) -> None:
         if self.has_paths and node.value.__class__ is str:
             self.mentioned_in(node.value, node)  # type: ignore[arg-type]
 
@@ -628,7 +641,7 @@ class Reader(Objects):
             path = (match.group("url_path") or match.group("find_path") or "").strip("/")
             self.refer("file" if path else "package", package, path, node)
 
-    def statement(self, node: ast.Expr) -> None:
+    def visit_Expr(self, node: ast.Expr) -> None:
         # A string on its own is documentation.
         if node.value.__class__ is not ast.Constant:
             self.visit(node.value)
@@ -642,7 +655,7 @@ class Reader(Objects):
     def all_references(self) -> tuple[Reference, ...]:
         return tuple(sorted(self.references, key=lambda reference: (reference.line, reference.column)))
 
-    def binary(self, node: ast.BinOp) -> None:
+    def visit_BinOp(self, node: ast.BinOp) -> None:
         if node.op.__class__ is ast.Add or node.op.__class__ is ast.Div:
             self.path(node)
         elif node.op.__class__ is ast.MatMult:
@@ -652,7 +665,7 @@ class Reader(Objects):
         self.visit(node.left)
         self.visit(node.right)
 
-    def formatted(self, node: ast.JoinedStr) -> None:
+    def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
         self.need(6, node, "f-string")
         if sys.version_info >= (3, 12):
             self.quotes(node)
@@ -673,11 +686,13 @@ class Reader(Objects):
                 if match.group(1) in expression or "\\" in expression:
                     self.need(12, node, "quotes or backslash inside an f-string")
 
-    def list_(self, node) -> None:
+    def visit_List(self, node) -> None:
         if len(node.elts) > 1:
             self.path(node)
         for item in node.elts:
             self.visit(item)
+
+    visit_Tuple = visit_List
 
     def path(self, node) -> None:
         """A file reference, when the expression names a file in a package's share folder and nothing around it does."""
@@ -689,7 +704,7 @@ class Reader(Objects):
             self.consumed.update(map(id, trace))
             self.refer("file", value.package, value.path, node, value.assumed)
 
-    def call(self, node: ast.Call) -> None:
+    def visit_Call(self, node: ast.Call) -> None:
         function = self.callee(node.func)
         keywords = {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
         before = self.conditional
@@ -729,7 +744,7 @@ class Reader(Objects):
             self.call_back(node, function)
         self.use_call(node)
         if node.func.__class__ is ast.Attribute:
-            self.attribute(node.func, node)  # type: ignore[arg-type]
+            self.visit_Attribute(node.func, node)  # type: ignore[arg-type]
         else:
             self.visit(node.func)
         if function == "IncludeLaunchDescription" and node.args:
@@ -837,50 +852,4 @@ def _last_name(node) -> str:
     return getattr(node, "id", None) or getattr(node, "attr", "")
 
 
-_HANDLERS = {
-    ast.Name: Reader.name,
-    ast.Attribute: Reader.attribute,
-    ast.Constant: Reader.constant,
-    ast.Expr: Reader.statement,
-    ast.Import: Reader.import_,
-    ast.ImportFrom: Reader.import_from,
-    ast.If: Reader.if_,
-    ast.IfExp: Reader.if_expression,
-    ast.For: Reader.loop,
-    ast.AsyncFor: Reader.loop,
-    ast.While: Reader.loop,
-    ast.ListComp: Reader.comprehension,
-    ast.SetComp: Reader.comprehension,
-    ast.GeneratorExp: Reader.comprehension,
-    ast.DictComp: Reader.comprehension,
-    ast.Try: Reader.try_,
-    ast.With: Reader.with_,
-    ast.AsyncWith: Reader.with_,
-    ast.FunctionDef: Reader.function_,
-    ast.AsyncFunctionDef: Reader.async_function,
-    ast.Lambda: Reader.lambda_,
-    ast.ClassDef: Reader.class_,
-    ast.Global: Reader.global_,
-    ast.Nonlocal: Reader.nonlocal_,
-    ast.Assign: Reader.assign,
-    ast.AnnAssign: Reader.annotated_assign,
-    ast.NamedExpr: Reader.walrus,
-    ast.Match: Reader.match,
-    ast.YieldFrom: Reader.yield_from,
-    ast.Raise: Reader.raise_,
-    ast.BinOp: Reader.binary,
-    ast.JoinedStr: Reader.formatted,
-    ast.List: Reader.list_,
-    ast.Tuple: Reader.list_,
-    ast.Call: Reader.call,
-    ast.Pass: Reader.nothing,
-    ast.Break: Reader.nothing,
-    ast.Continue: Reader.nothing,
-}
-for _name, _handler in (
-    ("TryStar", Reader.try_star),
-    ("TypeAlias", Reader.type_alias),
-    ("TemplateStr", Reader.template),
-):
-    if hasattr(ast, _name):
-        _HANDLERS[getattr(ast, _name)] = _handler
+_HANDLERS = node_methods(Reader, "visit_")
