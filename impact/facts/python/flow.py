@@ -11,8 +11,7 @@ from ..flow import Access, Alias, Assignment, Expr, FlowFile
 from ..place import Problem
 from .flow_body import Body, ClassBody
 from .flow_conditions import EXITS, JUMPS, STAYS, Condition, Leaving, Test, breaks, either, test, within
-from .flow_expressions import Expressions
-from .flow_reading import ANY
+from .flow_expressions import ANY, Expressions
 from .source import Source, read
 
 _OPERATORS = {

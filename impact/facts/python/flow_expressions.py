@@ -13,10 +13,9 @@ import ast
 from itertools import pairwise
 
 from ....edges.dispatch import node_methods
-from ..flow import Access, Assignment, Call, Expr, Member, Parameter
+from ..flow import Access, Assignment, Call, Expr, Guard, Member, Parameter
 from .flow_body import Body, ClassBody
-from .flow_reading import ANY, LONGEST_OTHER
-from .flow_strings import Strings
+from .text import Text, child_fields, format_pieces, percent_pieces, printable
 
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500
@@ -31,29 +30,116 @@ _READING = frozenset(
 )
 # Methods whose argument becomes an element of what they are called on.
 _KEEPING = {"append": 0, "add": 0, "appendleft": 0, "insert": 1, "setdefault": 1, "put": 0}
-
-
-def _children() -> dict[type, tuple[str, ...]]:
-    """For every class of expressions the fields that hold others."""
-    plain = ("ctx", "id", "attr", "op", "ops", "kind", "conversion", "n", "s", "value_kind")
-    found: dict[type, tuple[str, ...]] = {}
-    for cls in vars(ast).values():
-        if isinstance(cls, type) and issubclass(cls, ast.AST):
-            found[cls] = tuple(field for field in cls._fields if field not in plain)
-    found[ast.Constant] = ()
-    return found
-
-
-_CHILDREN = _children()
+_CHILDREN = child_fields("ctx", "id", "attr", "op", "ops", "kind", "conversion", "n", "s", "value_kind")
 _PATHS = (ast.Name, ast.Attribute, ast.Subscript)
+LONGEST_OTHER = 120
+ANY = Expr("other")
+_NUMBERS = {None: Expr("number", "None"), True: Expr("number", "True"), False: Expr("number", "False")}
 
 
-class Expressions(Strings):
-    """The reader of expressions, of which it visits some and makes values of others."""
+class Expressions(Text):
+    """The reader of expressions, of which it visits some and makes values of others. It reads for one body at a time,
+    into whose lists it writes."""
+
+    body: Body
+    guard: int
+    this: str
+    locals: set[str]
+    guards: list[Guard]
+    calls: list[Call]
+    assignments: list[Assignment]
+    accesses: list[Access]
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.module_functions: set[str] = set()
+        self.class_bodies: dict[str, ClassBody] = {}
+        # Names that a class's own body knows without its object.
+        self.own: set[str] = set()
+        self.constants: list[Member] = []
+        # Functions whose bodies are still to be read, since they see all variables of the one they stand in.
+        self.waiting: list[tuple[Body, list[ast.stmt] | ast.expr]] = []
+        # Whether names are bound in the body of a class.
+        self.in_class = False
+
+    def enter(self, body: Body) -> None:
+        self.body = body
+        self.guard = -1
+        self.this = body.this
+        self.locals = body.locals
+        self.guards = body.guards
+        self.calls = body.calls
+        self.assignments = body.assignments
+        self.accesses = body.accesses
+        self.own = set()
+        self.in_class = False
+        self.unplaced = False
+
+    def push(self, kind: str, text: str, line: int, early: bool = False) -> None:
+        """A new guard around what follows."""
+        self.guards.append(Guard(kind, text, line, self.guard, early))
+        self.guard = len(self.guards) - 1
+
+    # Names
+
+    def sees(self, name: str) -> bool:
+        return self.body.outer is not None and self.body.sees(name)
+
+    def is_function(self, name: str) -> bool:
+        body = self.body
+        while body is not None:
+            if name in body.functions:
+                return True
+            body = body.outer
+        return name in self.module_functions
+
+    def spelt(self, node) -> str:
+        """The path of what is assigned to, nothing visited; empty for several."""
+        cls = node.__class__
+        if cls is ast.Name:
+            if node.id == self.this:
+                return "this"
+            return "this." + node.id if node.id in self.own or self.in_class else node.id
+        if cls is ast.Attribute:
+            return f"{self.spelt(node.value)}.{node.attr}"
+        if cls is ast.Subscript:
+            inner = self.spelt(node.value)
+            return inner if node.slice.__class__ is ast.Slice else f"{inner}.[]"
+        return "" if cls in (ast.Tuple, ast.List, ast.Starred) else "()"
+
+    # Plain values
+
+    def member(self, path: str, name: str) -> Expr:
+        cls = self.body.cls
+        return Expr("function" if cls is not None and name in cls.callbacks else "name", path)
+
+    def other(self, node) -> Expr:
+        return Expr("other", self.source(node)[:LONGEST_OTHER])
+
+    def constant(self, node: ast.Constant) -> Expr:
+        value = node.value
+        cls = value.__class__
+        if cls is str:
+            return Expr("text", value if value.isascii() else printable(value))  # type: ignore[union-attr]
+        if value is None or cls is bool:
+            return _NUMBERS[value]  # type: ignore[index]
+        if cls is int or cls is float or cls is complex:
+            return Expr("number", self.source(node))
+        return self.other(node)
+
+    def annotation(self, node) -> str:
+        """A type as written, quotes around it left out."""
+        if node is None:
+            return ""
+        if node.__class__ is ast.Constant and node.value.__class__ is str:
+            return printable(node.value)
+        return self.source(node)
+
 
     # Visiting, for calls and uses alone
 
     def visit(self, node) -> None:
+        """Records the calls and uses in an expression, the value of which nobody asks."""
         visitor = _VISITORS.get(node.__class__)
         if visitor is not None:
             visitor(self, node)
@@ -167,6 +253,8 @@ class Expressions(Strings):
     # Values
 
     def value(self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = "") -> Expr:
+        """An expression. use, to, position, keyword: the Access that it is if it is a path; target: what it is kept
+        in, `return` for what the function returns."""
         cls = node.__class__
         if cls is ast.Constant:
             return self.constant(node)
@@ -448,6 +536,112 @@ class Expressions(Strings):
             self.bind(target.value, value, line)
         else:
             self.visit(target)
+
+    # Strings and paths that are put together: joins of their pieces
+
+    def value_BinOp(self, node: ast.BinOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+        op = node.op.__class__
+        if op is ast.Add:
+            # Long sums lean to the left.
+            operands = [node.right]
+            left = node.left
+            while left.__class__ is ast.BinOp and left.op.__class__ is ast.Add:  # type: ignore[attr-defined]
+                operands.append(left.right)  # type: ignore[attr-defined]
+                left = left.left  # type: ignore[attr-defined]
+            operands.append(left)
+            operands.reverse()
+            return Expr("join", "+", tuple(self.value(operand, "read") for operand in operands))
+        if op is ast.Mod and node.left.__class__ is ast.Constant and node.left.value.__class__ is str:  # type: ignore[attr-defined]
+            return self.percent(node)
+        if op is ast.Div:
+            left = self.value(node.left, "read")
+            right = self.value(node.right, "read")
+            if (
+                "text" in (left.kind, right.kind)
+                or left.text.endswith("Path")
+                or (left.kind, left.text) == ("join", "/")
+            ):
+                parts = left.parts if (left.kind, left.text) == ("join", "/") else (left,)
+                return Expr("join", "/", (*parts, right))
+            return self.other(node)
+        self.visit(node.left)
+        self.visit(node.right)
+        return self.other(node)
+
+    def percent(self, node: ast.BinOp) -> Expr:
+        pieces = percent_pieces(node.left.value)  # type: ignore[attr-defined]
+        right = node.right
+        values: dict[int | str, Expr] = {}
+        if right.__class__ is ast.Tuple:
+            for place, element in enumerate(right.elts):  # type: ignore[attr-defined]
+                values[place] = self.value(element, "read")
+        elif right.__class__ is ast.Dict and None not in right.keys:  # type: ignore[attr-defined]
+            for key, element in zip(right.keys, right.values, strict=False):  # type: ignore[attr-defined]
+                known = key.value if key.__class__ is ast.Constant else ""
+                values[known if known.__class__ is str else ""] = self.value(element, "read")
+        else:
+            values[0] = self.value(right, "read")
+        return self.put_together(node, pieces, values)
+
+    def put_together(self, node, pieces: list[str | int | tuple[str]] | None, values: dict[int | str, Expr]) -> Expr:
+        """The join of literal pieces and values; other when a value is not told apart."""
+        if pieces is None:
+            return self.other(node)
+        parts: list[Expr] = []
+        for piece in pieces:
+            if piece.__class__ is str:
+                parts.append(Expr("text", printable(piece)))  # type: ignore[arg-type]
+            elif piece.__class__ is int:
+                if piece not in values:
+                    return self.other(node)
+                parts.append(values[piece])  # type: ignore[index]
+            else:
+                key = piece[0]  # type: ignore[index]
+                parts.append(values[key] if key in values else Expr("other", printable(key)[:LONGEST_OTHER]))
+        if len(parts) == 1 and parts[0].kind == "text":
+            return parts[0]
+        return Expr("join", "", tuple(parts))
+
+    def formatted(self, node: ast.Call) -> Expr:
+        """`"...".format(...)`."""
+        values: dict[int | str, Expr] = {}
+        unpacked = False
+        for place, argument in enumerate(node.args):
+            unpacked = unpacked or argument.__class__ is ast.Starred
+            values[place] = self.value(argument, "read")
+        for keyword in node.keywords:
+            value = self.value(keyword.value, "read")
+            if keyword.arg is not None:
+                values[keyword.arg] = value
+        if unpacked:
+            return self.other(node)
+        return self.put_together(node, format_pieces(node.func.value.value), values)  # type: ignore[attr-defined]
+
+    def value_JoinedStr(self, node: ast.JoinedStr, use: str, *_: object) -> Expr:
+        outermost = not self.unplaced and node.lineno != node.end_lineno
+        if outermost:
+            # Where things stand in a string of several lines, interpreters before 3.12 do not know.
+            self.unplaced = True
+            for inner in ast.walk(node):
+                if hasattr(inner, "lineno"):
+                    inner.lineno, inner.end_lineno = node.lineno, node.lineno  # type: ignore[attr-defined]
+                    inner.col_offset = inner.end_col_offset = node.col_offset  # type: ignore[attr-defined]
+        parts: list[Expr] = []
+        for piece in node.values:
+            if piece.__class__ is ast.Constant:
+                parts.append(self.constant(piece))  # type: ignore[arg-type]
+            elif piece.__class__ is ast.FormattedValue:
+                parts.append(self.value(piece.value, "read"))  # type: ignore[attr-defined]
+                if piece.format_spec is not None:  # type: ignore[attr-defined]
+                    self.visit(piece.format_spec)  # type: ignore[attr-defined]
+            else:
+                self.visit(piece)
+                parts.append(ANY)
+        if outermost:
+            self.unplaced = False
+        if not parts:
+            return Expr("text", "")
+        return parts[0] if len(parts) == 1 and parts[0].kind == "text" else Expr("join", "", tuple(parts))
 
     # Calls
 

@@ -10,6 +10,7 @@ import msgspec
 from ....edges.dispatch import node_methods
 from ..condition import Condition
 from ..place import Problem, Reference
+from .text import Text, child_fields
 from .uses import CALLING_BACK, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, VALUED, WRAPPERS, PackagePath, Scope
 
@@ -71,38 +72,20 @@ _IN_STRING = re.compile(
 )
 _QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
 _TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
-_NOT_NODES = frozenset(
-    (
-        *("arg", "attr", "asname", "conversion", "ctx", "id", "kind", "level", "lineno", "module", "name", "op", "ops"),
-        *("rest", "simple", "str", "tag", "type_comment", "type_ignores", "is_async", "kwd_attrs"),
-    )
+_CHILDREN = child_fields(
+    *("arg", "attr", "asname", "conversion", "ctx", "id", "kind", "level", "lineno", "module", "name", "op", "ops"),
+    *("rest", "simple", "str", "tag", "type_comment", "type_ignores", "is_async", "kwd_attrs"),
 )
 
 
-def _children() -> dict[type, tuple[str, ...]]:
-    """For every node class the fields that can hold nodes."""
-    children: dict[type, tuple[str, ...]] = {}
-    for cls in vars(ast).values():
-        if isinstance(cls, type) and issubclass(cls, ast.AST):
-            children[cls] = tuple(field for field in cls._fields if field not in _NOT_NODES)
-    # Their fields hold strings and constants, not nodes.
-    for leaf in (ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton):
-        children[leaf] = ()
-    return children
-
-
-_CHILDREN = _children()
-
-
-class Reader(Objects):
+class Reader(Objects, Text):
     """One walk over a syntax tree, in the order of the source."""
 
     def __init__(self, text: str, original: str) -> None:
-        super().__init__(text)
+        Objects.__init__(self, text)
+        Text.__init__(self, text)
         # The two differ where Python 2 syntax was rewritten; lines are the same, indentation may not be.
         self.original = original.split("\n") if original != text else []
-        self.ascii = text.isascii()
-        self.lines = text.split("\n")
         self.has_paths = "package://" in text or "$(find" in text
         self.imports: list[Import] = []
         # Line, offset, and whether only functions that may not run have it.
@@ -171,28 +154,15 @@ class Reader(Objects):
     visit_Continue = visit_Pass
 
     def column(self, line: int, offset: int) -> int:
-        """A parser's offset in UTF-8 bytes as a column in characters, from 1."""
+        """The same, in the text as it was before Python 2 was rewritten."""
         if line > len(self.lines):
             return offset + 1
-        if not self.ascii:
-            offset = len(self.lines[line - 1].encode("utf-8", "replace")[:offset].decode("utf-8", "ignore"))
-        if self.original:
-            offset = max(0, offset - len(self.lines[line - 1]) + len(self.original[line - 1]))
-        return offset + 1
+        column = super().column(line, offset)
+        return max(1, column - len(self.lines[line - 1]) + len(self.original[line - 1])) if self.original else column
 
     def need(self, minor: int, node, reason: str) -> None:
         if self.needs is None or minor > self.needs[0]:
             self.needs = (minor, node.lineno, reason)
-
-    def source(self, node) -> str:
-        """The source of an expression on one line."""
-        first, last = node.lineno - 1, node.end_lineno - 1
-        if first == last and self.ascii:
-            return sys.intern(self.lines[first][node.col_offset : node.end_col_offset])
-        lines = [line.encode("utf-8", "replace") for line in self.lines[first : last + 1]]
-        lines[-1] = lines[-1][: node.end_col_offset]
-        lines[0] = lines[0][node.col_offset :]
-        return " ".join(b" ".join(lines).decode("utf-8", "replace").split())
 
     # Names
 

@@ -13,6 +13,17 @@ _PERCENT = re.compile(
 _AT_MOST_LINES = 40
 
 
+def child_fields(*left_out: str) -> dict[type, tuple[str, ...]]:
+    """For every node class the fields that can hold nodes, all but those left out."""
+    fields = {
+        cls: tuple(field for field in cls._fields if field not in left_out)
+        for cls in vars(ast).values()
+        if isinstance(cls, type) and issubclass(cls, ast.AST)
+    }
+    # Their fields hold strings and constants, not nodes.
+    return {**fields, **dict.fromkeys((ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton), ())}
+
+
 class Text:
     """The text that a syntax tree was made from, by lines."""
 
