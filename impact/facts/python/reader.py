@@ -12,7 +12,7 @@ from ..condition import Condition
 from ..place import Problem, Reference
 from .text import Text, child_fields
 from .uses import CALLING_BACK, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
-from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, VALUED, WRAPPERS, PackagePath, Scope
+from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, Scope
 
 
 class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -556,7 +556,7 @@ class Reader(Objects, Text):
     def remember(self, name: str, node: ast.expr, annotated: str = "") -> None:
         scope = self.scope
         scope.bound.add(name)
-        value = self.value(node, []) if node.__class__ in VALUED else None
+        value = self.text(node)
         if name in scope.values and scope.values[name] != value:
             value = None
         scope.values[name] = value
@@ -668,10 +668,9 @@ class Reader(Objects, Text):
         """A file reference, when the expression names a file in a package's share folder and nothing around it does."""
         if id(node) in self.consumed:
             return
-        trace: list[ast.AST] = []
-        value = self.value(node, trace)
+        value = self.text(node)
         if isinstance(value, PackagePath) and value.path:
-            self.consumed.update(map(id, trace))
+            self.consumed.update(map(id, ast.walk(node)))
             self.refer("file", value.package, value.path, node, value.assumed)
 
     def visit_Call(self, node: ast.Call) -> None:
@@ -685,8 +684,8 @@ class Reader(Objects, Text):
         elif function in PACKAGE_CALLS or (function in ("get_path", "find") and node.args):
             self.package_call(node, function)
         elif function == "DeclareLaunchArgument":
-            name = self.value(node.args[0], []) if node.args else None
-            default = self.value(keywords["default_value"], []) if "default_value" in keywords else None
+            name = self.text(node.args[0]) if node.args else None
+            default = self.text(keywords["default_value"]) if "default_value" in keywords else None
             if isinstance(name, str) and isinstance(default, str):
                 self.launch_defaults[name] = default
         elif "package" in keywords:
@@ -694,18 +693,18 @@ class Reader(Objects, Text):
         elif function in _COMMAND_CALLS:
             self.command(node, keywords)
         elif function == "FindExecutable":
-            name = self.value(keywords.get("name") or (node.args[0] if node.args else node.func), [])
+            name = self.text(keywords.get("name") or (node.args[0] if node.args else node.func))
             if isinstance(name, str) and _PROGRAM.fullmatch(name):
                 self.refer("command", "", name, node)
         elif function == "find_node" or function == "find_resource":
-            texts = [self.value(argument, []) for argument in node.args[:2]]
+            texts = [self.text(argument) for argument in node.args[:2]]
             if len(texts) == 2 and all(isinstance(text, str) for text in texts):
                 self.refer("executable" if function == "find_node" else "file", str(texts[0]), str(texts[1]), node)
         elif function == "MoveItConfigsBuilder":
             # moveit_configs_utils looks for <robot>_moveit_config unless told the package.
             named = keywords.get("package_name")
             robot = keywords.get("robot_name") or (node.args[0] if node.args else None)
-            told = self.value(named or robot, []) if named is not None or robot is not None else None
+            told = self.text(named or robot) if named is not None or robot is not None else None
             if isinstance(told, str) and PACKAGE_NAME.fullmatch(told):
                 self.refer("package", told if named is not None else f"{told}_moveit_config", "", node)
         elif node.func.__class__ is ast.Name:
@@ -729,12 +728,11 @@ class Reader(Objects, Text):
         self.conditional = before
 
     def package_call(self, node: ast.Call, function: str) -> None:
-        trace: list[ast.AST] = []
-        value = self.value_of_call(node, trace)
+        value = self.text(node)
         argument = node.args[0] if node.args else node.keywords[0].value if node.keywords else node
         if isinstance(value, PackagePath):
             if id(node) not in self.consumed:
-                self.consumed.update(map(id, trace))
+                self.consumed.update(map(id, ast.walk(node)))
                 self.refer("package", value.package, "", argument, value.assumed)
         elif function == "find" or self.defining is None or not isinstance(argument, ast.Name):
             return
@@ -755,18 +753,18 @@ class Reader(Objects, Text):
                 if keyword.arg == parameter:
                     argument = keyword.value
             self.scope = scope
-            package = None if argument is None else self.package_name(argument, [])
+            package = None if argument is None else self.package_name(argument)
             if argument is not None and package is not None:
                 self.refer("package", package[0], "", argument, conditional or package[1])
 
     def launched(self, node: ast.Call, keywords: dict) -> None:
         """Node(package=, executable=), ComposableNode(package=, plugin=) and everything that looks like them."""
-        package = self.package_name(keywords["package"], [])
+        package = self.package_name(keywords["package"])
         if package is None:
             return
         executable = keywords.get("executable") or keywords.get("node_executable") or keywords.get("exec_name")
         plugin = keywords.get("plugin") or keywords.get("node_plugin")
-        name = self.value(executable or plugin, []) if executable or plugin else None
+        name = self.text(executable or plugin) if executable or plugin else None
         if isinstance(name, str) and name:
             kind = "executable" if executable else "plugin"
             self.refer(kind, package[0], name, executable or plugin, package[1])
@@ -779,10 +777,10 @@ class Reader(Objects, Text):
         words: list[str | None] = []
         if isinstance(given, (ast.List, ast.Tuple)):
             for item in given.elts:
-                text = self.value(item, [])
+                text = self.text(item)
                 words += text.split() if isinstance(text, str) else [None]
         elif given is not None:
-            text = self.value(given, [])
+            text = self.text(given)
             words = [*text.split()] if isinstance(text, str) else [None]
         program = words[0] if words else None
         if program is None or not _PROGRAM.fullmatch(program):

@@ -5,9 +5,12 @@ Module-level and local names bound to one such value count; anything else is unk
 
 import ast
 import re
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any
 
+from ....edges.dispatch import node_methods
 from ..condition import Condition
+from .constants import Constants, PackagePath, path_of, put_together
 
 # Functions and launch substitutions whose first argument is a package's name.
 PACKAGE_CALLS = frozenset(
@@ -48,14 +51,6 @@ PACKAGE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_\-]*")
 VALUED = frozenset((ast.Constant, ast.Name, ast.BinOp, ast.JoinedStr, ast.List, ast.Tuple, ast.Call))
 
 
-class PackagePath(NamedTuple):
-    """A value known to lie in the share folder of a package; path is empty for the folder itself."""
-
-    package: str
-    path: str
-    assumed: bool = False
-
-
 class Scope:
     """Names of a module, class or function: imported, otherwise bound, and bound to a known value."""
 
@@ -76,28 +71,11 @@ class Scope:
         self.module: Scope = self if parent is None else parent.module
 
 
-def _concatenated(parts) -> "str | PackagePath | None":
-    """Texts and at most one package folder, put together. `/` between parts of a path is never doubled."""
-    base: PackagePath | None = None
-    text = ""
-    for part in parts:
-        if isinstance(part, PackagePath):
-            if base is not None or text not in ("", "file://"):
-                return None
-            base, text = part, part.path
-        elif text.endswith("/") and part.startswith("/"):
-            text += part[1:]
-        elif base is not None and not text and not part.startswith("/"):
-            return None
-        else:
-            text += part
-    return text if base is None else PackagePath(base.package, text.lstrip("/"), base.assumed)
-
-
-class Values:
+class Values(Constants):
     """Evaluates expressions within the scope being read. Launch arguments count by their declared default."""
 
     def __init__(self, text: str) -> None:
+        super().__init__()
         self.has_rospkg = "rospkg" in text
         self.scope = Scope(None, False)
         self.launch_defaults: dict[str, str] = {}
@@ -113,85 +91,55 @@ class Values:
             looking = looking.parent
         return []
 
-    def value(self, node, trace: list) -> "str | PackagePath | None":
-        """What an expression is known to be: text or a place in a package. trace collects the nodes that told it."""
-        kind = node.__class__
-        if kind is ast.Constant:
-            return node.value if node.value.__class__ is str else None
-        trace.append(node)
-        if kind is ast.Name:
-            scope: Scope | None = self.scope
-            while scope is not None:
-                if node.id in scope.values:
-                    return scope.values[node.id]  # type: ignore[return-value]
-                if node.id in scope.bound:
-                    return None
-                scope = scope.parent
-            return None
-        if kind is ast.BinOp:
-            joined = node.op.__class__ is ast.Div
-            if not joined and node.op.__class__ is not ast.Add:
+    def text(self, node) -> str | PackagePath | None:
+        """The text or the place in a package that an expression is known to be. A list is one text, as substitutions
+        of a launch file are."""
+        value = self.value(node) if node.__class__ in VALUED else None
+        if isinstance(value, list):
+            value = put_together(_flat(value))
+        return str(value) if isinstance(value, str) else value if isinstance(value, PackagePath) else None
+
+    def value_Name(self, node: ast.Name) -> Any:
+        scope: Scope | None = self.scope
+        while scope is not None:
+            if node.id in scope.values:
+                return scope.values[node.id]
+            if node.id in scope.bound:
                 return None
-            left = self.value(node.left, trace)
-            if left is None:
-                return None
-            right = self.value(node.right, trace)
-            return None if right is None else _concatenated((left, "/", right) if joined else (left, right))
-        if kind is ast.JoinedStr:
-            parts = []
-            for part in node.values:
-                value = self.value(part.value if part.__class__ is ast.FormattedValue else part, trace)
-                if value is None:
-                    return None
-                parts.append(value)
-            return _concatenated(parts)
-        if kind is ast.List or kind is ast.Tuple:
-            # Substitutions of a launch file in a list are concatenated. Long lists are data.
-            if len(node.elts) > 20:
-                return None
-            parts = []
-            for part in node.elts:
-                value = self.value(part, trace)
-                if value is None:
-                    return None
-                parts.append(value)
-            return _concatenated(parts)
-        if kind is ast.Call:
-            return self.value_of_call(node, trace)
+            scope = scope.parent
         return None
 
-    def value_of_call(self, node: ast.Call, trace: list) -> "str | PackagePath | None":
-        function = self.callee(node.func)
-        if function in PACKAGE_CALLS or (function == "get_path" and self.has_rospkg):
-            package = self.package_argument(node, trace)
-            return None if package is None else PackagePath(package[0], "", package[1])
-        if function == "find" and isinstance(node.func, ast.Attribute):
-            receiver = node.func.value
-            if isinstance(receiver, ast.Call) and self.callee(receiver.func) in PACKAGE_CALLS:
-                package = self.package_argument(node, trace)
-                trace.append(receiver)
-                return None if package is None else PackagePath(package[0], "", package[1])
-            return None
-        if function in JOINS:
-            arguments = node.args
-            if len(arguments) == 1 and isinstance(arguments[0], (ast.List, ast.Tuple)):
-                trace.append(arguments[0])
-                arguments = arguments[0].elts
-            parts = []
-            if function == "joinpath" and isinstance(node.func, ast.Attribute):
-                arguments = [node.func.value, *arguments]
-            for argument in arguments:
-                value = self.value(argument, trace)
-                if value is None:
-                    return None
-                parts += (value, "/")
-            return _concatenated(parts[:-1])
-        if function in WRAPPERS:
-            if function in ("as_posix", "resolve") and isinstance(node.func, ast.Attribute):
-                return self.value(node.func.value, trace)
-            inner = node.args or [keyword.value for keyword in node.keywords if keyword.arg in ("text", "param_file")]
-            return self.value(inner[0], trace) if inner else None
+    def value_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
+        return super().value_List(node) if len(node.elts) <= 20 else None  # a longer one is data
+
+    value_Tuple = value_List
+
+    def value_IfExp(self, node: ast.IfExp) -> None:
         return None
+
+    def result(self, call: ast.Call) -> Any:
+        function, receiver = self.callee(call.func), getattr(call.func, "value", None)
+        if function in PACKAGE_CALLS or (function == "get_path" and self.has_rospkg):
+            return self.package_folder(call)
+        if function == "find" and isinstance(receiver, ast.Call) and self.callee(receiver.func) in PACKAGE_CALLS:
+            return self.package_folder(call)
+        if function in JOINS:
+            arguments = call.args
+            if len(arguments) == 1 and isinstance(arguments[0], (ast.List, ast.Tuple)):
+                arguments = arguments[0].elts
+            if function == "joinpath" and receiver is not None:
+                arguments = [receiver, *arguments]
+            return path_of(map(self.text, arguments), call.lineno)
+        if function in ("as_posix", "resolve") and receiver is not None:
+            return self.text(receiver)
+        if function in WRAPPERS:
+            inner = call.args or [keyword.value for keyword in call.keywords if keyword.arg in ("text", "param_file")]
+            return self.text(inner[0]) if inner else None
+        return None
+
+    def package_folder(self, call: ast.Call) -> PackagePath | None:
+        package = self.package_argument(call)
+        return None if package is None else PackagePath(package[0], "", package[1])
 
     def callee(self, node) -> str:
         """The last name of what is called, import aliases resolved."""
@@ -202,7 +150,7 @@ class Values:
         imported = self.imported(node.id)
         return imported[0][0].rpartition(".")[2] if imported else node.id
 
-    def package_argument(self, node: ast.Call, trace: list) -> tuple[str, bool] | None:
+    def package_argument(self, node: ast.Call) -> tuple[str, bool] | None:
         """The package a call names, and whether that rests on a launch argument's default."""
         argument = node.args[0] if node.args else None
         for keyword in node.keywords:
@@ -210,15 +158,24 @@ class Values:
                 argument = keyword.value
         if argument is None:
             return None
-        return self.package_name(argument, trace)
+        return self.package_name(argument)
 
-    def package_name(self, argument, trace: list) -> tuple[str, bool] | None:
-        value = self.value(argument, trace)
-        if value.__class__ is str and PACKAGE_NAME.fullmatch(value):  # type: ignore[arg-type]
-            return value, False  # type: ignore[return-value]
+    def package_name(self, argument) -> tuple[str, bool] | None:
+        value = self.text(argument)
+        if isinstance(value, str) and PACKAGE_NAME.fullmatch(value):
+            return value, False
         if isinstance(argument, ast.Call) and self.callee(argument.func) == "LaunchConfiguration" and argument.args:
-            name = self.value(argument.args[0], trace)
+            name = self.text(argument.args[0])
             default = self.launch_defaults.get(name) if isinstance(name, str) else None
             if default and PACKAGE_NAME.fullmatch(default):
                 return default, True
         return None
+
+
+Values.evaluators = node_methods(Values, "value_")
+
+
+def _flat(value: Any) -> Iterator[Any]:
+    """The items of a list, of those in it too; what is none as the only one."""
+    for item in value if isinstance(value, list) else (value,):
+        yield from _flat(item) if isinstance(item, list) else (item,)
