@@ -84,8 +84,6 @@ _OTHERS_READ_TOO = {
 """Kinds whose facts are made by the extractors of other kinds too."""
 FLOW = {"cpp": "flow_cpp", "python": "flow_python", "script": "flow_script"}
 """The second look that the message-flow graph takes at files of a kind."""
-SURFACE = {"cpp": "surface_cpp"}
-"""The look at headers that tells what they offer to others."""
 
 BY_NAME = {
     "package.xml": "manifest",

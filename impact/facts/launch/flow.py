@@ -156,9 +156,7 @@ def _ros2_piece(verb: str, args: list[Value], source: str) -> Piece:
     if verb in _ROS2_NAMED and 1 <= len(args) <= 2:
         return named(_ROS2_NAMED[verb], *args)
     if verb in ("find-pkg-share", "find-pkg-prefix", "find-exec", "anon") and len(args) == 1:
-        return named(
-            {"find-pkg-share": "find", "find-pkg-prefix": "prefix", "find-exec": "program"}.get(verb, verb), args[0]
-        )
+        return named(_ROS2_PLACES.get(verb, verb), args[0])
     if verb == "exec-in-pkg" and len(args) == 2:
         return Piece("executable", "", tuple(args))
     if verb in ("dirname", "filename") and not args:
@@ -181,8 +179,8 @@ def _ros2_piece(verb: str, args: list[Value], source: str) -> Piece:
     return other(source)
 
 
-_ROS2_NAMED = {"var": "arg", "env": "env", "optenv": "env"}
 _ROS2_PLACES = {"find-pkg-share": "find", "find-pkg-prefix": "prefix", "find-exec": "program"}
+_ROS2_NAMED = {"var": "arg", "env": "env", "optenv": "env"}
 
 
 def spaced(values: list[Value]) -> Value:
