@@ -65,8 +65,8 @@ EXTRACTORS = [
     ("interface", {"msg", "srv", "action", "idl"}),
     ("manifest", {"manifest", "manifest_variant"}),
     ("cmake", {"cmake"}),
-    ("flow_launch_calls", {"flow_launch_xml", "flow_launch_yaml", "flow_launch_python"}),
-    ("surface_python", {"surface_python"}),
+    ("launch.python_calls", {"flow_launch_xml", "flow_launch_yaml", "flow_launch_python"}),
+    ("python.surface", {"surface_python"}),
 ]
 
 

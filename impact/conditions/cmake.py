@@ -1,12 +1,12 @@
-"""CMake's if(), evaluated as far as a machine is known. Source: cmake-commands(7)."""
+"""CMake's if(): its grammar, and its value as far as a machine is known. Source: cmake-commands(7)."""
 
 from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from .environment import PARTS, Environment, against, numbers_of, version_of
 from .logic import both, either, negation
@@ -21,19 +21,21 @@ _USUALLY_SET = re.compile(
     r"ProgramFiles\S*|\w*_PREFIX_PATH|\w*(?:VERBOSE|JOBS))\Z"
 )
 _REFERENCE = re.compile(r"\$(ENV)?\{([^{}$]*)\}")
+NUMBER = re.compile(r"\s*[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?\s*\Z")
+_MAX_DEPTH = 60
 _TRUE = frozenset(("1", "ON", "YES", "TRUE", "Y"))
 _FALSE = frozenset(("0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND", ""))
 _UNARY = frozenset(
     ("EXISTS", "IS_DIRECTORY", "IS_SYMLINK", "IS_ABSOLUTE", "COMMAND", "DEFINED", "TARGET", "POLICY", "TEST")
 ) | {"IS_READABLE", "IS_WRITABLE", "IS_EXECUTABLE"}
-_CMAKE_COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
+COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
     "EQUAL": operator.eq,
     "LESS": operator.lt,
     "GREATER": operator.gt,
     "LESS_EQUAL": operator.le,
     "GREATER_EQUAL": operator.ge,
 }
-_BINARY = frozenset(f"{prefix}{name}" for prefix in ("", "STR", "VERSION_") for name in _CMAKE_COMPARISONS) | {
+_BINARY = frozenset(f"{prefix}{name}" for prefix in ("", "STR", "VERSION_") for name in COMPARISONS) | {
     "MATCHES",
     "IN_LIST",
     "IS_NEWER_THAN",
@@ -50,104 +52,130 @@ _SYSTEM = {
 }
 
 
-@lru_cache(4096)
-def _cmake_tokens(text: str) -> tuple[tuple[str, bool], ...]:
-    """(text, quoted) of every argument; empty when the text is none."""
-    tokens: list[tuple[str, bool]] = []
-    position, text = 0, text.strip()
-    while position < len(text):
-        match = _CMAKE_TOKEN.match(text, position)
-        if match is None:
-            return ()
-        tokens.append((match.group(match.lastindex or 0), match.lastindex == 1))
-        position = match.end()
-    return tuple(tokens)
+class Token(NamedTuple):
+    """One argument of if(). sure: whether all that it refers to is known. written: it stands in the file as it is, no
+    reference in it."""
+
+    text: str
+    quoted: bool
+    sure: bool = True
+    written: bool = True
 
 
-class _CMake:
-    """if() after cmake-commands(7): parentheses, tests, NOT, then AND and OR from left to right."""
+def constant(text: str) -> bool | None:
+    """The truth of a constant, None when the text is no constant."""
+    upper = text.upper()
+    if upper in _TRUE:
+        return True
+    if upper in _FALSE or upper.endswith("-NOTFOUND"):
+        return False
+    return float(text) != 0 if NUMBER.match(text) else None
 
-    def __init__(self, text: str, environment: Environment, declared: Collection[str]) -> None:
-        self.tokens = _cmake_tokens(text)
-        self.environment = environment
-        self.declared = declared
+
+class Test:
+    """The grammar of if() after cmake-commands(7): parentheses, unary tests, binary tests, NOT, then AND and OR from
+    left to right. Three-valued: True, False, or None when it cannot be known. Subclasses say what operands mean."""
+
+    def __init__(self, tokens: Sequence[Token]) -> None:
+        self.tokens = tokens
         self.at = 0
+
+    def whole(self) -> bool | None:
+        """The value of all tokens, of which there is at least one; None where they are no test."""
+        value = self.disjunction(0)
+        return value if self.at == len(self.tokens) else None
 
     def word(self, offset: int = 0) -> str:
         """The unquoted word ahead, which alone can be an operator."""
         index = self.at + offset
-        if index >= len(self.tokens) or self.tokens[index][1]:
-            return ""
-        return self.tokens[index][0]
+        return self.tokens[index].text if index < len(self.tokens) and not self.tokens[index].quoted else ""
 
-    def whole(self) -> bool | None:
-        if not self.tokens:
-            return None
-        value = self.disjunction()
-        if self.at < len(self.tokens):
-            raise ValueError("more than an expression")
-        return value
-
-    def disjunction(self) -> bool | None:
-        value = self.negation()
+    def disjunction(self, depth: int) -> bool | None:
+        value = self.negation(depth)
         while self.word() in ("AND", "OR"):
-            joined = self.word()
+            join = both if self.word() == "AND" else either
             self.at += 1
-            right = self.negation()
-            value = both(value, right) if joined == "AND" else either(value, right)
+            value = join(value, self.negation(depth))
         return value
 
-    def negation(self) -> bool | None:
-        if self.word() == "NOT":
+    def negation(self, depth: int) -> bool | None:
+        negated = False
+        while self.word() == "NOT":
             self.at += 1
-            return negation(self.negation())
-        return self.test()
+            negated = not negated
+        value = self.test(depth)
+        return negation(value) if negated else value
 
-    def test(self) -> bool | None:
-        if self.word() == "(":
-            self.at += 1
-            value = self.disjunction()
-            if self.word() != ")":
-                raise ValueError("`)` expected")
-            self.at += 1
+    def test(self, depth: int) -> bool | None:
+        if self.at >= len(self.tokens):
+            return None
+        token, word = self.tokens[self.at], self.word()
+        self.at += 1
+        if word == "(":
+            value = self.disjunction(depth + 1) if depth < _MAX_DEPTH else None
+            # what no parenthesis closes is no test
+            self.at = self.at + 1 if self.word() == ")" else len(self.tokens) + 1
             if self.word() in _BINARY:
                 # `(X) STREQUAL Y`: legal, and nobody's meaning.
                 self.at += 2
                 return None
             return value
-        if self.at >= len(self.tokens):
-            raise ValueError("operand expected")
-        if self.word(1) in _BINARY and self.at + 2 < len(self.tokens):
-            left, kind, right = self.tokens[self.at], self.word(1), self.tokens[self.at + 2]
-            self.at += 3
-            return self.comparison(left, kind, right)
-        if self.word() in _UNARY and self.at + 1 < len(self.tokens):
-            kind, (argument, _) = self.word(), self.tokens[self.at + 1]
+        if word in _UNARY and self.at < len(self.tokens) and self.word() not in _BINARY:
+            self.at += 1
+            return self.unary(word, self.tokens[self.at - 1])
+        if self.word() in _BINARY and self.at + 1 < len(self.tokens):
             self.at += 2
-            return self.presence(kind, argument)
-        token = self.tokens[self.at]
-        self.at += 1
-        return self.truth(*token)
+            return self.binary(token, self.word(-2), self.tokens[self.at - 1])
+        return self.truth(token)
 
-    def truth(self, text: str, quoted: bool) -> bool | None:
-        expanded = self.expand(text)
+    def truth(self, token: Token) -> bool | None:
+        """Whether one argument is true."""
+        raise NotImplementedError
+
+    def unary(self, kind: str, operand: Token) -> bool | None:
+        """The value of `EXISTS path` and its kin."""
+        raise NotImplementedError
+
+    def binary(self, left: Token, kind: str, right: Token) -> bool | None:
+        """The value of a comparison."""
+        raise NotImplementedError
+
+
+@lru_cache(4096)
+def _tokens(text: str) -> tuple[Token, ...]:
+    """Every argument of a test; empty when the text is none."""
+    tokens: list[Token] = []
+    position, text = 0, text.strip()
+    while position < len(text):
+        match = _CMAKE_TOKEN.match(text, position)
+        if match is None:
+            return ()
+        tokens.append(Token(match.group(match.lastindex or 0), match.lastindex == 1))
+        position = match.end()
+    return tuple(tokens)
+
+
+class _OnMachine(Test):
+    """A test on somebody's machine."""
+
+    def __init__(self, text: str, environment: Environment, declared: Collection[str]) -> None:
+        super().__init__(_tokens(text))
+        self.environment = environment
+        self.declared = declared
+
+    def truth(self, token: Token) -> bool | None:
+        expanded = self.expand(token.text)
         if expanded is None:
             return None
-        upper = expanded.upper()
-        if upper in _TRUE:
-            return True
-        if upper in _FALSE or upper.endswith("-NOTFOUND"):
-            return False
-        if re.fullmatch(r"[-+]?\d{1,15}(?:\.\d*)?", expanded):
-            return float(expanded) != 0
-        if quoted:
-            return None
+        value = constant(expanded)
+        if value is not None or token.quoted:
+            return value
         if expanded in ("BUILD_TESTING", "CATKIN_ENABLE_TESTING"):
             return self.environment.testing
         if expanded.endswith("_FOUND"):
             return self.found(expanded.removesuffix("_FOUND"))
-        value = self.variable(expanded)
-        return None if value is None else value.upper() not in _FALSE
+        held = self.variable(expanded)
+        return None if held is None else held.upper() not in _FALSE
 
     def found(self, package: str) -> bool | None:
         """Packages that exist in one generation of ROS alone, and what is declared and there: what else is installed is
@@ -156,7 +184,8 @@ class _CMake:
             return (package in _ROS1_ONLY) == (self.environment.ros_version == "1")
         return True if package in self.declared and self.environment.packages(package) else None
 
-    def presence(self, kind: str, argument: str) -> bool | None:
+    def unary(self, kind: str, operand: Token) -> bool | None:
+        argument = operand.text
         if kind == "DEFINED":
             environment = re.fullmatch(r"ENV\{(ROS_DISTRO|ROS_VERSION|ROS_PYTHON_VERSION)\}", argument)
             if environment or argument in ("CMAKE_VERSION", "PROJECT_NAME", "CMAKE_SYSTEM_NAME"):
@@ -209,13 +238,10 @@ class _CMake:
             return str(numbers[index]) if index < len(numbers) else None
         return ".".join(map(str, numbers)) or None
 
-    def operand(self, token: tuple[str, bool], literal: bool) -> str | None:
+    def operand(self, token: Token, literal: bool) -> str | None:
         """The value compared: a variable's when unquoted and known, else the text, when it can be one."""
-        text, quoted = token
-        if _REFERENCE.fullmatch(text):
-            return self.expand(text)
-        expanded = self.expand(text)
-        if expanded is None or quoted:
+        expanded = self.expand(token.text)
+        if expanded is None or token.quoted or _REFERENCE.fullmatch(token.text):
             return expanded
         value = self.variable(expanded)
         if value is not None:
@@ -223,7 +249,7 @@ class _CMake:
         # A name that nothing here knows is a variable of the project, unless it looks like a value.
         return expanded if literal or not re.search(r"[A-Z_]", expanded) else None
 
-    def comparison(self, left: tuple[str, bool], kind: str, right: tuple[str, bool]) -> bool | None:
+    def binary(self, left: Token, kind: str, right: Token) -> bool | None:
         if kind in ("IN_LIST", "IS_NEWER_THAN", "PATH_EQUAL"):
             return None
         known = self.operand(left, False)
@@ -234,20 +260,20 @@ class _CMake:
             return re.search(wanted, known) is not None if len(wanted) < 200 else None
         if kind.startswith("VERSION_"):
             order = against(known, numbers_of(wanted)) if numbers_of(wanted) else None
-            return None if order is None else _CMAKE_COMPARISONS[kind.removeprefix("VERSION_")](order, 0)
+            return None if order is None else COMPARISONS[kind.removeprefix("VERSION_")](order, 0)
         if kind.startswith("STR"):
-            return _CMAKE_COMPARISONS[kind.removeprefix("STR")](known, wanted)
-        if left[0].strip("${}") == "Boost_VERSION":
+            return COMPARISONS[kind.removeprefix("STR")](known, wanted)
+        if left.text.strip("${}") == "Boost_VERSION":
             # Before policy CMP0093 it was the number of the macro; compared with a number, it is meant so.
             numbers = (*numbers_of(known), 0, 0)
             known = str(numbers[0] * 100000 + numbers[1] * 100 + numbers[2])
-        return _CMAKE_COMPARISONS[kind](float(known), float(wanted))
+        return COMPARISONS[kind](float(known), float(wanted))
 
 
 def evaluate(text: str, environment: Environment, declared: Collection[str] = ()) -> bool | None:
-    """The value of a test; None where it cannot be told. declared: as in Condition. Raises ValueError for what is no
-    test."""
-    return _CMake(text, environment, declared).whole()
+    """The value of a test; None where it cannot be told. declared: as in Condition. Raises ValueError where what are no
+    numbers are compared as such."""
+    return _OnMachine(text, environment, declared).whole() if _tokens(text) else None
 
 
 _FOUND = re.compile(r"(?<![\w}])(\w+)_FOUND\b")

@@ -2,89 +2,50 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from functools import lru_cache
 
-from .environment import COMPARISONS, Environment
-from .logic import both, either
+from .environment import Environment
+from .python import parsed, truth_of
 
-_MANIFEST_TOKEN = re.compile(r"\s*(?:(==|!=|<=|>=|<|>|\(|\))|\$([A-Za-z_]\w*)|\"([^\"]*)\"|'([^']*)'|([\w.-]+))")
+_TOKEN = re.compile(r"\s*(?:(==|!=|<=|>=|<|>|\(|\))|\$([A-Za-z_]\w*)|\"([^\"]*)\"|'([^']*)'|([\w.-]+))")
+_KNOWN = frozenset(("ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION"))
 
 
 @lru_cache(1024)
-def _manifest_tokens(text: str) -> tuple[tuple[str, str], ...]:
-    tokens: list[tuple[str, str]] = []
+def _expression(text: str) -> ast.expr | None:
+    """A condition as an expression of Python, where comparisons, `and` and `or` mean the same; None for what is none.
+
+    REP 149: a variable that is not set is the empty text."""
+    words: list[str] = []
     position, text = 0, text.strip()
     while position < len(text):
-        match = _MANIFEST_TOKEN.match(text, position)
+        match = _TOKEN.match(text, position)
         if match is None:
-            return ()
-        kind = ("operator", "variable", "text", "text", "word")[(match.lastindex or 1) - 1]
-        tokens.append((kind, match.group(match.lastindex or 0)))
+            return None
         position = match.end()
-    return tuple(tokens)
+        word = match.group(match.lastindex or 0)
+        if match.lastindex == 2:
+            words.append(f"os.environ[{word!r}]" if word in _KNOWN else "''")
+        else:
+            words.append(word if match.lastindex == 1 or match.group(5) in ("and", "or") else repr(word))
+    node = parsed(" ".join(words))
+    return node if node is not None and _is_condition(node) else None
 
 
-class _Manifest:
-    """A condition attribute: comparisons of texts joined by `and` and `or`; `and` binds tighter, as in catkin_pkg."""
-
-    def __init__(self, text: str, environment: Environment) -> None:
-        self.tokens = (*_manifest_tokens(text), ("end", ""))
-        self.environment = environment
-        self.at = 0
-
-    def whole(self) -> bool | None:
-        value = self.either()
-        return value if self.tokens[self.at][0] == "end" else None
-
-    def either(self) -> bool | None:
-        value = self.both()
-        while self.tokens[self.at] == ("word", "or"):
-            self.at += 1
-            value = either(value, self.both())
-        return value
-
-    def both(self) -> bool | None:
-        value = self.comparison()
-        while self.tokens[self.at] == ("word", "and"):
-            self.at += 1
-            value = both(value, self.comparison())
-        return value
-
-    def comparison(self) -> bool | None:
-        if self.tokens[self.at] == ("operator", "("):
-            self.at += 1
-            value = self.either()
-            if self.tokens[self.at] != ("operator", ")"):
-                raise ValueError("`)` expected")
-            self.at += 1
-            return value
-        left = self.operand()
-        kind, compare = self.tokens[self.at]
-        if kind != "operator" or compare not in COMPARISONS:
-            raise ValueError("comparison expected")
-        self.at += 1
-        right = self.operand()
-        return None if left is None or right is None else COMPARISONS[compare](left, right)
-
-    def operand(self) -> str | None:
-        kind, value = self.tokens[self.at]
-        if kind in ("end", "operator"):
-            raise ValueError("operand expected")
-        self.at += 1
-        if kind != "variable":
-            return value
-        if value == "ROS_DISTRO":
-            return self.environment.ros_distro or None
-        if value == "ROS_VERSION":
-            return self.environment.ros_version or None
-        if value == "ROS_PYTHON_VERSION":
-            return str(self.environment.python[0]) if self.environment.python else None
-        # REP 149: a variable that is not set is the empty text.
-        return ""
+def _is_condition(node: ast.expr) -> bool:
+    """Whether an expression is made of comparisons of two texts."""
+    if isinstance(node, ast.BoolOp):
+        return all(map(_is_condition, node.values))
+    return isinstance(node, ast.Compare) and len(node.ops) == 1 and not any(
+        isinstance(operand, (ast.BoolOp, ast.Compare)) for operand in (node.left, *node.comparators)
+    )
 
 
 def evaluate(text: str, environment: Environment) -> bool | None:
+    """Whether a condition holds; None where it cannot be told."""
     if not text.strip():
         return True
-    return _Manifest(text, environment).whole()
+    node = _expression(text)
+    return None if node is None else truth_of(node, environment)

@@ -208,6 +208,13 @@ def evaluate(text: str, environment: Environment) -> bool | None:
     return None if value is None else value != 0
 
 
+def number_of(text: str) -> int | None:
+    """The value of an expression of numbers alone; None for what is none, or compares them."""
+    node = _cpp_parsed(text)
+    value = None if node is None else _cpp_value(node, Environment())
+    return None if isinstance(value, bool) else value
+
+
 def _truth(value: int | None) -> bool | None:
     return None if value is None else value != 0
 

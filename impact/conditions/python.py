@@ -30,7 +30,8 @@ class _VersionInfo(tuple):
 
 
 @lru_cache(2048)
-def _python_parsed(text: str) -> ast.expr | None:
+def parsed(text: str) -> ast.expr | None:
+    """The expression that a text is, None for what is none."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
@@ -42,19 +43,20 @@ def _python_parsed(text: str) -> ast.expr | None:
 def evaluate(text: str, environment: Environment) -> bool | None:
     if text == "TYPE_CHECKING":
         return False
-    node = None if text == "try" else _python_parsed(text)
-    return None if node is None else _python_truth(node, environment)
+    node = None if text == "try" else parsed(text)
+    return None if node is None else truth_of(node, environment)
 
 
-def _python_truth(node: ast.expr, environment: Environment) -> bool | None:
+def truth_of(node: ast.expr, environment: Environment) -> bool | None:
+    """Whether an expression is true on a machine, None where that cannot be told."""
     if isinstance(node, ast.BoolOp):
         join = both if isinstance(node.op, ast.And) else either
-        value = _python_truth(node.values[0], environment)
+        value = truth_of(node.values[0], environment)
         for other in node.values[1:]:
-            value = join(value, _python_truth(other, environment))
+            value = join(value, truth_of(other, environment))
         return value
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        return negation(_python_truth(node.operand, environment))
+        return negation(truth_of(node.operand, environment))
     value = _python_value(node, environment)
     return None if value is _UNKNOWN else bool(value)
 
@@ -75,7 +77,7 @@ def _python_value(node: ast.expr, environment: Environment) -> Any:
         return _python_call(node, environment)
     if isinstance(node, ast.BoolOp | ast.UnaryOp):
         value = (
-            _python_truth(node, environment)
+            truth_of(node, environment)
             if not isinstance(node, ast.UnaryOp) or isinstance(node.op, ast.Not)
             else None
         )

@@ -1,6 +1,7 @@
 """CMake sources to commands, as cmake-language(7) defines them. Meaning is given by model/build.py."""
 
 import re
+from typing import NamedTuple
 
 import msgspec
 
@@ -65,6 +66,18 @@ _LOGICAL = frozenset({"and", "or", "not"})
 _REPAIRS = 20
 
 
+class _Open(NamedTuple):
+    """A command that is not closed yet."""
+
+    name: str
+    line: int
+    column: int
+    arguments: list[Argument]
+
+    def closed(self, end_line: int) -> Command:
+        return Command(self.name, tuple(self.arguments), self.line, self.column, end_line)
+
+
 def extract(data: bytes) -> CMakeFile:
     """Reads one CMake file. Never raises: whatever cannot be read is a problem and the rest is still parsed.
 
@@ -107,10 +120,8 @@ def _scan(text: str, position: int, line: int, commands: list[Command], problems
     counted = position  # the lines up to here are in `line`
     line_start = text.rfind("\n", 0, position) + 1
     depth = 0
-    name = ""
-    name_line = name_column = 0
-    arguments: list[Argument] = []
-    pending: tuple[str, int, int, int] | None = None  # an identifier that wants its parenthesis
+    opened = _Open("", 0, 0, [])
+    pending: _Open | None = None  # an identifier that wants its parenthesis
     last_command_line = 0
     while True:
         token = match(text, position)
@@ -133,22 +144,20 @@ def _scan(text: str, position: int, line: int, commands: list[Command], problems
 
         if depth == 0:
             if pending is not None and kind != "open":
-                problems.append(Problem(pending[1], f"`{_short(pending[0])}` is no command: no parenthesis follows"))
+                lacking = f"`{_short(pending.name)}` is no command: no parenthesis follows"
+                problems.append(Problem(pending.line, lacking))
                 pending = None
             if kind == "unquoted":
                 word = token.group("unquoted")
                 if _NAME.match(word):
                     if last_command_line == line:
                         problems.append(Problem(line, f"`{_short(word)}` follows a command on the same line"))
-                    pending = (word, line, column, start)
+                    pending = _Open(word, line, column, [])
                 else:
                     problems.append(Problem(line, f"`{_short(word)}` is no command"))
             elif kind == "open" and pending is not None:
-                name, name_line, name_column, _ = pending
-                name = name.lower()
-                pending = None
+                opened, pending = pending._replace(name=pending.name.lower()), None
                 depth = 1
-                arguments = []
             elif kind == "end":
                 return None
             elif kind == "bracket" and token.group("bracket")[0] == "#":
@@ -162,32 +171,31 @@ def _scan(text: str, position: int, line: int, commands: list[Command], problems
             continue
 
         if kind == "unquoted":
-            arguments.append(Argument(token.group("unquoted"), "", line, column))
+            opened.arguments.append(Argument(token.group("unquoted"), "", line, column))
         elif kind == "quoted":
-            arguments.append(Argument(token.group("quoted"), '"', line, column))
+            opened.arguments.append(Argument(token.group("quoted"), '"', line, column))
         elif kind == "close":
             depth -= 1
             if depth:
-                arguments.append(Argument(")", "", line, column))
+                opened.arguments.append(Argument(")", "", line, column))
             else:
-                commands.append(Command(name, tuple(arguments), name_line, name_column, line))
+                commands.append(opened.closed(line))
                 last_command_line = line
         elif kind == "open":
             depth += 1
-            arguments.append(Argument("(", "", line, column))
+            opened.arguments.append(Argument("(", "", line, column))
         elif kind == "bracket":
             content, position = _bracket_end(text, token, line, problems)
             if token.group("bracket")[0] != "#":
-                arguments.append(Argument(content, "[", line, column))
+                opened.arguments.append(Argument(content, "[", line, column))
         elif kind == "other" and token.group("other") != '"':
-            problems.append(Problem(line, f"`{_short(token.group('other'))}` in the arguments of {name}()"))
+            problems.append(Problem(line, f"`{_short(token.group('other'))}` in the arguments of {opened.name}()"))
         elif kind == "other":
-            problems.append(Problem(line, f"a string in {name}() is never closed"))
-            return _close_early(text, start, line, column, name, name_line, name_column, arguments, commands)
+            problems.append(Problem(line, f"a string in {opened.name}() is never closed"))
+            return _close_early(text, start, line, column, opened, commands)
         else:
-            problems.append(Problem(name_line, f"{name}() is never closed"))
-            opened = _offset_after(text, name_line, start)
-            return _cut(text, opened, start, name, name_line, name_column, arguments, commands)
+            problems.append(Problem(opened.line, f"{opened.name}() is never closed"))
+            return _cut(text, _offset_after(text, opened.line, start), start, opened, commands)
 
 
 def _bracket_end(text: str, token: re.Match[str], line: int, problems: list[Problem]) -> tuple[str, int]:
@@ -203,22 +211,12 @@ def _bracket_end(text: str, token: re.Match[str], line: int, problems: list[Prob
     return text[begin:stop], stop
 
 
-def _close_early(
-    text: str,
-    start: int,
-    line: int,
-    column: int,
-    name: str,
-    name_line: int,
-    name_column: int,
-    arguments: list[Argument],
-    commands: list[Command],
-) -> int:
+def _close_early(text: str, start: int, line: int, column: int, opened: _Open, commands: list[Command]) -> int:
     """Ends a string that no quote closes at its line's end, and its command with it."""
     end = text.find("\n", start)
     end = len(text) if end < 0 else end
-    arguments.append(Argument(text[start + 1 : end].rstrip().rstrip(")"), '"', line, column))
-    commands.append(Command(name, tuple(arguments), name_line, name_column, line))
+    opened.arguments.append(Argument(text[start + 1 : end].rstrip().rstrip(")"), '"', line, column))
+    commands.append(opened.closed(line))
     following = _COMMAND_LINE.search(text, end)
     return following.start(1) if following else len(text)
 
@@ -233,26 +231,17 @@ def _offset_after(text: str, line: int, end: int) -> int:
     return position + 1
 
 
-def _cut(
-    text: str,
-    begin: int,
-    end: int,
-    name: str,
-    name_line: int,
-    name_column: int,
-    arguments: list[Argument],
-    commands: list[Command],
-) -> int:
+def _cut(text: str, begin: int, end: int, opened: _Open, commands: list[Command]) -> int:
     """Ends a command that no parenthesis closes where the next line starts that looks like a command."""
     for following in _COMMAND_LINE.finditer(text, begin, end):
         if following.group(1).lower() in _LOGICAL:
             continue
         stop = following.start(1)
         last = text.count("\n", 0, stop) + 1
-        kept = tuple(argument for argument in arguments if argument.line < last)
-        commands.append(Command(name, kept, name_line, name_column, last - 1))
+        kept = [argument for argument in opened.arguments if argument.line < last]
+        commands.append(opened._replace(arguments=kept).closed(last - 1))
         return stop
-    commands.append(Command(name, tuple(arguments), name_line, name_column, text.count("\n", 0, end) + 1))
+    commands.append(opened.closed(text.count("\n", 0, end) + 1))
     return end
 
 

@@ -37,32 +37,32 @@ EXTRACTORS: dict[str, tuple[str, str]] = {
     "action": ("interface", "Interface"),
     "idl": ("interface", "Interface"),
     "cpp": ("cpp", "CppFile"),
-    "python": ("python", "PythonFile"),
-    "launch_xml": ("launch", "ReferenceFile"),
-    "launch_yaml": ("launch", "ReferenceFile"),
-    "xacro": ("launch", "ReferenceFile"),
-    "plugin_xml": ("launch", "ReferenceFile"),
-    "xml": ("launch", "ReferenceFile"),
-    "params": ("launch", "ReferenceFile"),
-    "shell": ("launch", "ReferenceFile"),
+    "python": ("python.source", "PythonFile"),
+    "launch_xml": ("launch.references", "ReferenceFile"),
+    "launch_yaml": ("launch.references", "ReferenceFile"),
+    "xacro": ("launch.references", "ReferenceFile"),
+    "plugin_xml": ("launch.references", "ReferenceFile"),
+    "xml": ("launch.references", "ReferenceFile"),
+    "params": ("launch.references", "ReferenceFile"),
+    "shell": ("launch.references", "ReferenceFile"),
     "setup_py": ("setup", "SetupFile"),
     "setup_cfg": ("setup", "SetupFile"),
     "pyproject": ("setup", "SetupFile"),
     "gitignore": ("gitignore", "IgnoreFile"),
     "script": ("", ""),
     "flow_cpp": ("flow_cpp", "FlowFile"),
-    "flow_python": ("flow_python", "FlowFile"),
+    "flow_python": ("python.flow", "FlowFile"),
     "flow_script": ("", ""),
     "surface_cpp": ("surface_cpp", "HeaderSurface"),
-    "surface_python": ("surface_python", "ModuleSurface"),
+    "surface_python": ("python.surface", "ModuleSurface"),
     "parameters_cpp": ("parameters", "ParametersFile"),
     "parameters_python": ("parameters", "ParametersFile"),
     "parameters_cfg": ("parameters", "ParametersFile"),
     "parameters_yaml": ("parameters", "ParametersFile"),
-    "flow_launch_xml": ("flow_launch", "LaunchFile"),
-    "flow_launch_yaml": ("flow_launch", "LaunchFile"),
-    "flow_launch_python": ("flow_launch", "LaunchFile"),
-    "flow_parameters": ("flow_parameters", "ParameterFile"),
+    "flow_launch_xml": ("launch.flow", "LaunchFile"),
+    "flow_launch_yaml": ("launch.flow", "LaunchFile"),
+    "flow_launch_python": ("launch.flow", "LaunchFile"),
+    "flow_parameters": ("launch.parameter_files", "ParameterFile"),
     "colcon_cmake": ("colcon", "ColconFile"),
     "colcon_setup_py": ("colcon", "ColconFile"),
     "colcon_setup_cfg": ("colcon", "ColconFile"),
@@ -70,12 +70,11 @@ EXTRACTORS: dict[str, tuple[str, str]] = {
     "colcon_settings": ("colcon", "ColconFile"),
     "searched_cpp": ("searches", "SearchedCpp"),
     "searched_text": ("searches", "SearchedText"),
-    "interfaces_python": ("python_interfaces", "InterfacesFile"),
     "variables_cpp": ("searches", "VariablesCpp"),
     "declared_cpp": ("searches", "DeclaredCpp"),
 }
 """kind: (module, struct). A kind is stored under the key of its module\'s code."""
-WITH_KIND = frozenset({"colcon", "flow_launch", "interface", "launch", "parameters", "setup"})
+WITH_KIND = frozenset({"colcon", "interface", "launch.flow", "launch.references", "parameters", "setup"})
 SEARCHES = frozenset(kind for kind, (module, _) in EXTRACTORS.items() if module == "searches")
 """Kinds that are made of a file's first facts too, and of a table that says what to look for; see search()."""
 _OTHERS_READ_TOO = {
@@ -85,8 +84,6 @@ _OTHERS_READ_TOO = {
 """Kinds whose facts are made by the extractors of other kinds too."""
 FLOW = {"cpp": "flow_cpp", "python": "flow_python", "script": "flow_script"}
 """The second look that the message-flow graph takes at files of a kind."""
-SURFACE = {"cpp": "surface_cpp"}
-"""The look at headers that tells what they offer to others."""
 
 BY_NAME = {
     "package.xml": "manifest",
@@ -160,8 +157,8 @@ def largest(kind: str) -> int:
     module = EXTRACTORS[kind][0]
     if kind in _BUDGETS:
         return getattr(budget, _BUDGETS[kind])
-    if module in ("cmake", "manifest", "interface", "launch"):
-        return getattr(budget, module)
+    if module in ("cmake", "manifest", "interface", "launch.references"):
+        return getattr(budget, module.partition(".")[0])
     return budget.cpp if kind.endswith("cpp") else budget.python if "python" in kind else budget.script
 
 

@@ -33,11 +33,13 @@ PREDEFINED = {"lt": "<", "gt": ">", "amp": "&", "quot": '"', "apos": "'"}
 
 
 class Attribute(NamedTuple):
-    """An attribute; value unescaped; offset of the first character of its value in Document.text."""
+    """An attribute; value unescaped; offset of the first character of its value in Document.text. listed: it is one
+    item of a list, which YAML may have."""
 
     name: str
     value: str
     offset: int
+    listed: bool = False
 
 
 class Element:

@@ -20,8 +20,8 @@ import msgspec
 from ...edges.documents import load_yaml
 from .cpp import scan
 from .place import Problem
-from .python import read
-from .python_constants import Constants, module_constants
+from .python.constants import Constants, module_constants
+from .python.source import read
 from .usage import argument_spans
 
 

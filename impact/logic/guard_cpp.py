@@ -6,6 +6,7 @@ import re
 from functools import lru_cache
 from typing import Any
 
+from ...edges.dispatch import methods_of
 from .guard_terms import (
     DEEPEST,
     FALSE,
@@ -138,7 +139,7 @@ class _Reader:
         for part in clause.named_children:
             if part.type == "init_statement":
                 for declaration in part.named_children:
-                    self.declared(declaration, 0)
+                    self.read_declaration(declaration, 0)
         return clause.child_by_field_name("value")
 
     def said(self, node: Any) -> str:
@@ -229,7 +230,7 @@ class _Reader:
 
     # Kinds of expression
 
-    def binary(self, node: Any, depth: int) -> Term:
+    def read_binary_expression(self, node: Any, depth: int) -> Term:
         operands, operators = self.spine(node)
         result = self.term(operands[0], depth)
         position = 0
@@ -254,7 +255,7 @@ class _Reader:
                 result = Term("op", operator, (result, right))
         return result
 
-    def unary(self, node: Any, depth: int) -> Term:
+    def read_unary_expression(self, node: Any, depth: int) -> Term:
         operator = self.operator(node)
         operand = self.field(node, "argument", depth)
         if operator == "!":
@@ -263,20 +264,25 @@ class _Reader:
             return Term("-", "", (Term("whole", "0"), operand))
         return operand if operator == "+" else Term("op", operator, (operand,))
 
-    def path(self, node: Any, depth: int) -> Term:
+    read_pointer_expression = read_unary_expression
+
+    def read_identifier(self, node: Any, depth: int) -> Term:
         text = re.sub(r"\s+", "", self.tokens(node)).removeprefix("::")
         if text in ("std::nullopt", "nullopt", "boost::none"):
             return NULL
         return Term("name", text)
 
-    def member(self, node: Any, depth: int) -> Term:
+    read_qualified_identifier = read_identifier
+    read_template_function = read_identifier
+
+    def read_field_expression(self, node: Any, depth: int) -> Term:
         field = node.child_by_field_name("field")
         owner = node.child_by_field_name("argument")
         if field is None or owner is None:
             return self.opaque(node)
         return member(self.term(owner, depth), re.sub(r"^template\s*|\s+", "", self.tokens(field)))
 
-    def call(self, node: Any, depth: int) -> Term:
+    def read_call_expression(self, node: Any, depth: int) -> Term:
         listed = node.child_by_field_name("arguments")
         called = node.child_by_field_name("function")
         if listed is None or called is None:
@@ -327,21 +333,21 @@ class _Reader:
         whole = _WHOLE_TYPE.fullmatch(type_) or _INTEGERS.issuperset(type_.split())
         return Term("op", "cut", (value,)) if whole and _fractional(value) else value
 
-    def cast(self, node: Any, depth: int) -> Term:
+    def read_cast_expression(self, node: Any, depth: int) -> Term:
         type_ = node.child_by_field_name("type")
         return self.as_type(self.said(type_) if type_ is not None else "", self.field(node, "value", depth))
 
-    def index(self, node: Any, depth: int) -> Term:
+    def read_subscript_expression(self, node: Any, depth: int) -> Term:
         indices = node.child_by_field_name("indices")
         inside = indices.named_children if indices is not None else []
         parts = (self.term(child, depth) for child in inside if child.type != "comment")
         return Term("index", "", (self.field(node, "argument", depth), *parts))
 
-    def choice(self, node: Any, depth: int) -> Term:
+    def read_conditional_expression(self, node: Any, depth: int) -> Term:
         parts = (self.field(node, name, depth) for name in ("condition", "consequence", "alternative"))
         return Term("choice", "", tuple(parts))
 
-    def number(self, node: Any, depth: int) -> Term:
+    def read_number_literal(self, node: Any, depth: int) -> Term:
         text = self.said(node).replace("'", "")
         duration = _DURATION.match(text)
         if duration:
@@ -357,10 +363,16 @@ class _Reader:
             return self.opaque(node)
         return number(plain) or self.opaque(node)
 
-    def string(self, node: Any, depth: int) -> Term:
+    read_user_defined_literal = read_number_literal
+
+    def read_string_literal(self, node: Any, depth: int) -> Term:
         return Term("string", re.sub(r"\s*\n\s*", "", self.said(node)))
 
-    def assigned(self, node: Any, depth: int) -> Term:
+    read_raw_string_literal = read_string_literal
+    read_concatenated_string = read_string_literal
+    read_char_literal = read_string_literal
+
+    def read_assignment_expression(self, node: Any, depth: int) -> Term:
         """`a = b` has the value of b, which a stands for further in."""
         left = node.child_by_field_name("left")
         value = self.field(node, "right", depth)
@@ -369,7 +381,7 @@ class _Reader:
         self.names.append((self.said(left), value))
         return value
 
-    def declared(self, node: Any, depth: int) -> Term:
+    def read_declaration(self, node: Any, depth: int) -> Term:
         """`auto p = f()` has the value of f()."""
         declarator = node.child_by_field_name("declarator")
         value = node.child_by_field_name("value")
@@ -389,13 +401,16 @@ class _Reader:
             self.names.append((name[1], term))
         return term
 
-    def constant(self, node: Any, depth: int) -> Term:
+    def read_true(self, node: Any, depth: int) -> Term:
         return {"true": TRUE, "false": FALSE, "null": NULL}[node.type]
 
-    def this(self, node: Any, depth: int) -> Term:
+    read_false = read_true
+    read_null = read_true
+
+    def read_this(self, node: Any, depth: int) -> Term:
         return Term("name", "this")
 
-    def measured(self, node: Any, depth: int) -> Term:
+    def read_sizeof_expression(self, node: Any, depth: int) -> Term:
         return Term("op", self.tokens(node))
 
 
@@ -404,29 +419,4 @@ def _fractional(value: Term) -> bool:
 
 
 _LONGEST_HEX = 40
-_READ = {
-    "binary_expression": _Reader.binary,
-    "unary_expression": _Reader.unary,
-    "pointer_expression": _Reader.unary,
-    "identifier": _Reader.path,
-    "qualified_identifier": _Reader.path,
-    "template_function": _Reader.path,
-    "field_expression": _Reader.member,
-    "call_expression": _Reader.call,
-    "cast_expression": _Reader.cast,
-    "subscript_expression": _Reader.index,
-    "conditional_expression": _Reader.choice,
-    "number_literal": _Reader.number,
-    "user_defined_literal": _Reader.number,
-    "string_literal": _Reader.string,
-    "raw_string_literal": _Reader.string,
-    "concatenated_string": _Reader.string,
-    "char_literal": _Reader.string,
-    "assignment_expression": _Reader.assigned,
-    "declaration": _Reader.declared,
-    "sizeof_expression": _Reader.measured,
-    "true": _Reader.constant,
-    "false": _Reader.constant,
-    "null": _Reader.constant,
-    "this": _Reader.this,
-}
+_READ = methods_of(_Reader, "read_")

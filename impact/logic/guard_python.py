@@ -6,6 +6,7 @@ import ast
 import re
 import warnings
 
+from ...edges.dispatch import node_methods
 from .guard_terms import (
     DEEPEST,
     FALSE,
@@ -185,11 +186,11 @@ class _Reader:
 
     # Kinds of expression
 
-    def both(self, node: ast.BoolOp, depth: int) -> Term:
+    def read_BoolOp(self, node: ast.BoolOp, depth: int) -> Term:
         parts = [self.term(part, depth) for part in node.values]
         return join("and" if isinstance(node.op, ast.And) else "or", parts)
 
-    def unary(self, node: ast.UnaryOp, depth: int) -> Term:
+    def read_UnaryOp(self, node: ast.UnaryOp, depth: int) -> Term:
         operand = self.term(node.operand, depth)
         if isinstance(node.op, ast.Not):
             return negation(operand)
@@ -197,7 +198,7 @@ class _Reader:
             return Term("-", "", (Term("whole", "0"), operand))
         return operand if isinstance(node.op, ast.UAdd) else Term("op", "~", (operand,))
 
-    def compared(self, node: ast.Compare, depth: int) -> Term:
+    def read_Compare(self, node: ast.Compare, depth: int) -> Term:
         terms = [self.term(part, depth) for part in (node.left, *node.comparators)]
         links: list[Term] = []
         for place, operator in enumerate(node.ops):
@@ -221,23 +222,23 @@ class _Reader:
             return FALSE
         return join("or", [comparison("==", left, self.term(part, depth)) for part in listed])
 
-    def arithmetic(self, node: ast.BinOp, depth: int) -> Term:
+    def read_BinOp(self, node: ast.BinOp, depth: int) -> Term:
         left, right = self.term(node.left, depth), self.term(node.right, depth)
         for kind, sign in ((ast.Add, "+"), (ast.Sub, "-"), (ast.Mult, "*")):
             if isinstance(node.op, kind):
                 return Term(sign, "", (left, right))
         return Term("op", _OPERATORS[type(node.op)], (left, right))
 
-    def choice(self, node: ast.IfExp, depth: int) -> Term:
+    def read_IfExp(self, node: ast.IfExp, depth: int) -> Term:
         return Term("choice", "", tuple(self.term(part, depth) for part in (node.test, node.body, node.orelse)))
 
-    def name(self, node: ast.Name, depth: int) -> Term:
+    def read_Name(self, node: ast.Name, depth: int) -> Term:
         return Term("name", "this" if node.id == "self" else node.id)
 
-    def attribute(self, node: ast.Attribute, depth: int) -> Term:
+    def read_Attribute(self, node: ast.Attribute, depth: int) -> Term:
         return member(self.term(node.value, depth), node.attr)
 
-    def constant(self, node: ast.Constant, depth: int) -> Term:
+    def read_Constant(self, node: ast.Constant, depth: int) -> Term:
         value = node.value
         if value is None:
             return NULL
@@ -252,10 +253,10 @@ class _Reader:
             return Term("string", repr(value))
         return self.opaque(node)
 
-    def index(self, node: ast.Subscript, depth: int) -> Term:
+    def read_Subscript(self, node: ast.Subscript, depth: int) -> Term:
         return Term("index", "", (self.term(node.value, depth), self.term(node.slice, depth)))
 
-    def call(self, node: ast.Call, depth: int) -> Term:
+    def read_Call(self, node: ast.Call, depth: int) -> Term:
         function = self.term(node.func, depth)
         arguments = [self.term(argument, depth) for argument in node.args]
         named = sorted((word.arg or "**", self.term(word.value, depth)) for word in node.keywords)
@@ -265,27 +266,14 @@ class _Reader:
                 return Term(known, "", (arguments[0],))
         return Term("call", "", (function, *arguments, *(Term("op", f"{name}=", (value,)) for name, value in named)))
 
-    def assigned(self, node: ast.NamedExpr, depth: int) -> Term:
+    def read_NamedExpr(self, node: ast.NamedExpr, depth: int) -> Term:
         value = self.term(node.value, depth)
         if isinstance(node.target, ast.Name):
             self.names.append((node.target.id, value))
         return value
 
-    def awaited(self, node: ast.Await, depth: int) -> Term:
+    def read_Await(self, node: ast.Await, depth: int) -> Term:
         return self.term(node.value, depth)
 
 
-_READ = {
-    ast.BoolOp: _Reader.both,
-    ast.UnaryOp: _Reader.unary,
-    ast.Compare: _Reader.compared,
-    ast.BinOp: _Reader.arithmetic,
-    ast.IfExp: _Reader.choice,
-    ast.Name: _Reader.name,
-    ast.Attribute: _Reader.attribute,
-    ast.Constant: _Reader.constant,
-    ast.Subscript: _Reader.index,
-    ast.Call: _Reader.call,
-    ast.NamedExpr: _Reader.assigned,
-    ast.Await: _Reader.awaited,
-}
+_READ = node_methods(_Reader, "read_")

@@ -16,12 +16,12 @@ import msgspec
 from ..facts.condition import Condition
 from ..facts.cpp import CppFile, Include
 from ..facts.interface import Interface
-from ..facts.launch import PluginClass
-from ..facts.launch_actions import LaunchFile
+from ..facts.launch.actions import LaunchFile
+from ..facts.launch.references import PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
-from ..facts.python import PythonFile
-from ..facts.python_objects import PythonUse
+from ..facts.python.source import PythonFile
+from ..facts.python.uses import PythonUse
 from ..facts.searches import DeclaredCpp, SearchedCpp, WordUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, Table
@@ -833,14 +833,13 @@ class _Join:
         table = self.watched.fields
         if table is None:
             return
-        wanted = [path for path, facts in files.items() if may_use_interfaces(facts, table)]
-        for path, facts in self.look(wanted, "interfaces_python").items():
-            used = interfaces_used(facts.members, table)
+        for path, facts in files.items():
+            used = interfaces_used(facts.fields, table) if may_use_interfaces(facts, table) else []
             seen = set()
             # Both generations import an interface alike: each is followed for itself.
             for ros in sorted({interface.ros for interface in used}):
                 scope = Scope((interface for interface in used if interface.ros == ros), table)
-                for use, found in changing_members(facts.members, scope) if scope.changing else ():
+                for use, found in changing_members(facts.fields, scope) if scope.changing else ():
                     key = (found.interface, found.section, found.member)
                     if key not in seen:
                         seen.add(key)

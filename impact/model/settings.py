@@ -11,9 +11,9 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import NamedTuple
 
-from ..facts.flow_parameters import Entry, ParameterFile
-from ..facts.launch import CLASS
-from ..facts.launch_actions import Action, LaunchFile, plain
+from ..facts.launch.actions import Action, LaunchFile, plain
+from ..facts.launch.parameter_files import Entry, ParameterFile
+from ..facts.launch.references import CLASS
 from ..facts.parameters import last_part
 
 Changing = Mapping[str, frozenset[str]]

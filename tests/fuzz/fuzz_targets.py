@@ -34,9 +34,11 @@ from rosimpact.impact.analysis import findings
 from rosimpact.impact.analysis import result_cache as memo
 from rosimpact.impact.analysis import revision_compare as base
 from rosimpact.impact.conditions import Environment, holds
-from rosimpact.impact.facts import allow, elf, flow_launch, flow_parameters, kinds, store
+from rosimpact.impact.facts import allow, elf, kinds, store
 from rosimpact.impact.facts.cmake import extract as extract_cmake
 from rosimpact.impact.facts.condition import Condition
+from rosimpact.impact.facts.launch import flow as flow_launch
+from rosimpact.impact.facts.launch import parameter_files as flow_parameters
 from rosimpact.impact.facts.usage import Rows
 from rosimpact.impact.model import discovery
 from rosimpact.impact.model.cmake import regex

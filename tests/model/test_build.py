@@ -10,9 +10,10 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rosimpact.impact.conditions.cmake import Token
 from rosimpact.impact.facts.cmake import extract
 from rosimpact.impact.model.cmake.build import Build, Declared
-from rosimpact.impact.model.cmake.conditions import Token, evaluate, version_key
+from rosimpact.impact.model.cmake.conditions import evaluate, version_key
 from rosimpact.impact.model.cmake.genex import reduced, rejoin
 from rosimpact.impact.model.cmake.interpret import extras_of, interpret
 from rosimpact.impact.model.cmake.interpreter import Interpreter

@@ -6,8 +6,8 @@ from xml.sax.saxutils import quoteattr
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.impact.facts.flow_launch import extract
-from rosimpact.impact.facts.flow_parameters import extract as parameters
+from rosimpact.impact.facts.launch.flow import extract
+from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.model.launch.follow import Setting, SettingFile, Text, file_values, follow
 from rosimpact.impact.model.launch.text import CannotTell, evaluate, ros1_value
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from rosimpact.impact.facts.flow_launch import extract
-from rosimpact.impact.facts.flow_parameters import extract as parameters
+from rosimpact.impact.facts.launch.flow import extract
+from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.model.flow.names import joined, ros1_remapped, ros2_remapped, ros2_rule
 from rosimpact.impact.model.launch.follow import Started, follow
 

@@ -3,8 +3,8 @@
 import msgspec
 import pytest
 import zstandard
-from rosimpact.impact.facts import python_interfaces
 from rosimpact.impact.facts.cpp.code import Code
+from rosimpact.impact.facts.python.source import extract
 from rosimpact.impact.model.cpp.resolver import Known, Resolver
 from rosimpact.impact.model.cpp.uses import MemberUses
 from rosimpact.impact.model.members import Scope, interface_named, interfaces_included
@@ -190,7 +190,7 @@ IMPORTS = "from arm_msgs.msg import Arm\nfrom arm_msgs.srv import Start as Begin
     ],
 )  # fmt: skip
 def test_python(text, found, fields):
-    uses = python_interfaces.extract((IMPORTS + text).encode()).members
+    uses = extract((IMPORTS + text).encode()).fields
     scope = Scope([interface for interface in interfaces_used(uses, fields) if interface.ros == 2], fields)
     members = {f"{f.interface.short}.{f.section}.{f.member}" for _, f in changing_members(uses, scope)}
     assert sorted(members) == found

@@ -1,8 +1,8 @@
 """Parameters that files set for nodes of other packages: one file in, whose parameters it sets out."""
 
 import pytest
-from rosimpact.impact.facts.flow_launch import extract
-from rosimpact.impact.facts.flow_parameters import extract as parameters
+from rosimpact.impact.facts.launch.flow import extract
+from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.facts.words import words_of
 from rosimpact.impact.model.settings import Named, Setting, in_launch, in_parameters, mentions_changing, named_in
 from rosimpact.impact.rules.api.removed_parameter import means

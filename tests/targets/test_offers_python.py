@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 from rosimpact.databuild.jobs import Packing
-from rosimpact.impact.facts.python_objects import Given, PythonUse
-from rosimpact.impact.facts.surface_python import extract
+from rosimpact.impact.facts.python.surface import extract
+from rosimpact.impact.facts.python.uses import Given, PythonUse
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_python import PythonOffers, read_parameters, refused, unlike

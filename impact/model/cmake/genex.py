@@ -5,6 +5,7 @@ Source: cmake-generator-expressions(7).
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from ...facts.condition import Condition
@@ -46,7 +47,7 @@ def reduced(item: Word) -> Iterator[Word]:
 
 def _reduce(text: str, origin: Word, tests: tuple[Condition, ...], depth: int) -> Iterator[Word]:
     for part in _split(text):
-        if not part.startswith("$<") or depth > _MAX_DEPTH or _close(part, 2) != len(part) - 1:
+        if not part.startswith("$<") or depth > _MAX_DEPTH or next(_outside(part[2:], ">"), -1) != len(part) - 3:
             yield word(part, origin.at, origin.conditions + tests, origin.sure)
             continue
         head, content = _halves(part[2:-1])
@@ -57,7 +58,7 @@ def _reduce(text: str, origin: Word, tests: tuple[Condition, ...], depth: int) -
         elif head in _TESTED:
             yield from _reduce(content, origin, (*tests, Condition("cmake", f"TARGET {content}")), depth + 1)
         elif head == "IF":
-            pieces = _commas(content)
+            pieces = _cut(content, ",")
             if len(pieces) == 3:
                 yield from _reduce(pieces[1], origin, (*tests, Condition("cmake", pieces[0])), depth + 1)
                 yield from _reduce(pieces[2], origin, (*tests, Condition("cmake", pieces[0], True)), depth + 1)
@@ -67,43 +68,10 @@ def _reduce(text: str, origin: Word, tests: tuple[Condition, ...], depth: int) -
             yield word(part, origin.at, origin.conditions + tests, origin.sure)
 
 
-def _close(text: str, begin: int) -> int:
-    """Offset of the `>` that closes the expression whose content begins there, -1 when none does."""
-    depth = 1
-    index = begin
-    while index < len(text):
-        if text.startswith("$<", index):
-            depth += 1
-            index += 2
-            continue
-        if text[index] == ">":
-            depth -= 1
-            if depth == 0:
-                return index
-        index += 1
-    return -1
-
-
 def _halves(inner: str) -> tuple[str, str]:
     """An expression's head and what follows its first colon outside of nested expressions."""
-    depth = 0
-    index = 0
-    while index < len(inner):
-        if inner.startswith("$<", index):
-            depth += 1
-            index += 2
-            continue
-        if inner[index] == ">":
-            depth -= 1
-        elif inner[index] == ":" and depth <= 0:
-            return inner[:index], inner[index + 1 :]
-        index += 1
-    return inner, ""
-
-
-def _commas(content: str) -> list[str]:
-    """Parts between commas outside of nested expressions."""
-    return _cut(content, ",")
+    colon = next(_outside(inner, ":"), len(inner))
+    return inner[:colon], inner[colon + 1 :]
 
 
 def _split(text: str) -> list[str]:
@@ -116,19 +84,18 @@ def _split(text: str) -> list[str]:
 
 
 def _cut(text: str, separator: str) -> list[str]:
-    parts: list[str] = []
+    """The parts of a text between separators outside of nested expressions."""
+    ends = [*_outside(text, separator), len(text)]
+    return [text[begin:end] for begin, end in zip([0, *(end + 1 for end in ends)], ends, strict=False)]
+
+
+def _outside(text: str, mark: str) -> Iterator[int]:
+    """Offsets of a character outside of nested expressions; of `>`, where it closes none."""
     depth = 0
-    start = index = 0
-    while index < len(text):
-        if text.startswith("$<", index):
+    for token in re.finditer(rf"\$<|>|{mark}", text):
+        if token.group() == "$<":
             depth += 1
-            index += 2
-            continue
-        if text[index] == ">" and depth:
+        elif token.group() == ">" and depth:
             depth -= 1
-        elif text[index] == separator and depth == 0:
-            parts.append(text[start:index])
-            start = index + 1
-        index += 1
-    parts.append(text[start:])
-    return parts
+        elif token.group() == mark and not depth:
+            yield token.start()

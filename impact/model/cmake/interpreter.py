@@ -1093,23 +1093,17 @@ HANDLERS: dict[str, Handler] = {}
 WRAPPERS: dict[str, Handler] = {}
 
 
-def handles(*names: str) -> Callable[[Handler], Handler]:
-    """Registers the decorated function as the meaning of these commands."""
+def _registering(table: dict[str, Handler]) -> Callable[..., Callable[[Handler], Handler]]:
+    def register(*names: str) -> Callable[[Handler], Handler]:
+        def keep(handler: Handler) -> Handler:
+            table.update(dict.fromkeys(names, handler))
+            return handler
 
-    def register(handler: Handler) -> Handler:
-        for name in names:
-            HANDLERS[name] = handler
-        return handler
-
-    return register
-
-
-def stands_in_for(*names: str) -> Callable[[Handler], Handler]:
-    """Registers a meaning that is used only when the tree itself does not define the command."""
-
-    def register(handler: Handler) -> Handler:
-        for name in names:
-            WRAPPERS[name] = handler
-        return handler
+        return keep
 
     return register
+
+
+# Registers the decorated function as the meaning of these commands; the second, of one that is used only when the tree
+# itself does not define the command.
+handles, stands_in_for = _registering(HANDLERS), _registering(WRAPPERS)

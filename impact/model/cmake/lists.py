@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from ...conditions.preprocessor import number_of
 from .blocks import Call
 from .interpreter import Interpreter, handles
 from .regex import REGEX_STEPS, usable
@@ -340,8 +341,9 @@ def _regex_replace(run: Interpreter, pattern_text: str, replacement: str, text: 
     return "".join([*parts, text[last:]])
 
 
-_MATH = re.compile(r"\s*(0[xX][0-9a-fA-F]{1,15}|\d{1,18}|<<|>>|[-+*/%|&^~()])")
-_PRECEDENCE = {"|": 1, "^": 2, "&": 3, "<<": 4, ">>": 4, "+": 5, "-": 5, "*": 6, "/": 6, "%": 6}
+# What math() reads; its operators are those of C, whose octal numbers it does not have.
+_MATH = re.compile(r"(?:\s|0[xX][0-9a-fA-F]{1,15}|\d{1,18}\b|<<|>>|[-+*/%|&^~()])+")
+_LEADING_ZEROS = re.compile(r"\b0+(?=\d)")
 
 
 @handles("math")
@@ -358,81 +360,10 @@ def math(run: Interpreter, call: Call, args: list[Word]) -> None:
 
 def calculate(text: str) -> int | None:
     """Value of a math(EXPR) text in 64 bit, None when it is malformed."""
-    values: list[int] = []
-    operators: list[str] = []
-    position = 0
-    want_value = True
-
-    def apply() -> bool:
-        operator = operators.pop()
-        if operator.startswith("u"):
-            if not values:
-                return False
-            values[-1] = {"u-": -values[-1], "u+": values[-1], "u~": ~values[-1]}[operator]
-            return True
-        if len(values) < 2:
-            return False
-        right, left = values.pop(), values.pop()
-        if operator in "/%" and right == 0:
-            return False
-        if operator in ("<<", ">>") and not 0 <= right < 64:
-            return False
-        quotient = abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1) if operator in "/%" else 0
-        result = {
-            "|": lambda: left | right,
-            "^": lambda: left ^ right,
-            "&": lambda: left & right,
-            "<<": lambda: left << right,
-            ">>": lambda: left >> right,
-            "+": lambda: left + right,
-            "-": lambda: left - right,
-            "*": lambda: left * right,
-            "/": lambda: quotient,
-            "%": lambda: left - quotient * right,
-        }[operator]()
-        values.append((result + 2**63) % 2**64 - 2**63)
-        return True
-
-    text = text.rstrip()
-    if len(text) > 1000:
+    if len(text) > 1000 or not _MATH.fullmatch(text):
         return None
-    while position < len(text):
-        token = _MATH.match(text, position)
-        if token is None:
-            return None
-        position = token.end()
-        piece = token.group(1)
-        if piece[0].isdigit():
-            if not want_value:
-                return None
-            values.append(int(piece, 0) if piece[:2] in ("0x", "0X") else int(piece))
-            want_value = False
-        elif piece == "(":
-            operators.append(piece)
-        elif piece == ")":
-            while operators and operators[-1] != "(":
-                if not apply():
-                    return None
-            if not operators:
-                return None
-            operators.pop()
-            want_value = False
-        elif want_value:
-            if piece not in "-+~":
-                return None
-            operators.append("u" + piece)
-        else:
-            while operators and operators[-1] != "(" and _PRECEDENCE.get(operators[-1], 9) >= _PRECEDENCE.get(piece, 0):
-                if not apply():
-                    return None
-            if piece == "~":
-                return None
-            operators.append(piece)
-            want_value = True
-    while operators:
-        if operators[-1] == "(" or not apply():
-            return None
-    return values[0] if len(values) == 1 else None
+    value = number_of(_LEADING_ZEROS.sub("", text))
+    return None if value is None else (value + 2**63) % 2**64 - 2**63
 
 
 @handles("separate_arguments")

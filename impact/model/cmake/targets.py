@@ -29,13 +29,9 @@ _LIBRARY_FLAGS = frozenset({"EXCLUDE_FROM_ALL", "IMPORTED", "GLOBAL", "WITH_SOAB
          "pybind11_add_module", "pybind_add_module", "python_add_module", "ament_python_add_module")  # fmt: skip
 def add_library(run: Interpreter, call: Call, args: list[Word]) -> None:
     """add_library() in all its signatures, and the modules' variants of it."""
-    if not args:
+    if not args or _is_alias(run, args):
         return
     name, rest = args[0], args[1:]
-    if len(rest) >= 2 and rest[0] == "ALIAS":
-        draft = run.new_target(name, "alias", name.at)
-        draft.alias_of = str(rest[1])
-        return
     kind = "module" if call.name not in ("add_library", "cuda_add_library", "rosbuild_add_library") else "library"
     form = ""
     sources: list[Word] = []
@@ -56,15 +52,19 @@ def add_library(run: Interpreter, call: Call, args: list[Word]) -> None:
 @handles("add_executable", "cuda_add_executable", "rosbuild_add_executable", "qt_add_executable", "qt5_add_executable")
 def add_executable(run: Interpreter, call: Call, args: list[Word]) -> None:
     """add_executable() in all its signatures."""
-    if not args:
+    if not args or _is_alias(run, args):
         return
     name, rest = args[0], args[1:]
-    if len(rest) >= 2 and rest[0] == "ALIAS":
-        draft = run.new_target(name, "alias", name.at)
-        draft.alias_of = str(rest[1])
-        return
     draft = run.new_target(name, "imported" if rest[:1] == ["IMPORTED"] else "executable", name.at)
     add_sources(run, draft, [item for item in rest if item not in ("WIN32", "MACOSX_BUNDLE", *_LIBRARY_FLAGS)])
+
+
+def _is_alias(run: Interpreter, args: list[Word]) -> bool:
+    """Makes the target of `add_...(name ALIAS other)`; False for any other signature."""
+    if len(args) < 3 or args[1] != "ALIAS":
+        return False
+    run.new_target(args[0], "alias", args[0].at).alias_of = str(args[2])
+    return True
 
 
 def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from ...facts.flow_parameters import ParameterFile
-from ...facts.launch_actions import LaunchFile
+from ...facts.launch.actions import LaunchFile
+from ...facts.launch.parameter_files import ParameterFile
 from ..launch.follow import Launched, Remap, Started, follow
 from ..workspace import Workspace
 from .names import NameRefused, Rule, ros1_remapped, ros2_remapped

@@ -24,7 +24,6 @@ _INNER = frozenset(
 )  # fmt: skip
 _MESSAGE_ENDINGS = ("ConstSharedPtr", "ConstPtr", "SharedPtr", "Ptr")
 _SPACE = re.compile(r"\s+")
-_PIECES = re.compile(r"[<>,()]")
 
 
 class Type(NamedTuple):

@@ -8,9 +8,10 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ...facts.flow_launch import substitutions
-from ...facts.flow_parameters import Entry, scalar
-from ...facts.launch_actions import Action, Piece, Value, literal
+from ....edges.dispatch import methods_of
+from ...facts.launch.actions import Action, Piece, Value, literal
+from ...facts.launch.flow import substitutions
+from ...facts.launch.parameter_files import Entry, scalar
 from .result import At, Remap, Setting, SettingFile, Sources, Unresolved
 from .text import (
     CannotTell,
@@ -150,7 +151,7 @@ class Filling:
             return known(piece.text)
         if piece.kind == "other":
             return unknown(piece.text, "it is only known when it runs")
-        maker = _FILLING.get(piece.kind)
+        maker = _FILLING.get(piece.kind.replace("-", "_"))
         if maker is None or len(piece.parts) < _PARTS.get(piece.kind, 0):
             return unknown(piece.kind, f"`{piece.kind}` is not filled in")
         return maker(self, piece)
@@ -185,11 +186,13 @@ class Filling:
             return default._replace(assumed=every((default.assumed, (f"${name.value}",))))
         return unknown(f"${name.value}", f"the environment variable `{name.value}` is not known")
 
-    def fill_package(self, piece: Piece) -> Text:
+    def fill_find(self, piece: Piece) -> Text:
         name, _ = self.named(piece)
         if name.value is None:
             return unknown(f"$({piece.kind} {name.shown})", *name.reasons)
         return known(f"$({piece.kind} {name.value})", name.assumed)
+
+    fill_prefix = fill_find
 
     def fill_executable(self, piece: Piece) -> Text:
         name, package = (self.text(part) for part in piece.parts[:2])
@@ -249,7 +252,7 @@ class Filling:
             return unknown(show((piece,)), *(text.reasons or (f"`{text.value}` is neither true nor false",)))
         return known(flag(not truth), text.assumed)
 
-    def fill_logic(self, piece: Piece) -> Text:
+    def fill_and(self, piece: Piece) -> Text:
         """`and` and `or`: what decides them alone is enough."""
         deciding = piece.kind == "or"
         texts = [self.text(part) for part in piece.parts]
@@ -260,6 +263,8 @@ class Filling:
         if None in truths:
             return unknown(show((piece,)), *every(t.reasons for t in texts))
         return known(flag(not deciding), every(t.assumed for t in texts))
+
+    fill_or = fill_and
 
     def fill_choose(self, piece: Piece) -> Text:
         asked = self.text(piece.parts[0])
@@ -294,6 +299,8 @@ class Filling:
         name = f"$({piece.kind} {source.shown} {len(self.rewrites)})"
         self.rewrites[name] = rewrite
         return known(name, source.assumed)
+
+    fill_replaced = fill_rewritten
 
     def fill_has_node(self, piece: Piece) -> Text:
         file, node = (self.text(part) for part in piece.parts[:2])
@@ -357,31 +364,7 @@ class _Arguments(dict):
 
 
 _PLACE = re.compile(r"\$\(find ([\w.-]+)\)(/.*|)\Z", re.DOTALL)
-_FILLING = {
-    "arg": Filling.fill_arg,
-    "env": Filling.fill_env,
-    "find": Filling.fill_package,
-    "prefix": Filling.fill_package,
-    "executable": Filling.fill_executable,
-    "program": Filling.fill_program,
-    "dirname": Filling.fill_dirname,
-    "filename": Filling.fill_filename,
-    "anon": Filling.fill_anon,
-    "command": Filling.fill_command,
-    "content": Filling.fill_content,
-    "join": Filling.fill_join,
-    "equals": Filling.fill_equals,
-    "in": Filling.fill_in,
-    "not": Filling.fill_not,
-    "and": Filling.fill_logic,
-    "or": Filling.fill_logic,
-    "choose": Filling.fill_choose,
-    "method": Filling.fill_method,
-    "rewritten": Filling.fill_rewritten,
-    "replaced": Filling.fill_rewritten,
-    "has-node": Filling.fill_has_node,
-    "eval": Filling.fill_eval,
-}
+_FILLING = methods_of(Filling, "fill_")
 # How many parts a piece needs before it can be filled in.
 _PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewritten": 2, "replaced": 1, "has-node": 2,
           "eval": 1}  # fmt: skip

@@ -14,9 +14,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ...facts.flow_parameters import Entry
-from ...facts.flow_parameters import extract as parameters
-from ...facts.launch_actions import Action, Condition, LaunchFile, literal, plain
+from ....edges.dispatch import methods_of
+from ...facts.launch.actions import Action, Condition, LaunchFile, literal, plain
+from ...facts.launch.parameter_files import Entry
+from ...facts.launch.parameter_files import extract as parameters
 from ..flow.names import canonical, ros2_rule
 from .fill import Filling, Scope
 from .result import (
@@ -141,7 +142,7 @@ class _Launch(Filling):
             self.open += open_
             self.assumed += assumed
             self.after += after
-            _DOING.get(action.kind, _Launch.do_unknown)(self, action)
+            _DOING.get(action.kind.replace("-", "_"), _Launch.do_unknown)(self, action)
             del self.open[marks[0] :], self.assumed[marks[1] :], self.after[marks[2] :]
 
     def decide(self, conditions: Sequence[Condition]) -> tuple[bool | None, list[str], tuple[str, ...], list[str]]:
@@ -331,7 +332,7 @@ class _Launch(Filling):
         text = action.get("text")
         self.miss(action.line, show(text) if text is not None else action.kind, "it cannot be followed")
 
-    def do_nothing(self, action: Action) -> None:
+    def do_pass(self, action: Action) -> None:
         """What has no place where it stands."""
 
     # Parameters
@@ -455,6 +456,8 @@ class _Launch(Filling):
             self.node1(action)
         else:
             self.node2(action, known(""))
+
+    do_lifecycle = do_test = do_container = do_node
 
     def node2(self, action: Action, container: Text) -> None:
         package, executable, plugin = (self.field(action, key) for key in ("package", "executable", "plugin"))
@@ -674,25 +677,7 @@ _INSTALLED = re.compile(r"\$\(prefix ([\w.-]+)\)/lib/\1/([^/]+)\Z")
 _TEXTS = ("package", "executable", "plugin", "container", "name", "namespace")
 _OF_NODE = frozenset(("remap", "parameter", "parameter-file", "unknown"))
 _STARTING = frozenset(("node", "lifecycle", "test", "container", "composable", "load", "include", "group", "process"))
-_DOING = {
-    "argument": _Launch.do_argument,
-    "let": _Launch.do_let,
-    "environment": _Launch.do_environment,
-    "group": _Launch.do_group,
-    "namespace": _Launch.do_namespace,
-    "remap": _Launch.do_remap,
-    "include": _Launch.do_include,
-    "parameter": _Launch.do_parameter,
-    "parameter-file": _Launch.do_parameter_file,
-    "node": _Launch.do_node,
-    "lifecycle": _Launch.do_node,
-    "test": _Launch.do_node,
-    "container": _Launch.do_node,
-    "composable": _Launch.do_composable,
-    "load": _Launch.do_load,
-    "process": _Launch.do_process,
-    "pass": _Launch.do_nothing,
-}
+_DOING = methods_of(_Launch, "do_")
 
 
 def _without_earlier(remaps: list[Remap]) -> list[Remap]:

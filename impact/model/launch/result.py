@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple, Protocol
 
-from ...facts.flow_parameters import Entry, ParameterFile
-from ...facts.launch_actions import LaunchFile
+from ...facts.launch.actions import LaunchFile
+from ...facts.launch.parameter_files import Entry, ParameterFile
 from ..flow.names import canonical, joined
 from .text import Text, known, within
 

@@ -10,9 +10,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ...facts.flow_parameters import extract as parameters
-from ...facts.flow_parameters import scalar
-from ...facts.launch_actions import Condition, Piece, Value
+from ...facts.launch.actions import Condition, Piece, Value
+from ...facts.launch.parameter_files import extract as parameters
+from ...facts.launch.parameter_files import scalar
 from ..flow.names import joined
 
 LONGEST = 100_000

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from ...facts.python import PythonFile
-from ...facts.python_objects import PythonUse
+from ...facts.python.source import PythonFile
+from ...facts.python.uses import PythonUse
 
 if TYPE_CHECKING:
     from ...targets.surface.store import Surfaces

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ...facts.python import PythonFile
-from ...facts.python_interfaces import ELEMENT, KINDS, MemberUse
+from ...facts.python.source import PythonFile
+from ...facts.python.uses import ELEMENT, KINDS, FieldUse
 from ...targets.surface.fields import Fields
 from ..members import Found, Interface, Scope, Type, interfaces_imported, section_of
 
@@ -19,13 +19,13 @@ def may_use_interfaces(file: PythonFile, table: Fields) -> bool:
     return not Scope(interfaces_imported(modules, table), table).changing.isdisjoint(file.words.split(" "))
 
 
-def interfaces_used(uses: Iterable[MemberUse], table: Fields) -> list[Interface]:
+def interfaces_used(uses: Iterable[FieldUse], table: Fields) -> list[Interface]:
     """The interfaces that uses are of, of both generations where both have one of that name."""
     named = dict.fromkeys(tuple(use.type.split(".")[:3]) for use in uses)
     return interfaces_imported([(f"{package}.{kind}", (name,)) for package, kind, name in named], table)
 
 
-def changing_members(uses: Iterable[MemberUse], scope: Scope) -> Iterator[tuple[MemberUse, Found]]:
+def changing_members(uses: Iterable[FieldUse], scope: Scope) -> Iterator[tuple[FieldUse, Found]]:
     """The uses of members that some version lacks."""
     for use in uses:
         if use.steps[-1] not in scope.changing:

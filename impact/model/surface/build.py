@@ -17,7 +17,7 @@ import msgspec
 
 from ...facts.cmake import CMakeFile
 from ...facts.kinds import kind_of as kind_by_name
-from ...facts.launch_actions import Action, plain
+from ...facts.launch.actions import Action, plain
 from ...targets.surface.fields import snake
 from ...targets.surface.surface import BuildSurface, ExportedTarget, Header, LaunchFile, Plugin, Program
 from ..cmake.build import Install, for_tests

@@ -15,10 +15,12 @@ from typing import NamedTuple
 
 from ....edges.files import read_file, read_start, too_large
 from ....edges.limits import limits
-from ...facts import flow_launch, surface_cpp, surface_python
 from ...facts import interface as interfaces
 from ...facts import manifest as manifests
+from ...facts import surface_cpp
 from ...facts.interface import Field, Interface, Section
+from ...facts.launch import flow as flow_launch
+from ...facts.python import surface as surface_python
 from ...facts.surface import HeaderSurface
 from ...targets.machine.unpacked_deb import DebError, Member, members
 from ...targets.surface.compare import State

@@ -12,8 +12,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...facts.kinds import kind_of as kind_by_name
+from ...facts.python.surface import ModuleSurface
 from ...facts.setup import SetupFile
-from ...facts.surface_python import ModuleSurface
 from ...targets.surface.surface import Module, PythonSurface
 
 if TYPE_CHECKING:

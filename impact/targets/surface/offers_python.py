@@ -11,8 +11,8 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import NamedTuple
 
-from ...facts.python_objects import Given, PythonUse
-from ...facts.surface_python import Parameter, parameters_of
+from ...facts.python.surface import Parameter, parameters_of
+from ...facts.python.uses import Given, PythonUse
 from .offers import Offer, Offers
 from .python import UNKNOWN, Entry, Names, signature, wrapped
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from ...facts.surface_python import LATE, Bound, Parameter, Taken, is_private
+from ...facts.python.surface import LATE, Bound, Parameter, Taken, is_private
 from .surface import Module, PythonSurface
 
 

@@ -25,8 +25,8 @@ from ....edges.console import UserError
 from ....edges.files import read_chunks, writing
 from ...facts.interface import Interface
 from ...facts.parameters import last_part
+from ...facts.python.surface import Bound, ModuleSurface, Taken
 from ...facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
-from ...facts.surface_python import Bound, ModuleSurface, Taken
 from ..snapshot import DATA, SnapshotError
 from . import includes as surface_includes
 from .changes import PARAMETER, Line, brief, unpack

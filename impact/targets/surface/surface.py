@@ -5,8 +5,8 @@ from __future__ import annotations
 import msgspec
 
 from ...facts.interface import Interface
+from ...facts.python.surface import ModuleSurface
 from ...facts.surface import HeaderSurface
-from ...facts.surface_python import ModuleSurface
 
 
 class Surface(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -4,7 +4,8 @@ from pathlib import Path
 from textwrap import dedent
 
 from rosimpact.impact.analysis.session import open_tree
-from rosimpact.impact.facts import flow_cpp, flow_python
+from rosimpact.impact.facts import flow_cpp
+from rosimpact.impact.facts.python import flow as flow_python
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.defined import Defined
 from rosimpact.impact.model.flow.frameworks import Frameworks

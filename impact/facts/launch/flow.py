@@ -1,0 +1,476 @@
+"""What one launch file starts and sets, as written: XML of both generations and YAML here, Python in its own module.
+
+All of them give the same facts, so that whatever follows a launch need not know which it reads. Nothing is resolved:
+values are sequences of pieces.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from ..markup import TOKEN, Document, Element, unescape
+from ..place import Problem
+from .actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, together
+from .documents import launch_document
+from .parameter_files import DEEPEST
+
+
+def extract(data: bytes, kind: str) -> LaunchFile:
+    """The facts of a launch file of the kind launch_xml, launch_yaml or launch_python, or the same with `flow_` before
+    it. Never raises."""
+    kind = kind.removeprefix("flow_")
+    if kind == "launch_python":
+        from .python import extract as extract_python
+
+        return extract_python(data)
+    try:
+        return _launch(data, kind)
+    except RecursionError:
+        return LaunchFile(kind.removeprefix("launch_"), 0, (), (Problem(1, "nested too deeply to be read"),))
+
+
+# Substitutions
+
+_ROS1 = re.compile(r"\$\(([^$()]*)\)")
+
+
+def substitutions(text: str, generation: int) -> Value:
+    """A text of a launch or parameter file as a value, by the rules of ROS 1 (roslaunch) or ROS 2 (launch)."""
+    if "$(" not in text:
+        return literal(text)
+    return _ros1(text) if generation == 1 else _Template(text).value()
+
+
+def _ros1(text: str) -> Value:
+    if text.startswith("$(eval ") and text.endswith(")"):
+        return (Piece("eval", "roslaunch", (literal(text[7:-1]),)),)
+    values: list[Value] = []
+    at = 0
+    for m in _ROS1.finditer(text):
+        values += (_no_opening(text[at : m.start()]), (_ros1_piece(m[1].split(), m[0]),))
+        at = m.end()
+    values.append(_no_opening(text[at:]))
+    return together(values)
+
+
+def _no_opening(text: str) -> Value:
+    """Text between substitutions; one that opens a substitution and is none cannot be read."""
+    return (other(text),) if "$(" in text else literal(text)
+
+
+def _ros1_piece(words: list[str], source: str) -> Piece:
+    verb, args = (words[0], words[1:]) if words else ("", [])
+    if verb in ("arg", "anon", "env", "find") and len(args) == 1:
+        return Piece(verb, args[0])
+    if verb == "optenv" and args:
+        return Piece("env", args[0], (literal(" ".join(args[1:])),))
+    if verb == "dirname" and not args:
+        return Piece("dirname")
+    return other(source)
+
+
+_IDENTIFIER = re.compile(r"[A-Za-z][\w-]*")
+
+
+class _Template:
+    """A text with launch's substitutions, by the grammar of launch/frontend/grammar.lark."""
+
+    def __init__(self, text: str):
+        self.text = text
+        self.at = 0
+
+    def value(self) -> Value:
+        return self._fragments("", 0)
+
+    def _fragments(self, quote: str, depth: int) -> Value:
+        """Literals and substitutions up to a closing quote, or to the end."""
+        values: list[Value] = []
+        start = self.at
+        text = self.text
+        held: list[str] = []
+
+        def hold(end: int) -> None:
+            held.append(text[start:end])
+
+        while self.at < len(text):
+            c = text[self.at]
+            if c == quote:
+                break
+            if c == "\\" and self.at + 1 < len(text):
+                hold(self.at)
+                held.append(text[self.at + 1])
+                self.at += 2
+                start = self.at
+            elif c == "$" and text.startswith("$(", self.at):
+                hold(self.at)
+                values += (literal("".join(held)), (self._substitution(depth + 1, quote),))
+                held = []
+                start = self.at
+            else:
+                self.at += 1
+        hold(self.at)
+        values.append(literal("".join(held)))
+        return together(values)
+
+    def _substitution(self, depth: int, quote: str) -> Piece:
+        begin = self.at
+        m = _IDENTIFIER.match(self.text, begin + 2)
+        if m is None or depth > DEEPEST:
+            self.at = len(self.text)
+            return other(self.text[begin:])
+        self.at = m.end()
+        args: list[Value] = []
+        while self.at < len(self.text):
+            c = self.text[self.at]
+            if c == ")":
+                self.at += 1
+                return _ros2_piece(m[0], args, self.text[begin : self.at])
+            if c.isspace():
+                self.at += 1
+            elif c in "'\"" and c != quote:
+                self.at += 1
+                args.append(self._fragments(c, depth))
+                self.at += 1
+            else:
+                args.append(self._unquoted(depth, quote))
+        return other(self.text[begin:])
+
+    def _unquoted(self, depth: int, quote: str) -> Value:
+        values: list[Value] = []
+        text = self.text
+        while self.at < len(text):
+            c = text[self.at]
+            if c == ")" or c.isspace():
+                break
+            if text.startswith("$(", self.at):
+                values.append((self._substitution(depth + 1, quote),))
+                continue
+            step = 2 if c == "\\" and self.at + 1 < len(text) else 1
+            values.append(literal(text[self.at + step - 1]))
+            self.at += step
+        return together(values)
+
+
+def _ros2_piece(verb: str, args: list[Value], source: str) -> Piece:
+    if verb in _ROS2_NAMED and 1 <= len(args) <= 2:
+        return named(_ROS2_NAMED[verb], *args)
+    if verb in ("find-pkg-share", "find-pkg-prefix", "find-exec", "anon") and len(args) == 1:
+        return named(_ROS2_PLACES.get(verb, verb), args[0])
+    if verb == "exec-in-pkg" and len(args) == 2:
+        return Piece("executable", "", tuple(args))
+    if verb in ("dirname", "filename") and not args:
+        return Piece(verb)
+    if verb == "eval" and args:
+        return Piece("eval", "launch", (spaced(args),))
+    if verb == "file-content" and len(args) == 1:
+        return Piece("content", "", (args[0],))
+    if verb == "command" and args:
+        return Piece("command", "", (args[0],))
+    if verb in ("equals", "not-equals") and len(args) == 2:
+        same = Piece("equals", "", tuple(args))
+        return same if verb == "equals" else Piece("not", "", ((same,),))
+    if verb == "not" and len(args) == 1:
+        return Piece("not", "", (args[0],))
+    if verb in ("and", "or", "any", "all"):
+        return Piece({"any": "or", "all": "and"}.get(verb, verb), "", tuple(args))
+    if verb == "if" and 2 <= len(args) <= 3:
+        return Piece("choose", "", (*args, *([literal("")] if len(args) == 2 else ())))
+    return other(source)
+
+
+_ROS2_PLACES = {"find-pkg-share": "find", "find-pkg-prefix": "prefix", "find-exec": "program"}
+_ROS2_NAMED = {"var": "arg", "env": "env", "optenv": "env"}
+
+
+def spaced(values: list[Value]) -> Value:
+    """Values as one, blanks between them."""
+    parts: list[Value] = []
+    for value in values:
+        parts += (*([literal(" ")] if parts else ()), value)
+    return together(parts)
+
+
+# XML and YAML as one kind of tree
+
+
+class _Entity:
+    """An element of a launch file. attributes: the values as written, a list where YAML has one."""
+
+    __slots__ = ("attributes", "children", "line", "tag", "text")
+
+    def __init__(self, tag: str, line: int):
+        self.tag = tag
+        self.line = line
+        self.attributes: dict[str, str | list[str]] = {}
+        self.children: list[_Entity] = []
+        self.text = ""
+
+
+def _launch(data: bytes, kind: str) -> LaunchFile:
+    document = launch_document(data, kind)
+    is_yaml = kind == "launch_yaml"
+    language = "yaml" if is_yaml else "xml"
+    if not document.elements or document.elements[0].name != "launch":
+        lacking = Problem(1, "has no `launch:` list" if is_yaml else "has no `<launch>` element")
+        return LaunchFile(language, 2 if is_yaml else 0, (), (*document.problems, lacking))
+    generation = 2 if is_yaml else _generation(document)
+    entities: list[_Entity] = []
+    depths: list[int] = []
+    problems = list(document.problems)
+    for element in document.elements:
+        depth = depths[element.parent] + 1 if element.parent >= 0 else 0
+        entity = _Entity(element.name if is_yaml else element.name.lower(), document.place(element.offset)[0])
+        for attribute in element.attributes:
+            if attribute.listed:
+                items = entity.attributes.setdefault(attribute.name, [])
+                if isinstance(items, list):
+                    items.append(attribute.value)
+            elif is_yaml:
+                entity.attributes[attribute.name] = attribute.value
+            else:
+                # XML's readers make blanks of line ends and tabs in values; the first of two of a name counts.
+                entity.attributes.setdefault(attribute.name, _BLANK.sub(" ", attribute.value))
+        entity.text = _own_text(document, element) if element.text and entity.tag == "rosparam" else ""
+        entities.append(entity)
+        depths.append(depth)
+        if depth == DEEPEST:
+            problems.append(Problem(entity.line, f"nested more than {DEEPEST} deep"))
+        elif 0 < depth < DEEPEST:
+            entities[element.parent].children.append(entity)
+    reader = _Reader(generation)
+    actions = reader.actions(entities[0].children)
+    return LaunchFile(language, generation, actions, (*problems, *reader.problems))
+
+
+_BLANK = re.compile(r"\r\n|[\r\n\t]")
+_COMMENT_OR_CDATA = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
+
+
+def _own_text(document: Document, element: Element) -> str:
+    """The text of an element without children as it stands, line ends around comments included: YAML needs them."""
+    opened = TOKEN.match(document.text, element.offset)
+    start = opened.end() if opened is not None else element.offset
+    end = document.text.find("</", start)
+    raw = document.text[start : end if end >= 0 else len(document.text)]
+    return unescape(_COMMENT_OR_CDATA.sub(lambda m: m[1] or "", raw))
+
+
+_ONLY_1 = re.compile(r"\$\((?:find|arg|optenv) ")
+_ONLY_2 = re.compile(r"\$\((?:var|find-pkg-share|find-pkg-prefix|find-exec|exec-in-pkg|not|and|or|equals|not-equals) ")
+_TAGS_1 = frozenset({"rosparam", "test", "machine"})
+
+
+def _generation(document: Document) -> int:
+    """1 or 2 by what only that generation writes, 0 where nothing tells."""
+    counts = [0, 0, 0]
+    for element in document.elements:
+        names = {a.name for a in element.attributes}
+        if element.name in _TAGS_1 or "ns" in names or (element.name == "node" and "type" in names):
+            counts[1] += 1
+        elif element.name in _KINDS_2 or names & {"exec", "namespace"} or (element.name == "param" and "from" in names):
+            counts[2] += 1
+        for attribute in element.attributes:
+            if "$(" in attribute.value:
+                counts[1] += bool(_ONLY_1.search(attribute.value))
+                counts[2] += bool(_ONLY_2.search(attribute.value))
+    return 1 if counts[1] > counts[2] else 2 if counts[2] else 0
+
+
+_KINDS_2 = {
+    "let": "let",
+    "lifecycle_node": "lifecycle",
+    "node_container": "container",
+    "composable_node_container": "container",
+    "composable_node": "composable",
+    "load_composable_node": "load",
+    "push_ros_namespace": "namespace",
+    "push-ros-namespace": "namespace",
+    "set_remap": "remap",
+    "set_parameter": "parameter",
+    "set_parameters_from_file": "parameter-file",
+    "set_use_sim_time": "parameter",
+    "set_env": "environment",
+    "executable": "process",
+    "timer": "group",
+}
+_KINDS = {
+    **_KINDS_2,
+    "node": "node",
+    "test": "test",
+    "include": "include",
+    "arg": "argument",
+    "group": "group",
+    "remap": "remap",
+    "param": "parameter",
+    "rosparam": "parameter-file",
+    "env": "environment",
+}
+# What starts nothing and sets nothing that a node could read.
+_IDLE = frozenset(
+    ("machine", "master", "log", "log_info", "shutdown", "unset_env", "reset", "keep", "extra_arg", "append_env",
+     "prepend_env", "set_ros_log_dir", "launch", "lifecycle_transition", "description", "on_exit", "emit_event"),
+)  # fmt: skip
+_ATTRIBUTES = {
+    "pkg": "package",
+    "type": "executable",
+    "exec": "executable",
+    "node-name": "name",
+    "test-name": "test-name",
+    "ns": "namespace",
+    "args": "arguments",
+    "clear_params": "clear",
+    "pass_all_args": "pass-all",
+    "target": "container",
+    "cmd": "command",
+    "subst_value": "substitute",
+    "allow_substs": "substitute",
+    "filename": "file",
+    "from": "from",
+    "to": "to",
+    **{
+        name: name
+        for name in (
+            *("plugin", "name", "namespace", "file", "value", "default", "command", "textfile", "binfile"),
+            *("scoped", "forwarding"),
+        )
+    },
+}
+
+
+class _Reader:
+    """Entities to actions."""
+
+    def __init__(self, generation: int):
+        self.generation = generation
+        self.problems: list[Problem] = []
+
+    def actions(self, entities: list[_Entity], inside: str = "") -> tuple[Action, ...]:
+        found: list[Action] = []
+        for entity in entities:
+            found += self.action(entity, inside)
+        return tuple(found)
+
+    def value(self, text: str | list[str]) -> Value:
+        if isinstance(text, list):
+            return together([literal("["), *_commas([self.value(item) for item in text]), literal("]")])
+        return substitutions(text, self.generation)
+
+    def action(self, entity: _Entity, inside: str) -> list[Action]:
+        kind = _KINDS.get(entity.tag)
+        if kind is None:
+            if entity.tag in _IDLE:
+                return []
+            return [Action("unknown", entity.line, (("text", literal(f"<{entity.tag}>")),), self.conditions(entity))]
+        if inside == "include" and kind in ("argument", "let"):
+            kind = "pass"
+        if entity.tag == "param" and "from" in entity.attributes:
+            kind = "parameter-file"
+        if kind == "parameter":
+            return self.parameter(entity, ())
+        attributes = self.attributes(entity, kind)
+        conditions = self.conditions(entity)
+        if entity.tag == "timer":
+            period = self.value(entity.attributes.get("period", ""))
+            conditions = (*conditions, Condition("after", together([period, literal(" s")]), entity.line))
+        if entity.tag == "rosparam" and entity.text:
+            fill = "subst_value" in entity.attributes
+            attributes.append(("text", self.value(entity.text) if fill else literal(entity.text)))
+        children = self.actions(entity.children, kind)
+        return [Action(kind, entity.line, tuple(attributes), conditions, children)]
+
+    def conditions(self, entity: _Entity) -> tuple[Condition, ...]:
+        return tuple(
+            Condition(kind, self.value(entity.attributes[kind]), entity.line)
+            for kind in ("if", "unless")
+            if kind in entity.attributes
+        )
+
+    def attributes(self, entity: _Entity, kind: str) -> list[tuple[str, Value]]:
+        found: list[tuple[str, Value]] = []
+        for name, text in entity.attributes.items():
+            if kind == "parameter-file":
+                # ROS 1's `ns` and `param` name what the file is loaded below, ROS 2's `from` the file
+                key = {"from": "file", "param": "name"}.get(name) or _ATTRIBUTES.get(name)
+                if key == "name" and "ns" in entity.attributes:
+                    continue
+                if name == "ns":
+                    below = [self.value(text)]
+                    if "param" in entity.attributes:
+                        below += (literal("/"), self.value(entity.attributes["param"]))
+                    found.append(("name", together(below)))
+                    continue
+            elif kind == "parameter" and name == "type":
+                key = "type"
+            elif name == "ros_args":
+                found += [("arguments", literal("--ros-args"))]
+                key = "arguments"
+            else:
+                key = _ATTRIBUTES.get(name)
+            if key == "arguments" or (key == "command" and kind == "process"):
+                found += [(key, word) for word in words(self.value(text))]
+            elif key is not None:
+                found.append((key, self.value(text)))
+        if kind in ("test", "node") and "test-name" in entity.attributes:
+            test = [value for key, value in found if key == "test-name"]
+            found = [(key, value) for key, value in found if key != "test-name"]
+            if "name" not in entity.attributes:
+                found.append(("name", test[0]))
+        return found
+
+    def parameter(self, entity: _Entity, above: tuple[Value, ...]) -> list[Action]:
+        """A parameter, or those nested in it, whose names are joined by dots."""
+        if entity.tag == "set_use_sim_time":
+            attributes = [("name", literal("use_sim_time")), *self.attributes(entity, "parameter")]
+            return [Action("parameter", entity.line, tuple(attributes), self.conditions(entity))]
+        attributes = self.attributes(entity, "parameter")
+        name = next((value for key, value in attributes if key == "name"), literal(""))
+        nested = [child for child in entity.children if child.tag == "param"]
+        if nested:
+            found: list[Action] = []
+            for child in nested:
+                found += self.parameter(child, (*above, name, literal(".")))
+            return found
+        attributes = [(key, together([*above, value]) if key == "name" else value) for key, value in attributes]
+        return [Action("parameter", entity.line, tuple(attributes), self.conditions(entity))]
+
+
+def _commas(values: list[Value]) -> Iterator[Value]:
+    for place, value in enumerate(values):
+        if place:
+            yield literal(", ")
+        yield value
+
+
+def words(value: Value) -> list[Value]:
+    """A command line as its words, split at the blanks of its literal pieces outside quotes; quotes are taken off."""
+    found: list[Value] = []
+    word: list[Value] = []
+    quote = ""
+    begun = False
+    for piece in value:
+        if piece.kind != "text":
+            word.append((piece,))
+            begun = True
+            continue
+        held = ""
+        for c in piece.text:
+            if quote:
+                if c == quote:
+                    quote = ""
+                else:
+                    held += c
+            elif c in "'\"":
+                quote, begun = c, True
+            elif c.isspace():
+                if held or begun:
+                    found.append(together([*word, literal(held)]))
+                word, held, begun = [], "", False
+            else:
+                held += c
+                begun = True
+        if held:
+            word.append(literal(held))
+    if word or begun:
+        found.append(together(word))
+    return found

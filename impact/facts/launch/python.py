@@ -1,0 +1,876 @@
+"""Launch files in Python to the facts of flow_launch: generate_launch_description() followed without being run.
+
+The tree is walked as Python would run it, with values that are known, substitutions, or unknown. Branches that hang on
+what is only known at launch are walked both, and what they add stands under their condition.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....edges.dispatch import node_methods
+from ..place import Problem
+from ..python.source import read
+from .actions import Action, Condition, LaunchFile, Piece, Value, literal, named, other, plain, together
+from .parameter_files import DEEPEST
+from .python_calls import MAKERS, MOST_TURNS, Call
+from .python_values import (
+    Asked,
+    Class,
+    Constant,
+    Context,
+    Either,
+    FilledFile,
+    Function,
+    Guarded,
+    Items,
+    Method,
+    Module,
+    Object,
+    Pairs,
+    Scope,
+    Text,
+    TooMuch,
+    Typed,
+    Unknown,
+    YamlContent,
+    all_of,
+    calculated,
+    folder_of,
+    guarded_by,
+    place_in,
+    source_of,
+)
+
+MOST_STEPS = 200_000
+STEPS = f"takes more than {MOST_STEPS} steps"
+DEEPEST_CALL = 24
+ENTRIES = ("generate_launch_description", "generate_test_description")
+
+
+def extract(data: bytes) -> LaunchFile:
+    """The facts of a launch file in Python. Never raises.
+
+    A file without generate_launch_description() says so as a problem.
+    """
+    source = read(data)
+    problems = source.problems
+    if source.tree is None:
+        return LaunchFile("python", 2, (), problems or (Problem(1, "not parsed: is not Python 3"),))
+    try:
+        actions, more = Walker().launch(source.tree)
+        _measure(actions)
+        return LaunchFile("python", 2, actions, (*problems, *more))
+    except RecursionError:
+        return LaunchFile("python", 2, (), (*problems, Problem(1, "nested too deeply to be read")))
+    except TooMuch as error:
+        return LaunchFile("python", 2, (), (*problems, Problem(1, str(error))))
+
+
+def _measure(actions: tuple[Action, ...]) -> None:
+    """Raises TooMuch for facts too large or too deep to be handed on: values may hold one another many times over."""
+    pieces = 0
+    rest: list[tuple[Any, int]] = [(action, 0) for action in actions]
+    while rest:
+        item, depth = rest.pop()
+        pieces += 1
+        if pieces > MOST_STEPS or depth > DEEPEST:
+            raise TooMuch("says too much to be kept")
+        if isinstance(item, Action):
+            values = [value for _, value in item.attributes] + [c.value for c in item.conditions]
+            rest += [(child, depth + 1) for child in item.children]
+        else:
+            values = item.parts
+        rest += [(piece, depth + 1) for value in values for piece in value]
+
+
+class Walker:
+    """One walk through a file."""
+
+    def __init__(self) -> None:
+        self.module = Scope(None)
+        self.module.names["__file__"] = Text((Piece("filename"),))
+        self.scope = self.module
+        self.conditions: list[Condition] = []
+        self.returns: list[tuple[tuple[Condition, ...], Any]] = []
+        self.base = 0
+        self.calls = 0
+        self.steps = 0
+        self.line = 1
+
+    def launch(self, tree: ast.Module) -> tuple[tuple[Action, ...], tuple[Problem, ...]]:
+        self.block(tree.body)
+        entry = next((f for f in map(self.module.names.get, ENTRIES) if isinstance(f, Function)), None)
+        if entry is None:
+            return (), (Problem(1, "has no generate_launch_description()"),)
+        result = self.call_function(entry, [], {})
+        if isinstance(result, Items) and result.kind == "tuple" and result.items:
+            # A test's description, and what its cases are told
+            result = result.items[0]
+        return tuple(self.actions(result, entry.node.lineno)), ()
+
+    # Statements
+
+    def block(self, statements: Sequence[ast.stmt]) -> bool:
+        """Walks statements; True when none that follows them can run."""
+        added = 0
+        try:
+            for statement in statements:
+                self.spend(1)
+                handler = _STATEMENTS.get(type(statement))
+                if handler is None:
+                    continue
+                outcome = handler(self, statement)
+                if outcome is True:
+                    return True
+                if isinstance(outcome, Condition):
+                    # One branch jumps: all that follows stands under the other's condition.
+                    self.conditions.append(outcome)
+                    added += 1
+            return False
+        finally:
+            if added:
+                del self.conditions[-added:]
+
+    def run_Expr(self, statement: ast.Expr) -> None:
+        self.value(statement.value)
+
+    def run_Assign(self, statement: ast.Assign) -> None:
+        value = self.value(statement.value)
+        for target in statement.targets:
+            self.bind(target, value)
+
+    def run_AnnAssign(self, statement: ast.AnnAssign) -> None:
+        if statement.value is not None:
+            self.bind(statement.target, self.value(statement.value))
+
+    def run_AugAssign(self, statement: ast.AugAssign) -> None:
+        added = self.value(statement.value)
+        before = self.value(statement.target)
+        if isinstance(before, Items) and isinstance(added, Items):
+            self.extend(before, added.items)
+        elif isinstance(before, Pairs) and isinstance(added, Pairs):
+            for key, value in added.items:
+                before.set(key, value)
+        elif isinstance(statement.op, ast.Add):
+            self.bind(statement.target, self.add(before, added, statement))
+        else:
+            self.bind(statement.target, Unknown(source_of(statement)))
+
+    def bind(self, target: ast.expr, value: Any) -> None:
+        if isinstance(target, ast.Name):
+            self.scope.names[target.id] = value
+        elif isinstance(target, (ast.Tuple, ast.List)):
+            items = value.items if isinstance(value, Items) else ()
+            known = len(items) == len(target.elts)
+            for place, element in enumerate(target.elts):
+                self.bind(element, items[place] if known else Unknown(source_of(element)))
+        elif isinstance(target, ast.Subscript):
+            holder = self.value(target.value)
+            key = self.value(target.slice)
+            if isinstance(holder, Pairs):
+                holder.set(key, self.guarded(value, holder.depth))
+            elif isinstance(holder, Items) and (place := place_in(holder, key)) is not None:
+                holder.items[place] = value
+        elif isinstance(target, ast.Attribute):
+            holder = self.value(target.value)
+            if isinstance(holder, Object):
+                holder.attributes[target.attr] = value
+
+    def run_Return(self, statement: ast.Return) -> bool:
+        value = Constant(None) if statement.value is None else self.value(statement.value)
+        self.returns.append((tuple(self.conditions[self.base :]), value))
+        return True
+
+    def run_Raise(self, statement: ast.Raise) -> bool:
+        return True
+
+    def run_Break(self, statement: ast.stmt) -> bool:
+        return True
+
+    run_Continue = run_Break
+
+    def run_If(self, statement: ast.If) -> bool | Condition | None:
+        decided = self.truth(statement.test)
+        if isinstance(decided, bool):
+            return self.block(statement.body if decided else statement.orelse)
+        yes = Condition("if", decided, statement.lineno)
+        no = Condition("unless", decided, statement.lineno)
+        before = dict(self.scope.names)
+        self.conditions.append(yes)
+        body_jumps = self.block(statement.body)
+        self.conditions.pop()
+        after_body, self.scope.names = self.scope.names, dict(before)
+        self.conditions.append(no)
+        else_jumps = self.block(statement.orelse)
+        self.conditions.pop()
+        if body_jumps and else_jumps:
+            return True
+        if body_jumps:
+            return no
+        if else_jumps:
+            self.scope.names = after_body
+            return yes
+        names = self.scope.names
+        for name, value in after_body.items():
+            if name not in names:
+                names[name] = value
+            elif names[name] is not value and names[name] != value:
+                names[name] = Either(decided, value, names[name])
+        return None
+
+    def run_For(self, statement: ast.For) -> None:
+        turns = self.turns(self.value(statement.iter))
+        if turns is None:
+            over = f"for {source_of(statement.target)} in {source_of(statement.iter)}"
+            self.conditions.append(Condition("each", (other(over),), statement.lineno))
+            self.bind_unknown(statement.target)
+            self.block(statement.body)
+            self.conditions.pop()
+        else:
+            for turn in turns:
+                value, extra = (turn.value, turn.conditions) if isinstance(turn, Guarded) else (turn, ())
+                self.conditions += extra
+                self.bind(statement.target, value)
+                jumped = self.block(statement.body)
+                if extra:
+                    del self.conditions[-len(extra) :]
+                if jumped and not _continues(statement.body):
+                    break
+        self.block(statement.orelse)
+
+    def bind_unknown(self, target: ast.expr) -> None:
+        for node in ast.walk(target):
+            if isinstance(node, ast.Name):
+                self.scope.names[node.id] = Unknown(node.id)
+
+    def turns(self, over: Any) -> list[Any] | None:
+        """What a loop walks through, None when that is not known."""
+        if isinstance(over, Pairs):
+            items = [key for key, _ in over.items]
+        elif isinstance(over, Items):
+            items = over.items
+        else:
+            return None
+        return items if len(items) <= MOST_TURNS else None
+
+    def run_While(self, statement: ast.While) -> None:
+        self.conditions.append(Condition("each", (other(f"while {source_of(statement.test)}"),), statement.lineno))
+        self.block(statement.body)
+        self.conditions.pop()
+
+    def run_With(self, statement: ast.With) -> bool:
+        for item in statement.items:
+            value = self.value(item.context_expr)
+            if item.optional_vars is not None:
+                self.bind(item.optional_vars, value)
+        return self.block(statement.body)
+
+    def run_Try(self, statement: ast.Try) -> bool:
+        jumps = self.block(statement.body)
+        if not jumps:
+            jumps = self.block(statement.orelse)
+        return self.block(statement.finalbody) or jumps
+
+    def run_FunctionDef(self, statement: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
+        self.scope.names[statement.name] = Function(statement, self.scope)
+
+    run_AsyncFunctionDef = run_FunctionDef
+
+    def run_ClassDef(self, statement: ast.ClassDef) -> None:
+        type_ = Class(statement.name, self.scope)
+        for inner in statement.body:
+            if isinstance(inner, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                type_.methods[inner.name] = Function(inner, self.scope)
+        self.scope.names[statement.name] = type_
+
+    def run_Import(self, statement: ast.Import) -> None:
+        for alias in statement.names:
+            if alias.asname:
+                self.scope.names[alias.asname] = Module(alias.name)
+            else:
+                top = alias.name.partition(".")[0]
+                self.scope.names[top] = Module(top)
+
+    def run_ImportFrom(self, statement: ast.ImportFrom) -> None:
+        for alias in statement.names:
+            self.scope.names[alias.asname or alias.name] = Module(f"{statement.module or ''}.{alias.name}")
+
+    # Conditions
+
+    def truth(self, node: ast.expr) -> bool | Value:
+        """Whether an expression is true: known, or a value that tells at launch."""
+        return self.truth_of(self.value(node), node)
+
+    def truth_of(self, value: Any, node: ast.AST) -> bool | Value:
+        if isinstance(value, Constant):
+            return bool(value.value)
+        if isinstance(value, Text):
+            if not value.is_str:
+                return True
+            text = plain(value.value)
+            if text is not None:
+                return bool(text)
+            if len(value.value) == 1 and value.value[0].kind in _BOOLEAN_PIECES:
+                return value.value
+            return (Piece("not", "", ((Piece("equals", "", (value.value, literal(""))),),)),)
+        if isinstance(value, (Items, Pairs)):
+            if not value.items:
+                return False
+            if not any(isinstance(item, Guarded) for item in value.items):
+                return True
+        if isinstance(value, (Module, Function, Object, Class, Action, Context)):
+            return True
+        return (other(source_of(node)),)
+
+    def value_Compare(self, node: ast.Compare) -> Any:
+        if len(node.ops) != 1:
+            return Unknown(source_of(node))
+        op = node.ops[0]
+        left, right = self.value(node.left), self.value(node.comparators[0])
+        same: Any = None
+        if isinstance(op, (ast.Eq, ast.NotEq, ast.Is, ast.IsNot)):
+            same = self.equal(left, right)
+        elif isinstance(op, (ast.In, ast.NotIn)) and isinstance(right, (Items, Pairs)):
+            items = [key for key, _ in right.items] if isinstance(right, Pairs) else right.items
+            outcomes = [self.equal(left, item) for item in items]
+            if any(outcome is True for outcome in outcomes):
+                same = True
+            elif all(outcome is False for outcome in outcomes):
+                same = False
+            elif isinstance(left, Text) and all(isinstance(item, Text) for item in items):
+                same = (Piece("in", "", (left.value, *(item.value for item in items))),)
+        elif isinstance(left, Constant) and isinstance(right, Constant):
+            return calculated(node, left.value, right.value)
+        elif isinstance(op, (ast.In, ast.NotIn)) and isinstance(left, Text) and isinstance(right, Text):
+            inner, outer = plain(left.value), plain(right.value)
+            if inner is not None and outer is not None:
+                same = inner in outer
+        if same is None:
+            return Unknown(source_of(node))
+        negated = isinstance(op, (ast.NotEq, ast.IsNot, ast.NotIn))
+        if isinstance(same, bool):
+            return Constant(same != negated)
+        return Text((Piece("not", "", (same,)),) if negated else same)
+
+    def equal(self, left: Any, right: Any) -> bool | Value | None:
+        """Whether two values are the same; None when that cannot be told."""
+        if isinstance(left, Constant) and isinstance(right, Constant):
+            return left.value == right.value
+        if isinstance(left, Text) and isinstance(right, Text):
+            a, b = plain(left.value), plain(right.value)
+            if a is not None and b is not None:
+                return a == b
+            if not (left.is_str and right.is_str):
+                return False
+            return (Piece("equals", "", (left.value, right.value)),)
+        if isinstance(left, Either) or isinstance(right, Either):
+            return None
+        if isinstance(left, Unknown) or isinstance(right, Unknown):
+            return None
+        return False
+
+    # Expressions
+
+    def value(self, node: ast.expr) -> Any:
+        self.spend(1)
+        handler = _EXPRESSIONS.get(type(node))
+        if handler is None:
+            return Unknown(source_of(node))
+        return handler(self, node)
+
+    def value_Constant(self, node: ast.Constant) -> Any:
+        if isinstance(node.value, str):
+            return Text(literal(node.value))
+        if node.value is None or isinstance(node.value, (bool, int, float)):
+            return Constant(node.value)
+        return Unknown(source_of(node))
+
+    def value_Name(self, node: ast.Name) -> Any:
+        found = self.scope.look(node.id)
+        return Module(node.id) if found is None else found
+
+    def value_Attribute(self, node: ast.Attribute) -> Any:
+        receiver = self.value(node.value)
+        name = node.attr
+        if isinstance(receiver, Module):
+            return Module(f"{receiver.path}.{name}")
+        if isinstance(receiver, Object):
+            if name in receiver.attributes:
+                return receiver.attributes[name]
+            method = receiver.type.methods.get(name)
+            return Unknown(source_of(node)) if method is None else method._replace(self=receiver)
+        if isinstance(receiver, Context) and name == "launch_configurations":
+            return Context(True)
+        if isinstance(receiver, Text) and name == "parent":
+            return Text(folder_of(receiver.value))
+        if isinstance(receiver, Items) and name == "entities":
+            return receiver
+        if isinstance(receiver, Unknown):
+            return Unknown(source_of(node))
+        return Method(receiver, name)
+
+    def value_Subscript(self, node: ast.Subscript) -> Any:
+        holder = self.value(node.value)
+        key = self.value(node.slice) if not isinstance(node.slice, ast.Slice) else None
+        if isinstance(holder, Module) and holder.path == "os.environ" and isinstance(key, Text):
+            return Text((named("env", key.value),))
+        if isinstance(holder, YamlContent) and isinstance(key, Text):
+            return holder._replace(keys=(*holder.keys, key.value))
+        if isinstance(holder, Context) and isinstance(key, Text):
+            return Text((named("arg", key.value),))
+        if isinstance(holder, Pairs):
+            found = holder.get(key)
+            if found is not None and not isinstance(found, Guarded):
+                return found
+        if isinstance(holder, Items) and (place := place_in(holder, key)) is not None:
+            return holder.items[place]
+        return Unknown(source_of(node))
+
+    def value_List(self, node: ast.List | ast.Tuple) -> Any:
+        items: list[Any] = []
+        for element in node.elts:
+            if isinstance(element, ast.Starred):
+                value = self.value(element.value)
+                if isinstance(value, Items):
+                    items += value.items
+                else:
+                    items.append(Unknown(source_of(element)))
+            else:
+                items.append(self.value(element))
+        return Items(items, len(self.conditions), "tuple" if isinstance(node, ast.Tuple) else "list")
+
+    value_Tuple = value_List
+
+    def value_Dict(self, node: ast.Dict) -> Any:
+        made = Pairs([], len(self.conditions))
+        for key, item in zip(node.keys, node.values, strict=True):
+            value = self.value(item)
+            if key is not None:
+                made.set(self.value(key), value)
+            elif isinstance(value, Pairs):
+                for inner, held in value.items:
+                    made.set(inner, held)
+            else:
+                made.set(Unknown(source_of(item)), value)
+        return made
+
+    def value_JoinedStr(self, node: ast.JoinedStr) -> Any:
+        values: list[Value] = []
+        for part in node.values:
+            inner = part.value if isinstance(part, ast.FormattedValue) else part
+            values.append(self.text(self.value(inner), inner))
+        return Text(together(values))
+
+    def value_BinOp(self, node: ast.BinOp) -> Any:
+        left, right = self.value(node.left), self.value(node.right)
+        if isinstance(node.op, ast.Add):
+            return self.add(left, right, node)
+        if isinstance(node.op, ast.Div) and isinstance(left, Text):
+            return Text((Piece("join", "", (left.value, self.text(right, node.right))),), left.is_str)
+        if isinstance(node.op, ast.Mod) and isinstance(left, Text):
+            pattern = plain(left.value)
+            given = right.items if isinstance(right, Items) else [right]
+            if pattern is not None and pattern.count("%s") == len(given) == pattern.count("%"):
+                values: list[Value] = []
+                for place, piece in enumerate(pattern.split("%s")):
+                    values.append(literal(piece))
+                    if place < len(given):
+                        values.append(self.text(given[place], node.right))
+                return Text(together(values))
+        if isinstance(left, Constant) and isinstance(right, Constant):
+            return calculated(node, left.value, right.value)
+        if isinstance(left, Pairs) and isinstance(right, Pairs) and isinstance(node.op, ast.BitOr):
+            made = Pairs(list(left.items), len(self.conditions))
+            for key, value in right.items:
+                made.set(key, value)
+            return made
+        return Unknown(source_of(node))
+
+    def add(self, left: Any, right: Any, node: ast.AST) -> Any:
+        if isinstance(left, Items) and isinstance(right, Items):
+            self.spend(len(left.items) + len(right.items))
+            return Items([*left.items, *right.items], len(self.conditions), left.kind)
+        if isinstance(left, Text) or isinstance(right, Text):
+            if isinstance(left, (Text, Either)) and isinstance(right, (Text, Either)):
+                parts = [self.text(left, node), self.text(right, node)]
+                return Text(together(parts), all(getattr(v, "is_str", True) for v in (left, right)))
+            if isinstance(left, Items) or isinstance(right, Items):
+                # A substitution and a list of them
+                return Text(together([self.text(left, node), self.text(right, node)]), False)
+            if isinstance(left, Unknown) or isinstance(right, Unknown):
+                return Text(together([self.text(left, node), self.text(right, node)]))
+        if isinstance(left, Constant) and isinstance(right, Constant) and isinstance(node, ast.BinOp):
+            return calculated(node, left.value, right.value)
+        return Unknown(source_of(node))
+
+    def value_BoolOp(self, node: ast.BoolOp) -> Any:
+        """`and` and `or`: known where what comes first decides, else a value that tells at launch."""
+        is_or = isinstance(node.op, ast.Or)
+        open_: list[Value] = []
+        for place, part in enumerate(node.values):
+            value = self.value(part)
+            truth = self.truth_of(value, part)
+            if isinstance(truth, bool):
+                if truth == is_or or (place == len(node.values) - 1 and not open_):
+                    if not open_:
+                        return value
+                    if truth == is_or:
+                        open_.append(literal(str(truth)))
+                        break
+                continue
+            open_.append(truth)
+        return Text((Piece("or" if is_or else "and", "", tuple(open_)),)) if len(open_) > 1 else Text(open_[0])
+
+    def value_UnaryOp(self, node: ast.UnaryOp) -> Any:
+        if isinstance(node.op, ast.Not):
+            truth = self.truth(node.operand)
+            return Constant(not truth) if isinstance(truth, bool) else Text((Piece("not", "", (truth,)),))
+        value = self.value(node.operand)
+        if isinstance(value, Constant) and isinstance(value.value, (int, float)):
+            if isinstance(node.op, ast.USub):
+                return Constant(-value.value)
+            if isinstance(node.op, ast.UAdd):
+                return value
+        return Unknown(source_of(node))
+
+    def value_IfExp(self, node: ast.IfExp) -> Any:
+        truth = self.truth(node.test)
+        if isinstance(truth, bool):
+            return self.value(node.body if truth else node.orelse)
+        return Either(truth, self.value(node.body), self.value(node.orelse))
+
+    def value_Lambda(self, node: ast.Lambda) -> Any:
+        return Function(node, self.scope)
+
+    def value_NamedExpr(self, node: ast.NamedExpr) -> Any:
+        value = self.value(node.value)
+        self.bind(node.target, value)
+        return value
+
+    def value_Starred(self, node: ast.Starred) -> Any:
+        return self.value(node.value)
+
+    def value_ListComp(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp) -> Any:
+        outer, self.scope = self.scope, Scope(self.scope)
+        made: list[Any] = []
+        depth = len(self.conditions)
+
+        def walk(place: int) -> None:
+            if place == len(node.generators):
+                extra = tuple(self.conditions[depth:])
+                if isinstance(node, ast.DictComp):
+                    made.append((self.value(node.key), guarded_by(self.value(node.value), extra)))
+                else:
+                    made.append(guarded_by(self.value(node.elt), extra))
+                return
+            generator = node.generators[place]
+            turns = self.turns(self.value(generator.iter))
+            unknown = turns is None
+            if turns is None:
+                over = f"for {source_of(generator.target)} in {source_of(generator.iter)}"
+                self.conditions.append(Condition("each", (other(over),), node.lineno))
+                turns = [None]
+            for turn in turns:
+                start = len(self.conditions)
+                if unknown:
+                    self.bind_unknown(generator.target)
+                elif isinstance(turn, Guarded):
+                    self.conditions += turn.conditions
+                    self.bind(generator.target, turn.value)
+                else:
+                    self.bind(generator.target, turn)
+                truths = [self.truth(test) for test in generator.ifs]
+                if not any(truth is False for truth in truths):
+                    self.conditions += [Condition("if", t, node.lineno) for t in truths if not isinstance(t, bool)]
+                    walk(place + 1)
+                del self.conditions[start:]
+            if unknown:
+                self.conditions.pop()
+
+        try:
+            walk(0)
+        finally:
+            self.scope = outer
+            del self.conditions[depth:]
+        return Pairs(made, depth) if isinstance(node, ast.DictComp) else Items(made, depth)
+
+    value_GeneratorExp = value_ListComp
+    value_SetComp = value_ListComp
+    value_DictComp = value_ListComp
+
+    # Lists under conditions
+
+    def guarded(self, value: Any, depth: int) -> Any:
+        return guarded_by(value, tuple(self.conditions[depth:]))
+
+    def extend(self, holder: Items, items: Sequence[Any]) -> None:
+        for item in items:
+            holder.items.append(self.guarded(item, holder.depth))
+            if len(holder.items) > MOST_STEPS:
+                raise TooMuch(STEPS)
+
+    # Calls
+
+    def value_Call(self, node: ast.Call) -> Any:
+        function = self.value(node.func)
+        self.line = node.lineno
+        arguments: list[Any] = []
+        for argument in node.args:
+            value = self.value(argument)
+            if isinstance(argument, ast.Starred):
+                arguments += value.items if isinstance(value, Items) else [Unknown(source_of(argument))]
+            else:
+                arguments.append(value)
+        keywords: dict[str, Any] = {}
+        for keyword in node.keywords:
+            value = self.value(keyword.value)
+            if keyword.arg is not None:
+                keywords[keyword.arg] = value
+            elif isinstance(value, Pairs):
+                for key, held in value.items:
+                    name = plain(key.value) if isinstance(key, Text) else None
+                    if name is not None:
+                        keywords[name] = held
+        if isinstance(function, Function):
+            return self.call_function(function, arguments, keywords)
+        if isinstance(function, Class):
+            made = Object(function)
+            init = function.methods.get("__init__")
+            if init is not None:
+                self.call_function(init._replace(self=made), arguments, keywords)
+            return made
+        if isinstance(function, Method):
+            return self.call_method(function, arguments, keywords, node)
+        if isinstance(function, Module):
+            maker = MAKERS.get(function.path.rpartition(".")[2])
+            if maker is not None:
+                return maker(Call(self, node, function.path, arguments, keywords))
+        return Unknown(source_of(node))
+
+    def call_function(self, function: Function, arguments: list[Any], keywords: dict[str, Any]) -> Any:
+        node = function.node
+        if self.calls >= DEEPEST_CALL:
+            return Unknown(getattr(node, "name", "lambda"))
+        scope = Scope(function.scope)
+        signature = node.args
+        names = [a.arg for a in (*signature.posonlyargs, *signature.args)]
+        if function.self is not None:
+            arguments = [function.self, *arguments]
+        outer = (self.scope, self.returns, self.base)
+        self.scope = function.scope
+        for parameter, default in zip(reversed(names), reversed(signature.defaults), strict=False):
+            scope.names[parameter] = self.value(default)
+        for parameter, default in zip(signature.kwonlyargs, signature.kw_defaults, strict=True):
+            if default is not None:
+                scope.names[parameter.arg] = self.value(default)
+        for parameter in (*names, *(a.arg for a in signature.kwonlyargs)):
+            scope.names.setdefault(parameter, Unknown(parameter))
+        scope.names.update(zip(names, arguments, strict=False))
+        if signature.vararg is not None:
+            scope.names[signature.vararg.arg] = Items(arguments[len(names) :], len(self.conditions))
+        known = {*names, *(a.arg for a in signature.kwonlyargs)}
+        rest: list[tuple[Any, Any]] = []
+        for key, value in keywords.items():
+            if key in known:
+                scope.names[key] = value
+            else:
+                rest.append((Text(literal(key)), value))
+        if signature.kwarg is not None:
+            scope.names[signature.kwarg.arg] = Pairs(rest, len(self.conditions))
+        self.scope, self.returns, self.base = scope, [], len(self.conditions)
+        self.calls += 1
+        try:
+            if isinstance(node, ast.Lambda):
+                return self.value(node.body)
+            self.block(node.body)
+            return self.result()
+        finally:
+            self.calls -= 1
+            self.scope, self.returns, self.base = outer
+
+    def result(self) -> Any:
+        """What the return statements reached give together."""
+        value: Any = Constant(None)
+        for place, (conditions, returned) in enumerate(reversed(self.returns)):
+            if not conditions or place == 0:
+                # The last one is what remains when no earlier one was taken.
+                value = returned if place == 0 and len(self.returns) > 1 else guarded_by(returned, conditions)
+            else:
+                value = Either(all_of(conditions), returned, value)
+        return value
+
+    def call_method(self, method: Method, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
+        receiver, name = method
+        first = arguments[0] if arguments else None
+        if isinstance(receiver, Items):
+            if name in ("append", "add_action", "add_entity") and arguments:
+                self.extend(receiver, arguments[:1])
+                return Constant(None)
+            if name == "extend" and isinstance(first, Items):
+                self.extend(receiver, first.items)
+                return Constant(None)
+            if name == "extend" and arguments:
+                self.extend(receiver, [Unknown(source_of(node.args[0]))])
+                return Constant(None)
+            if name == "insert" and len(arguments) == 2:
+                place = first.value if isinstance(first, Constant) and isinstance(first.value, int) else 0
+                receiver.items.insert(place, self.guarded(arguments[1], receiver.depth))
+                return Constant(None)
+            if name == "remove" and first in receiver.items:
+                receiver.items.remove(first)
+                return Constant(None)
+            if name == "copy":
+                return Items(list(receiver.items), len(self.conditions), receiver.kind)
+        elif isinstance(receiver, Pairs):
+            depth = len(self.conditions)
+            if name == "items":
+                pairs = [
+                    (k, v.value, v.conditions) if isinstance(v, Guarded) else (k, v, ()) for k, v in receiver.items
+                ]
+                return Items([guarded_by(Items([k, v], depth), c) for k, v, c in pairs], depth)
+            if name in ("keys", "values"):
+                return Items([pair[name == "values"] for pair in receiver.items], depth)
+            if name == "update" and isinstance(first, Pairs):
+                for key, value in first.items:
+                    receiver.set(key, self.guarded(value, receiver.depth))
+                return Constant(None)
+            if name in ("get", "pop") and arguments:
+                found = receiver.get(first)
+                if found is not None:
+                    return found if not isinstance(found, Guarded) else Unknown(source_of(node))
+                if first is not None and all(isinstance(key, Text) for key, _ in receiver.items):
+                    return arguments[1] if len(arguments) > 1 else Constant(None)
+            if name == "copy":
+                return Pairs(list(receiver.items), depth)
+        elif isinstance(receiver, Context):
+            if name in ("get", "perform_substitution", "__getitem__") and first is not None:
+                if not receiver.configurations:
+                    return Text(self.text(first, node))
+                rest = [self.text(a, node) for a in arguments[1:]]
+                return Text((named("arg", self.text(first, node), *rest),))
+        elif isinstance(receiver, Asked) and name == "evaluate":
+            return Text(all_of(receiver.conditions))
+        elif isinstance(receiver, (Text, Either)):
+            return self.text_method(receiver, name, arguments, keywords, node)
+        return Unknown(source_of(node))
+
+    def text_method(
+        self, receiver: Any, name: str, arguments: list[Any], keywords: dict[str, Any], node: ast.Call
+    ) -> Any:
+        value = self.text(receiver, node)
+        if name in ("perform", "resolve", "as_posix", "absolute", "expanduser", "read", "read_text"):
+            if name == "read_text":
+                value = (Piece("content", "", (value,)),)
+            return Text(value)
+        if name == "joinpath":
+            return Text((Piece("join", "", (value, *(self.text(a, node) for a in arguments))),))
+        if name == "join" and len(arguments) == 1 and isinstance(arguments[0], Items):
+            parts: list[Value] = []
+            for item in arguments[0].items:
+                parts += (*([value] if parts else ()), self.text(item, node))
+            return Text(together(parts))
+        if name == "format":
+            return self.format(value, arguments, keywords, node)
+        if name in STRING_METHODS:
+            return Text((Piece("method", name, (value, *(self.text(a, node) for a in arguments))),))
+        return Unknown(source_of(node))
+
+    def format(self, value: Value, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
+        import string
+
+        pattern = plain(value)
+        if pattern is None:
+            return Unknown(source_of(node))
+        values: list[Value] = []
+        place = 0
+        try:
+            for text, field, spec, _ in string.Formatter().parse(pattern):
+                values.append(literal(text))
+                if field is None:
+                    continue
+                if spec:
+                    return Unknown(source_of(node))
+                if field == "":
+                    field, place = str(place), place + 1
+                given = (
+                    arguments[int(field)] if field.isdigit() and int(field) < len(arguments) else keywords.get(field)
+                )
+                if given is None:
+                    return Unknown(source_of(node))
+                values.append(self.text(given, node))
+        except ValueError:
+            return Unknown(source_of(node))
+        return Text(together(values))
+
+    # Values as facts
+
+    def spend(self, steps: int) -> None:
+        """Counts steps; raises TooMuch when there have been too many."""
+        self.steps += steps
+        if self.steps > MOST_STEPS:
+            raise TooMuch(STEPS)
+
+    def text(self, value: Any, node: ast.AST) -> Value:
+        """A value as text; node: what to show where it is not known."""
+        self.spend(1)
+        if isinstance(value, Text):
+            self.spend(len(value.value) + len(value.value[0].text) // 100 if value.value else 1)
+            return value.value
+        if isinstance(value, Constant):
+            return literal("" if value.value is None else str(value.value))
+        if isinstance(value, (FilledFile, Typed)):
+            return value.value if isinstance(value, FilledFile) else self.text(value.value, node)
+        if isinstance(value, Either):
+            return (Piece("choose", "", (value.condition, self.text(value.yes, node), self.text(value.no, node))),)
+        if isinstance(value, Items) and not value.is_launch:
+            return together([self.text(item, node) for item in value.items])
+        if isinstance(value, Unknown):
+            return (other(value.source),)
+        return (other(source_of(node)),)
+
+    def actions(self, value: Any, line: int, extra: tuple[Condition, ...] = ()) -> Iterator[Action]:
+        """The actions that a value given for actions holds."""
+        self.spend(1)
+        if isinstance(value, Action):
+            if extra:
+                value = Action(value.kind, value.line, value.attributes, (*extra, *value.conditions), value.children)
+            yield value
+        elif isinstance(value, Items):
+            for item in value.items:
+                yield from self.actions(item, line, extra)
+        elif isinstance(value, Guarded):
+            yield from self.actions(value.value, line, (*extra, *value.conditions))
+        elif isinstance(value, Either):
+            yield from self.actions(value.yes, line, (*extra, Condition("if", value.condition, line)))
+            yield from self.actions(value.no, line, (*extra, Condition("unless", value.condition, line)))
+        elif isinstance(value, Constant) or (isinstance(value, Unknown) and value.source.startswith(_NO_ACTION)):
+            return
+        elif isinstance(value, Pairs):
+            for _, item in value.items:
+                yield from self.actions(item, line, extra)
+        else:
+            source = value.source if isinstance(value, Unknown) else getattr(value, "path", type(value).__name__)
+            yield Action("unknown", line, (("text", (other(str(source)),)),), extra)
+
+
+# Calls whose result is no action, where a lambda stands for an action that is run for its effect.
+_NO_ACTION = ("nothing()", "os.", "shutil.", "logging.", "sys.", "time.", "warnings.", "print(")
+_BOOLEAN_PIECES = frozenset(("equals", "not", "and", "or", "in"))
+STRING_METHODS = frozenset(
+    ("lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "replace", "capitalize", "title",
+     "removeprefix", "removesuffix"),
+)  # fmt: skip
+
+
+def _continues(body: Sequence[ast.stmt]) -> bool:
+    """Whether the jump that ends a turn of a loop goes on with the next."""
+    return any(isinstance(node, ast.Continue) for statement in body for node in ast.walk(statement)) and not any(
+        isinstance(node, (ast.Break, ast.Return)) for statement in body for node in ast.walk(statement)
+    )
+
+
+_STATEMENTS = node_methods(Walker, "run_")
+_EXPRESSIONS = node_methods(Walker, "value_")

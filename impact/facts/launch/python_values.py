@@ -1,0 +1,241 @@
+"""What a launch file in Python holds while it is followed: text, lists, actions, functions, or what is unknown."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from .actions import Condition, Piece, Value, literal
+
+
+class TooMuch(Exception):
+    """More than a launch file ever does; the message says what."""
+
+
+class Text(NamedTuple):
+    """Text, or a substitution. is_str: Python holds a str, so that it can be compared; a substitution is an object."""
+
+    value: Value
+    is_str: bool = True
+
+
+class Constant(NamedTuple):
+    """A number, bool or None."""
+
+    value: Any
+
+
+class Unknown(NamedTuple):
+    """What cannot be followed; source: the expression."""
+
+    source: str
+
+
+class Asked(NamedTuple):
+    """An IfCondition and the like."""
+
+    conditions: tuple[Condition, ...]
+
+
+class FilledFile(NamedTuple):
+    """A ParameterFile with substitutions in it."""
+
+    value: Value
+
+
+class YamlContent(NamedTuple):
+    """What a YAML file holds, below keys."""
+
+    file: Value
+    keys: tuple[Value, ...] = ()
+
+
+class Typed(NamedTuple):
+    """A ParameterValue: its value and the name of the type it is to have."""
+
+    value: Any
+    type: str
+
+
+class Guarded(NamedTuple):
+    """A value that is only there under conditions."""
+
+    value: Any
+    conditions: tuple[Condition, ...]
+
+
+class Either(NamedTuple):
+    """One of two values, as a condition decides."""
+
+    condition: Value
+    yes: Any
+    no: Any
+
+
+class Module(NamedTuple):
+    """An imported module or name, as a dotted path."""
+
+    path: str
+
+
+class Method(NamedTuple):
+    """A method taken from a value."""
+
+    receiver: Any
+    name: str
+
+
+class Function(NamedTuple):
+    """A function of the file, with the names it sees and, for a method, its object."""
+
+    node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+    scope: Scope
+    self: Any = None
+
+
+class Items:
+    """A list, or as kind says a tuple or a LaunchDescription. depth: how many conditions stood when it was made."""
+
+    __slots__ = ("depth", "items", "kind")
+
+    def __init__(self, items: list[Any], depth: int, kind: str = "list"):
+        self.items = items
+        self.depth = depth
+        self.kind = kind
+
+    @property
+    def is_launch(self) -> bool:
+        return self.kind == "launch"
+
+
+class Pairs:
+    """A dict, as pairs; a later pair of the same key replaces the earlier."""
+
+    __slots__ = ("depth", "items")
+
+    def __init__(self, items: list[tuple[Any, Any]], depth: int):
+        self.items = items
+        self.depth = depth
+
+    def get(self, key: Any) -> Any:
+        return next((value for known, value in reversed(self.items) if known == key), None)
+
+    def set(self, key: Any, value: Any) -> None:
+        for place, (known, _) in enumerate(self.items):
+            if known == key:
+                self.items[place] = (key, value)
+                return
+        self.items.append((key, value))
+
+
+class Class:
+    """A class of the file."""
+
+    __slots__ = ("methods", "name", "scope")
+
+    def __init__(self, name: str, scope: Scope):
+        self.name = name
+        self.scope = scope
+        self.methods: dict[str, Any] = {}
+
+
+class Object:
+    """An object of a class of the file."""
+
+    __slots__ = ("attributes", "type")
+
+    def __init__(self, type_: Class):
+        self.type = type_
+        self.attributes: dict[str, Any] = {}
+
+
+class Scope:
+    """Names and what they stand for."""
+
+    __slots__ = ("names", "parent")
+
+    def __init__(self, parent: Scope | None):
+        self.parent = parent
+        self.names: dict[str, Any] = {}
+
+    def look(self, name: str) -> Any:
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.names:
+                return scope.names[name]
+            scope = scope.parent
+        return None
+
+
+class Context(NamedTuple):
+    """The LaunchContext given to an OpaqueFunction, or its dict of configurations."""
+
+    configurations: bool = False
+
+
+def all_of(conditions: Sequence[Condition]) -> Value:
+    """Conditions as one value that is true when they all hold."""
+    values = [c.value if c.kind != "unless" else (Piece("not", "", (c.value,)),) for c in conditions]
+    return values[0] if len(values) == 1 else (Piece("and", "", tuple(values)),)
+
+
+def guarded_by(value: Any, conditions: tuple[Condition, ...]) -> Any:
+    """A value under conditions, itself where there are none."""
+    if not conditions:
+        return value
+    if isinstance(value, Guarded):
+        return Guarded(value.value, (*conditions, *value.conditions))
+    return Guarded(value, conditions)
+
+
+def place_in(holder: Items, key: Any) -> int | None:
+    """The place in a list that an index means, None when it is not known to be there."""
+    if not isinstance(key, Constant) or not isinstance(key.value, int):
+        return None
+    return key.value if -len(holder.items) <= key.value < len(holder.items) else None
+
+
+def source_of(node: ast.AST) -> str:
+    """What a node says, in one line and cut short."""
+    try:
+        return " ".join(ast.unparse(node).split())[:120]
+    except (RecursionError, ValueError, AttributeError):
+        return type(node).__name__
+
+
+def calculated(node: ast.BinOp | ast.Compare, left: Any, right: Any) -> Any:
+    """Small sums and comparisons of known numbers."""
+    op = node.op if isinstance(node, ast.BinOp) else node.ops[0]
+    calculate = _SUMS.get(type(op))
+    if calculate is None or left is None or right is None:
+        return Unknown(source_of(node))
+    try:
+        value = calculate(left, right)
+    except (ArithmeticError, TypeError, ValueError):
+        return Unknown(source_of(node))
+    return Constant(value) if abs(value) < 2**60 else Unknown(source_of(node))
+
+
+_SUMS: dict[type, Callable[[Any, Any], Any]] = {
+    ast.Add: lambda a, b: a + b,
+    ast.Sub: lambda a, b: a - b,
+    ast.Mult: lambda a, b: a * b,
+    ast.Div: lambda a, b: a / b,
+    ast.FloorDiv: lambda a, b: a // b,
+    ast.Mod: lambda a, b: a % b,
+    ast.Lt: lambda a, b: a < b,
+    ast.LtE: lambda a, b: a <= b,
+    ast.Gt: lambda a, b: a > b,
+    ast.GtE: lambda a, b: a >= b,
+}
+
+
+def folder_of(value: Value) -> Value:
+    """The folder that a path lies in."""
+    if value == (Piece("filename"),):
+        return (Piece("dirname"),)
+    return (Piece("join", "", (value, literal(".."))),)
+
+
+NOTHING = Unknown("nothing()")

@@ -1,0 +1,510 @@
+"""Launch XML and YAML, xacro, URDF, plugin descriptions, parameter YAML and shell scripts: what they refer to."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Callable
+from functools import partial
+
+import msgspec
+from msgspec import structs
+
+from ..markup import TOKEN, Attribute, Document, Element, decode, line_starts, scan, well_formed
+from ..place import Problem, Reference
+from ..words import words_of
+from .documents import launch_document
+
+
+class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A <class> of a plugin description: lookup name, C++ type, base type, library path it lies in."""
+
+    name: str
+    type: str
+    base: str
+    library: str
+    line: int
+
+
+class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Any file whose only interest is what it mentions. plugins is filled for plugin descriptions. unresolved: mentions
+    whose package is only known when the file runs (`$(find-pkg-share $(var robot))`), as written. words: of launch
+    files and YAML, see words_of().
+
+    Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path),
+    and a `file` mentioned on a command line (`roslaunch p f`) is a bare file name, to be found anywhere in the package.
+    """
+
+    references: tuple[Reference, ...]
+    plugins: tuple[PluginClass, ...] = ()
+    problems: tuple[Problem, ...] = ()
+    unresolved: tuple[Problem, ...] = ()
+    words: str = ""
+
+
+PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_-]*\Z")
+CLASS = re.compile(r"[A-Za-z_]\w*(?:(?:::|/)[A-Za-z_]\w*)+\Z")
+PATH = r"[^\s\"'`<>$,;:()\[\]{}|&?*]*"
+# Substitutions of roslaunch (http://wiki.ros.org/roslaunch/XML), launch_xml and xacro, and resource URLs.
+MENTION = re.compile(
+    rf"\$\(\s*(?P<verb>find-pkg-share|find-pkg-prefix|find|exec-in-pkg)\s+(?P<args>[^()]*)\)(?P<rest>/{PATH})?"
+    rf"|(?P<scheme>package|model)://(?P<host>[A-Za-z][\w-]*)(?P<path>/{PATH})?"
+    r"|(?<!\w)find\(\s*['\"](?P<eval>[A-Za-z][\w-]*)['\"]\s*\)"
+    r"|\$\(\s*(?P<dynamic>find-pkg-share|find-pkg-prefix|find)\s+\$[({]"
+    r"|\$\(\s*command\s+['\"]?(?P<command>[A-Za-z][\w.-]*)(?=[\s'\"])"
+)
+MARKS = ("$(", "://", "find(")
+
+
+class _Found:
+    """What has been found in one file so far."""
+
+    def __init__(self, place: Callable[[int], tuple[int, int]]):
+        self.place = place
+        self.references: list[Reference] = []
+        self.unresolved: list[Problem] = []
+        # What the include that is being read gives.
+        self.arguments: tuple[str, ...] | None = None
+
+    def add(self, kind: str, package: str, name: str, offset: int, conditional: bool) -> None:
+        line, column = self.place(offset)
+        arguments = self.arguments if kind == "file" else None
+        self.references.append(Reference(kind, package, name, line, column, conditional, arguments))
+
+    def mentions(self, text: str, offset: int, conditional: bool) -> None:
+        """All substitutions and resource URLs of a text; offset: where it starts in the file."""
+        for m in MENTION.finditer(text):
+            at = offset + m.start()
+            verb = m["verb"]
+            if verb is not None:
+                self._substitution(verb, m["args"].split(), m["rest"], text[m.end() :], at, conditional)
+            elif m["scheme"] == "package":
+                self._path(m["host"], m["path"], text[m.end() :], at, conditional)
+            elif m["scheme"] == "model":
+                self.add("model", "", m["host"] + (m["path"] or ""), at, conditional)
+            elif m["eval"] is not None:
+                self.add("package", m["eval"], "", at, conditional)
+            elif m["command"] is not None:
+                self.add("command", "", m["command"], at, conditional)
+            else:
+                self.unresolved.append(Problem(self.place(at)[0], text[m.start() : m.start() + 80]))
+
+    def _substitution(
+        self, verb: str, args: list[str], rest: str | None, after: str, at: int, conditional: bool
+    ) -> None:
+        names = [arg.strip("'\"") for arg in args]
+        if not names or not PACKAGE.match(names[-1]):
+            if names and "$" in names[-1]:
+                self.unresolved.append(Problem(self.place(at)[0], f"$({verb} {' '.join(args)})"[:80]))
+            return
+        package = names[-1]
+        if verb == "exec-in-pkg":
+            self.add("executable", package, names[0] if len(names) == 2 else "", at, conditional)
+        elif verb == "find-pkg-prefix":
+            parts = (rest or "").strip("/").split("/")
+            if parts[:2] == ["lib", package] and len(parts) == 3 and after[:1] != "$":
+                self.add("executable", package, parts[2], at, conditional)
+            else:
+                self.add("package", package, "", at, conditional)
+        else:
+            self._path(package, rest, after, at, conditional)
+
+    def _path(self, package: str, path: str | None, after: str, at: int, conditional: bool) -> None:
+        """A file of a package where its path is all literal, else the package alone."""
+        parts = [part for part in (path or "").split("/") if part not in ("", ".")]
+        # What goes on with a variable, or is cut by a character no plain path has, is not the file's whole name.
+        cut = after[:1] in ("$", "{", "*", "?", "[")
+        if not parts or cut or ".." in parts:
+            self.add("package", package, "", at, conditional)
+        else:
+            self.add("file", package, "/".join(parts), at, conditional)
+
+    def file(self, *problems: Problem, plugins: tuple[PluginClass, ...] = ()) -> ReferenceFile:
+        return ReferenceFile(tuple(self.references), plugins, problems, tuple(self.unresolved))
+
+
+def extract(data: bytes, kind: str) -> ReferenceFile:
+    """References of a file of the kind launch_xml, launch_yaml, xacro, plugin_xml, xml, params or shell; never raises.
+
+    XML that is not well-formed is a problem, and is read on; `xml` and `plugin_xml` are told by their root element, so
+    that XML of other trades (behaviour trees, GUI layouts) gives nothing at all.
+    """
+    facts = READERS[kind](data)
+    return structs.replace(facts, words=words_of(data)) if kind in _SPOKEN else facts
+
+
+# What sets parameters, as far as its name tells.
+_SPOKEN = frozenset(("launch_xml", "launch_yaml", "params"))
+
+
+def _xml(data: bytes) -> ReferenceFile:
+    root = _root(data)
+    if root in ("class_libraries", "library"):
+        return _plugin_description(data)
+    if root == "launch":
+        return _launch(data)
+    if root in ("robot", "sdf", "gazebo", "world", "model"):
+        return _robot_description(data)
+    return ReferenceFile(())
+
+
+def _plugin_xml(data: bytes) -> ReferenceFile:
+    return _xml(data) if data.strip() else ReferenceFile((), (), (Problem(1, "is empty"),))
+
+
+def _test(data: bytes) -> ReferenceFile:
+    """A .launch or .test file; one that has no <launch> is something else of the same name."""
+    if _root(data) == "launch":
+        return _launch(data)
+    document = scan(data)
+    return ReferenceFile((), (), document.problems or (Problem(1, "has no `<launch>` element"),))
+
+
+def _root(data: bytes) -> str:
+    """Name of the first element, found without reading on."""
+    for token in TOKEN.finditer(decode(data[:65536])):
+        name = token["name"]
+        if name is not None and not token["close"]:
+            return name
+    return ""
+
+
+_ARGUMENT = re.compile(r"\s*\$\((?:arg|var)\s+([\w.-]+)\s*\)\s*\Z")
+
+
+def _conditional(document: Document) -> list[bool]:
+    """For each element, whether it or one around it stands under an if or unless that keeps it from running when the
+    file is started without arguments, or that cannot be told."""
+    defaults: dict[str, set[str]] = {}
+    for element in document.elements:
+        if element.name == "arg" and (preset := _attribute(element, "default", "value")) is not None:
+            plain = element.parent < 0 or document.elements[element.parent].name == "launch"
+            if plain and not any(a.name in ("if", "unless") for a in element.attributes):
+                defaults.setdefault(element.get("name"), set()).add(preset.value)
+
+    def meant(text: str) -> str:
+        argument = _ARGUMENT.match(text)
+        values = defaults.get(argument.group(1), set()) if argument is not None else {text}
+        return next(iter(values)).strip().lower() if len(values) == 1 else ""
+
+    flags: list[bool] = []
+    for element in document.elements:
+        flag = element.parent >= 0 and flags[element.parent]
+        if not flag:
+            if element.name in ("xacro:if", "xacro:unless"):
+                flag = element.get("value").strip().lower() not in ("true", "1", "${true}")
+            else:
+                flag = any(
+                    (a.name == "if" and meant(a.value) not in ("true", "1"))
+                    or (a.name == "unless" and meant(a.value) not in ("false", "0"))
+                    for a in element.attributes
+                )
+        flags.append(flag)
+    return flags
+
+
+def _attribute(element: Element, *names: str) -> Attribute | None:
+    return next((a for a in element.attributes if a.name in names), None)
+
+
+def _everything(found: _Found, element: Element, conditional: bool) -> None:
+    """Mentions in all attributes and the text of an element."""
+    for attribute in element.attributes:
+        if any(mark in attribute.value for mark in MARKS):
+            found.mentions(attribute.value, attribute.offset, conditional)
+    if element.text and any(mark in element.text for mark in MARKS):
+        found.mentions(element.text, element.text_offset, conditional)
+
+
+NODES = frozenset({"node", "test", "node_container", "lifecycle_node", "composable_node_container"})
+
+
+def _launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
+    document = launch_document(data, kind)
+    if kind == "launch_yaml" and not document.elements:  # arguments or parameters, called like a launch file
+        return structs.replace(_values(data), problems=document.problems)
+    found = _Found(document.place)
+    given = _given_to_includes(document)
+    for at, (element, conditional) in enumerate(zip(document.elements, _conditional(document), strict=True)):
+        name = element.name
+        found.arguments = given.get(at)
+        if name in NODES:
+            _node(found, element, conditional)
+        elif name in ("composable_node", "load_composable_node"):
+            package, plugin = _package(found, element), _attribute(element, "plugin")
+            if plugin is not None and CLASS.match(plugin.value):
+                known = package.value if package is not None else ""
+                found.add("plugin", known, plugin.value, plugin.offset, conditional)
+        elif name == "executable":
+            _command(found, _attribute(element, "cmd"), conditional)
+        elif name == "param":
+            _command(found, _attribute(element, "command"), conditional)
+            value = _attribute(element, "value")
+            if value is not None and PLUGIN_KEY.search(element.get("name")):
+                for m in re.finditer(r"[^\s,\[\]'\"]+", value.value):
+                    if CLASS.match(m.group()):
+                        found.add("plugin", "", m.group(), value.offset + m.start(), conditional)
+        _everything(found, element, conditional)
+        if name == "rosparam" and element.text and "plugin" in element.text:
+            _plugin_values(found, element.text, element.text_offset, conditional)
+    return found.file(*document.problems)
+
+
+def _given_to_includes(document: Document) -> dict[int, tuple[str, ...]]:
+    """Names of the arguments that each `<include>` gives, by its place among the elements; those that give all that
+    they know themselves are left out."""
+    given: dict[int, list[str]] = {
+        at: [] for at, element in enumerate(document.elements)
+        if element.name == "include" and element.get("pass_all_args").strip().lower() not in ("true", "1")
+    }  # fmt: skip
+    for element in document.elements:
+        if element.name in ("arg", "let") and element.parent in given:
+            given[element.parent].append(element.get("name"))
+    return {at: tuple(names) for at, names in given.items() if not any("$" in name for name in names)}
+
+
+def _package(found: _Found, element: Element) -> Attribute | None:
+    """The attribute that names an element's package; one that only running tells is unresolved, and None."""
+    package = _attribute(element, "pkg")
+    if package is None or PACKAGE.match(package.value):
+        return package
+    if "$" in package.value:
+        found.unresolved.append(Problem(found.place(package.offset)[0], package.value[:80]))
+    return None
+
+
+def _node(found: _Found, element: Element, conditional: bool) -> None:
+    package = _package(found, element)
+    executable = _attribute(element, "exec", "type")
+    if package is None:
+        return
+    if executable is None or "$" in executable.value or not executable.value.strip():
+        found.add("package", package.value, "", package.offset, conditional)
+        return
+    found.add("executable", package.value, executable.value.strip(), package.offset, conditional)
+    arguments = _attribute(element, "args")
+    if package.value == "nodelet" and arguments is not None:
+        loaded = re.match(r"\s*(?:load|standalone)\s+(\S+)", arguments.value)
+        if loaded is not None and CLASS.match(loaded.group(1)):
+            found.add("plugin", "", loaded.group(1), arguments.offset + loaded.start(1), conditional)
+
+
+def _command(found: _Found, attribute: Attribute | None, conditional: bool) -> None:
+    """The program that a command line starts with, where it is named by itself and not by a path."""
+    if attribute is None:
+        return
+    first = re.match(r"\s*([A-Za-z][\w.-]*)(?=\s|$)", attribute.value)
+    if first is not None:
+        found.add("command", "", first.group(1), attribute.offset + first.start(1), conditional)
+
+
+def _robot_description(data: bytes) -> ReferenceFile:
+    document = scan(data)
+    found = _Found(document.place)
+    for element, conditional in zip(document.elements, _conditional(document), strict=True):
+        if element.name == "plugin":
+            library = _attribute(element, "filename")
+            if library is not None and library.value and not any(c in library.value for c in "$/{"):
+                found.add("plugin", "", library.value, library.offset, conditional)
+            elif element.text and CLASS.match(element.text):
+                found.add("plugin", "", element.text, element.text_offset, conditional)
+        elif (
+            element.name == "type" and element.text.startswith("transmission_interface/") and CLASS.match(element.text)
+        ):
+            found.add("plugin", "", element.text, element.text_offset, conditional)
+        _everything(found, element, conditional)
+    # xacro reads with Python's strict parser, URDF and SDF are read with TinyXML
+    problems = document.problems if "xacro" in document.text else _tolerated(data, document.problems)
+    return found.file(*problems)
+
+
+def _plugin_description(data: bytes) -> ReferenceFile:
+    document = scan(data)
+    classes: list[PluginClass] = []
+    library = ""
+    for element in document.elements:
+        if element.name == "library":
+            library = element.get("path")
+        elif element.name == "class":
+            type_ = element.get("type")
+            line = document.place(element.offset)[0]
+            # pluginlib takes the type for the name of a class that has none
+            classes.append(
+                PluginClass(element.get("name", type_), type_, element.get("base_class_type"), library, line)
+            )
+    return ReferenceFile((), tuple(classes), _tolerated(data, document.problems))
+
+
+COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+DECLARATION = re.compile(rb"<\?xml[^>]*\?>")
+VALUE = re.compile(rb"=\s*\"[^\"\n]*\"")
+
+
+def _tolerated(data: bytes, problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
+    """Problems less those that TinyXML, which pluginlib, urdfdom and sdformat read with, does not mind: `--` in
+    comments, several roots, `<` in values, a misspelt or late XML declaration."""
+    if not problems:
+        return ()
+    # What stands behind the last comment that is closed need not be looked through for each that is opened there.
+    closed = data.rfind(b"-->") + 3 if b"-->" in data else 0
+    blanked = COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), data[:closed]) + data[closed:]
+    if "declaration" in problems[0].message:
+        blanked = DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), blanked, count=1)
+    blanked = VALUE.sub(lambda m: m.group().replace(b"<", b"&lt;"), blanked)
+    return tuple(p for p in well_formed(blanked) if "junk after document element" not in p.message)
+
+
+def _lines(text: str) -> Callable[[int], tuple[int, int]]:
+    starts = line_starts(text)
+
+    def place(offset: int) -> tuple[int, int]:
+        line = bisect_right(starts, offset)
+        return line, offset - starts[line - 1] + 1
+
+    return place
+
+
+PLUGIN_KEY = re.compile(r"(?:plugins?|kinematics_solver|_adapters|_layer)\Z")
+# Values of YAML that name classes: `plugin: "a::B"`, `type: some_controllers/SomeController`, also within braces.
+CLASS_VALUE = re.compile(
+    r"(?<![\w/:.-])(?P<key>[A-Za-z_][\w.]*)[\"']?[ \t]*:[ \t]*[\"']?"
+    r"(?P<value>[A-Za-z_]\w*(?:(?:::|/)[A-Za-z_]\w*)+)(?=[\"']?[ \t]*(?:[\r\n,}\]#]|\Z))"
+)
+CLASS_LIST = re.compile(
+    r"^[ \t]*(?:-[ \t]+)?(?P<key>[A-Za-z_][\w.]*(?:plugins|adapters))[\"']?[ \t]*:[ \t]*(?:[>|][+-]?)?[ \t]*\r?\n"
+    r"(?P<items>(?:[ \t]*(?:-[ \t]+)?[\"']?[A-Za-z_]\w*(?:(?:::|/)[A-Za-z_]\w*)+[\"']?[ \t]*(?:\#[^\n]*)?\r?"
+    r"(?:\n|\Z))+)",
+    re.MULTILINE,
+)
+ITEM = re.compile(r"^[ \t]*(?:-[ \t]+)?[\"']?(?P<value>[A-Za-z_][\w:/]*)", re.MULTILINE)
+# OMPL's planners (`type: geometric::RRT`) look like classes and are none of a plugin's.
+TYPE_OF_CLASS = re.compile(
+    r"(?!geometric::|control::).*(?:::|/\w*(?:Controller|Broadcaster|Filter|Hardware|Layer)\w*\Z|controllers?/)"
+)
+
+
+def _plugin_values(found: _Found, text: str, offset: int, conditional: bool) -> None:
+    for m in CLASS_VALUE.finditer(text):
+        key, value = m["key"].rpartition(".")[2], m["value"]
+        if not (PLUGIN_KEY.search(key) or (key == "type" and TYPE_OF_CLASS.match(value))):
+            continue
+        if "#" in text[text.rfind("\n", 0, m.start()) + 1 : m.start()]:
+            continue
+        found.add("plugin", "", value, offset + m.start("value"), conditional)
+    for m in CLASS_LIST.finditer(text):
+        for item in ITEM.finditer(m["items"]):
+            found.add("plugin", "", item["value"], offset + m.start("items") + item.start("value"), conditional)
+
+
+def _params(data: bytes) -> ReferenceFile:
+    if data[:4096].lstrip().startswith(b"launch:"):
+        return _launch(data, "launch_yaml")
+    return _values(data)
+
+
+def _values(data: bytes) -> ReferenceFile:
+    """References of YAML that is no launch file."""
+    # Most YAML of a workspace (calibration, CI, statistics) mentions nothing; a search is cheaper than a reading.
+    if not YAML_WORTH_READING.search(data):
+        return ReferenceFile(())
+    text = decode(data)
+    found = _Found(_lines(text))
+    _plugin_values(found, text, 0, False)
+    for m in re.finditer(r"^.*(?:\$\(|://).*$", text, re.MULTILINE):
+        line = m.group()
+        comment = re.search(r"(?:^|\s)#", line)
+        found.mentions(line[: comment.start()] if comment is not None else line, m.start(), False)
+    found.references.sort(key=lambda r: (r.line, r.column))
+    return found.file()
+
+
+YAML_WORTH_READING = re.compile(rb"plugin|type|adapters|kinematics_solver|_layer|package://|model://|\$\(find")
+
+
+# A command where a command can stand: at a line's start, after a separator, or inside a substitution. Text in quotes
+# (messages, usage) is none of these.
+SHELL = re.compile(
+    r"(?:^|[;&|(`!]|\b(?:then|do|else|exec|sudo|nohup|time|eval|coproc)\s)[ \t]*(?:[A-Za-z_]\w*=\S*[ \t]+)*"
+    r"(?P<command>rosrun|roslaunch|rostest|rospack[ \t]+find|roscd|ros2[ \t]+(?:run|launch|pkg[ \t]+prefix|component"
+    r"[ \t]+standalone))\b(?P<args>[^;&|)`<>\n#]*)"
+)
+WORTH_READING = re.compile(rb"ros(?:run|launch|test|pack|cd|2)\b|package://")
+HEREDOC = re.compile(r"<<-?\s*\\?['\"]?([A-Za-z_]\w*)['\"]?")
+LITERAL = re.compile(r"[A-Za-z0-9_.:+/-]+\Z")
+WITH_VALUE = frozenset({"--prefix", "-p", "--port", "--log", "--skip-log-check"})
+
+
+def _shell(data: bytes) -> ReferenceFile:
+    if not WORTH_READING.search(data):
+        return ReferenceFile(())
+    text = decode(data)
+    found = _Found(_lines(text))
+    heredoc = ""
+    depth = 0
+    offset = 0
+    for line in text.split("\n"):
+        start, offset = offset, offset + len(line) + 1
+        stripped = line.strip()
+        if heredoc:
+            if stripped == heredoc:
+                heredoc = ""
+            continue
+        if not stripped or stripped[0] == "#":
+            continue
+        opened = HEREDOC.search(line)
+        if opened is not None and "<<<" not in line:
+            heredoc = opened.group(1)
+        if re.match(r"(?:if|case)\b", stripped):
+            depth += 1
+        for m in SHELL.finditer(line):
+            _shell_command(found, m, start, depth > 0)
+        for m in re.finditer(r"package://[^\s\"']+", line):
+            found.mentions(m.group(), start + m.start(), depth > 0)
+        if re.search(r"(?:^|;)\s*(?:fi|esac)\b", stripped):
+            depth = max(depth - 1, 0)
+    return found.file()
+
+
+def _shell_command(found: _Found, match: re.Match[str], start: int, conditional: bool) -> None:
+    command = " ".join(match["command"].split())
+    words = [(w.group(), w.start()) for w in re.finditer(r"\S+", match["args"])]
+    plain: list[tuple[str, int]] = []
+    skip = False
+    for word, at in words:
+        if skip:
+            skip = False
+        elif word.startswith("-") and not plain:
+            skip = word in WITH_VALUE
+        else:
+            plain.append((word.strip("\"'"), at))
+    if not plain:
+        return
+    (package, at), *rest = plain
+    offset = start + match.start("args") + at
+    if not PACKAGE.match(package):
+        if "$" in package:
+            found.unresolved.append(Problem(found.place(offset)[0], f"{command} {package}"[:80]))
+        return
+    name = rest[0][0] if rest and LITERAL.match(rest[0][0]) else ""
+    if command in ("rosrun", "ros2 run") and name:
+        found.add("executable", package, name, offset, conditional)
+    elif command in ("roslaunch", "ros2 launch", "rostest"):
+        if rest and name and re.search(r"\.(?:launch|test|xml|py|ya?ml)\Z", name):
+            found.add("file", package, name, offset, conditional)
+        elif rest and "$" in rest[0][0]:
+            found.add("package", package, "", offset, conditional)
+    elif command == "ros2 component standalone" and CLASS.match(name):
+        found.add("plugin", package, name, offset, conditional)
+    elif command in ("rospack find", "roscd", "ros2 pkg prefix", "rosrun", "ros2 run"):
+        found.add("package", package, "", offset, conditional)
+
+
+READERS: dict[str, Callable[[bytes], ReferenceFile]] = {
+    "launch_xml": _test,
+    "launch_yaml": partial(_launch, kind="launch_yaml"),
+    "xacro": _robot_description,
+    "plugin_xml": _plugin_xml,
+    "xml": _xml,
+    "params": _params,
+    "shell": _shell,
+}

@@ -1,0 +1,1 @@
+"""Python sources: read once (source.py), then told what they use (reader.py), offer (surface.py) and do (flow.py)."""

@@ -1,0 +1,236 @@
+"""Constants of a Python source: what expressions of literals and of names that hold them are, without running it.
+
+Text, places in packages, lists and mappings are followed through names, f-strings, `%`, `format`, `+`, `/` and
+`os.path.join`. Whatever else an expression is, is Unresolved.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Callable, Iterable
+from typing import Any, ClassVar, NamedTuple
+
+from ....edges.dispatch import node_methods
+
+
+class Text(str):
+    """A string of the file, with the line it stands on."""
+
+    line: int
+
+    def __new__(cls, text: str, line: int) -> Text:
+        made = super().__new__(cls, text)
+        made.line = line
+        return made
+
+
+class Unresolved:
+    """A value that only running the file would give."""
+
+    __slots__ = ("_source",)
+
+    def __init__(self, source: str | ast.expr):
+        self._source = source
+
+    @property
+    def what(self) -> str:
+        """Its source in a clause."""
+        return self._source if isinstance(self._source, str) else source_of(self._source)
+
+
+class PackagePath(NamedTuple):
+    """A value known to lie in the share folder of a package; path is empty for the folder itself. assumed: as far as a
+    launch argument keeps its default."""
+
+    package: str
+    path: str
+    assumed: bool = False
+
+
+def put_together(parts: Iterable[Any], line: int = 1) -> Text | PackagePath | None:
+    """Texts and at most one package folder, put together; None for anything else. `/` between parts of a path is never
+    doubled."""
+    base: PackagePath | None = None
+    text = ""
+    for part in parts:
+        if isinstance(part, PackagePath):
+            if base is not None or text not in ("", "file://"):
+                return None
+            base, text = part, part.path
+        elif not isinstance(part, str):
+            return None
+        elif text.endswith("/") and part.startswith("/"):
+            text += part[1:]
+        elif base is not None and not text and not part.startswith("/"):
+            return None
+        else:
+            text += part
+    return Text(text, line) if base is None else PackagePath(base.package, text.lstrip("/"), base.assumed)
+
+
+def path_of(parts: Iterable[Any], line: int) -> Any:
+    """Parts of a path put together; None where one is not known."""
+    interleaved = [each for part in parts for each in (part, "/")]
+    return put_together(interleaved[:-1], line)
+
+
+JOINS = frozenset({"os.path.join", "path.join", "join", "posixpath.join", "osp.join"})
+GLOBS = frozenset({"glob", "glob.glob", "iglob", "glob.iglob"})
+SAME = frozenset({"list", "tuple", "sorted", "str", "os.path.normpath", "set"})
+
+
+class Constants:
+    """Names and what they hold, as statements assign it one after the other. unresolved: what was left out of mappings
+    that were taken apart, in one clause each."""
+
+    evaluators: ClassVar[dict[type, Callable[..., Any]]]
+
+    def __init__(self) -> None:
+        self.names: dict[str, Any] = {}
+        self.unresolved: list[str] = []
+
+    def assign(self, target: ast.expr, value: Any) -> None:
+        """Takes in an assignment. What a tuple is taken apart into is not followed."""
+        if isinstance(target, ast.Name):
+            self.names[target.id] = value
+        elif isinstance(target, (ast.Tuple, ast.List)):
+            for element in target.elts:
+                self.assign(element, Unresolved("a tuple's part"))
+        elif isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name):
+            owner, key = self.names.get(target.value.id), self.value(target.slice)
+            if isinstance(owner, dict) and isinstance(key, str):
+                owner[key] = value
+
+    def keywords(self, call: ast.Call) -> dict[str, Any]:
+        """The keyword arguments of a call, those of `**` included where they are known."""
+        found: dict[str, Any] = {}
+        for keyword in call.keywords:
+            value = self.value(keyword.value)
+            if keyword.arg is not None:
+                found[keyword.arg] = value
+            elif isinstance(value, dict):
+                found.update(value)
+            elif isinstance(value, Unresolved):
+                self.unresolved.append(f"arguments are {value.what}")
+        return found
+
+    def value(self, node: ast.expr) -> Any:
+        """A str (with its line), PackagePath, list, dict, or Unresolved; a file pattern is a str."""
+        evaluate = self.evaluators.get(node.__class__)
+        found = evaluate(self, node) if evaluate is not None else None
+        return Unresolved(node) if found is None else found
+
+    def value_Constant(self, node: ast.Constant) -> Any:
+        return Text(node.value, node.lineno) if isinstance(node.value, str) else node.value
+
+    def value_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
+        return [self.value(element) for element in node.elts]
+
+    value_Tuple = value_Set = value_List
+
+    def value_Starred(self, node: ast.Starred) -> Any:
+        return self.value(node.value)
+
+    def value_Dict(self, node: ast.Dict) -> Any:
+        merged: dict[str, Any] = {}
+        for key_node, value_node in zip(node.keys, node.values, strict=True):
+            key, value = None if key_node is None else self.value(key_node), self.value(value_node)
+            if isinstance(key, str):
+                merged[key] = value
+            elif key is None and isinstance(value, dict):
+                merged.update(value)
+        return merged
+
+    def value_Name(self, node: ast.Name) -> Any:
+        return self.names.get(node.id)
+
+    def value_JoinedStr(self, node: ast.JoinedStr) -> Any:
+        parts = (self.value(v.value if isinstance(v, ast.FormattedValue) else v) for v in node.values)
+        return put_together(parts, node.lineno)
+
+    def value_IfExp(self, node: ast.IfExp) -> Any:
+        return self.value(node.body)
+
+    def value_BinOp(self, node: ast.BinOp) -> Any:
+        op = node.op.__class__
+        if op not in (ast.Add, ast.Div, ast.Mod):
+            return None
+        left, right = self.value(node.left), self.value(node.right)
+        if op is not ast.Mod:
+            if isinstance(left, list) or isinstance(right, list):
+                return (left if isinstance(left, list) else [left]) + (right if isinstance(right, list) else [right])
+            return put_together((left, "/", right) if op is ast.Div else (left, right), node.lineno)
+        if isinstance(left, str):
+            values = right if isinstance(right, list) else [right]
+            if all(isinstance(v, str) for v in values) and left.count("%s") == len(values) == left.count("%"):
+                return _filled(left.split("%s"), values, node)
+        return None
+
+    def value_Call(self, node: ast.Call) -> Any:
+        return self.result(node)
+
+    def result(self, call: ast.Call) -> Any:
+        """What a call gives; None where that is not known."""
+        name = dotted(call.func)
+        last = name.rpartition(".")[2]
+        if name == "dict":
+            return self.keywords(call)
+        arguments = [self.value(argument) for argument in call.args]
+        if name in JOINS or last == "Path":
+            if arguments and all(isinstance(a, str) for a in arguments):
+                return path_of((a for a in arguments if a), call.lineno)
+        elif (name in GLOBS or last == "glob") and len(arguments) >= 1:
+            if isinstance(arguments[0], str):
+                return [Text(arguments[0], call.lineno)]
+        elif name in SAME and len(arguments) == 1:
+            return arguments[0]
+        elif last == "format" and isinstance(call.func, ast.Attribute):
+            template = self.value(call.func.value)
+            if isinstance(template, str) and all(isinstance(a, str) for a in arguments) and not call.keywords:
+                pieces = template.split("{}")
+                if len(pieces) == len(arguments) + 1 and "{" not in "".join(pieces):
+                    return _filled(pieces, arguments, call)
+        return None
+
+
+def _filled(pieces: list[str], values: list[str], node: ast.expr) -> Text:
+    """Pieces of a pattern with values in between."""
+    return Text(pieces[0] + "".join(v + p for v, p in zip(values, pieces[1:], strict=True)), node.lineno)
+
+
+Constants.evaluators = node_methods(Constants, "value_")
+
+
+def dotted(node: ast.expr) -> str:
+    parts: list[str] = []
+    while isinstance(node, ast.Attribute):
+        parts.append(node.attr)
+        node = node.value
+    parts.append(node.id if isinstance(node, ast.Name) else "")
+    return ".".join(reversed(parts))
+
+
+def source_of(node: ast.expr) -> str:
+    text = " ".join(ast.unparse(node).split())
+    return f"`{text if len(text) <= 60 else text[:57] + '...'}`"
+
+
+def module_constants(tree: ast.Module) -> Constants:
+    """The names that the module itself binds and nothing in it binds again, so that they mean the same everywhere."""
+    bound = Counter(
+        node.id if isinstance(node, ast.Name) else node.arg
+        for node in ast.walk(tree)
+        if isinstance(node, ast.arg) or (isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load))
+    )
+    constants = Constants()
+    for statement in tree.body:
+        if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
+            target = statement.targets[0]
+        elif isinstance(statement, ast.AnnAssign):
+            target = statement.target
+        else:
+            continue
+        if isinstance(target, ast.Name) and bound[target.id] == 1 and statement.value is not None:
+            constants.assign(target, constants.value(statement.value))
+    return constants

@@ -1,0 +1,726 @@
+"""What stands inside Python functions: expressions to calls, assignments and uses of variables.
+
+One walk does it all; what nobody asks the value of (a condition, an operand) is visited without making an Expr of it.
+
+A use of a parameter or local variable is judged by where it stands: a test or an operand is a `read`, an argument is a
+`pass`, a method called on it too, with position -1; the value of another local variable is a `read`, since the
+Assignment tells what goes on from there; what is kept elsewhere, returned or listed is an `escape`.
+"""
+
+from __future__ import annotations
+
+import ast
+from itertools import pairwise
+
+from ....edges.dispatch import node_methods
+from ..flow import Access, Assignment, Call, Expr, Guard, Member, Parameter
+from .flow_body import Body, ClassBody
+from .text import Text, child_fields, format_pieces, percent_pieces, printable
+
+# Tables of numbers are no part of any flow.
+LONGEST_LIST = 500
+_PLACES = tuple(Expr("number", str(number)) for number in range(16))
+_PARTIAL = frozenset(("partial", "functools.partial"))
+# Builtins that keep nothing of what they are given.
+_READING = frozenset(
+    (
+        *("abs", "all", "any", "bool", "float", "format", "hasattr", "hash", "id", "int", "isinstance", "len", "max"),
+        *("min", "ord", "pow", "print", "range", "repr", "round", "str", "sum", "type", "unicode"),
+    )
+)
+# Methods whose argument becomes an element of what they are called on.
+_KEEPING = {"append": 0, "add": 0, "appendleft": 0, "insert": 1, "setdefault": 1, "put": 0}
+_CHILDREN = child_fields("ctx", "id", "attr", "op", "ops", "kind", "conversion", "n", "s", "value_kind")
+_PATHS = (ast.Name, ast.Attribute, ast.Subscript)
+LONGEST_OTHER = 120
+ANY = Expr("other")
+_NUMBERS = {None: Expr("number", "None"), True: Expr("number", "True"), False: Expr("number", "False")}
+
+
+class Expressions(Text):
+    """The reader of expressions, of which it visits some and makes values of others. It reads for one body at a time,
+    into whose lists it writes."""
+
+    body: Body
+    guard: int
+    this: str
+    locals: set[str]
+    guards: list[Guard]
+    calls: list[Call]
+    assignments: list[Assignment]
+    accesses: list[Access]
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.module_functions: set[str] = set()
+        self.class_bodies: dict[str, ClassBody] = {}
+        # Names that a class's own body knows without its object.
+        self.own: set[str] = set()
+        self.constants: list[Member] = []
+        # Functions whose bodies are still to be read, since they see all variables of the one they stand in.
+        self.waiting: list[tuple[Body, list[ast.stmt] | ast.expr]] = []
+        # Whether names are bound in the body of a class.
+        self.in_class = False
+
+    def enter(self, body: Body) -> None:
+        self.body = body
+        self.guard = -1
+        self.this = body.this
+        self.locals = body.locals
+        self.guards = body.guards
+        self.calls = body.calls
+        self.assignments = body.assignments
+        self.accesses = body.accesses
+        self.own = set()
+        self.in_class = False
+        self.unplaced = False
+
+    def push(self, kind: str, text: str, line: int, early: bool = False) -> None:
+        """A new guard around what follows."""
+        self.guards.append(Guard(kind, text, line, self.guard, early))
+        self.guard = len(self.guards) - 1
+
+    # Names
+
+    def sees(self, name: str) -> bool:
+        return self.body.outer is not None and self.body.sees(name)
+
+    def is_function(self, name: str) -> bool:
+        body = self.body
+        while body is not None:
+            if name in body.functions:
+                return True
+            body = body.outer
+        return name in self.module_functions
+
+    def spelt(self, node) -> str:
+        """The path of what is assigned to, nothing visited; empty for several."""
+        cls = node.__class__
+        if cls is ast.Name:
+            if node.id == self.this:
+                return "this"
+            return "this." + node.id if node.id in self.own or self.in_class else node.id
+        if cls is ast.Attribute:
+            return f"{self.spelt(node.value)}.{node.attr}"
+        if cls is ast.Subscript:
+            inner = self.spelt(node.value)
+            return inner if node.slice.__class__ is ast.Slice else f"{inner}.[]"
+        return "" if cls in (ast.Tuple, ast.List, ast.Starred) else "()"
+
+    # Plain values
+
+    def member(self, path: str, name: str) -> Expr:
+        cls = self.body.cls
+        return Expr("function" if cls is not None and name in cls.callbacks else "name", path)
+
+    def other(self, node) -> Expr:
+        return Expr("other", self.source(node)[:LONGEST_OTHER])
+
+    def constant(self, node: ast.Constant) -> Expr:
+        value = node.value
+        cls = value.__class__
+        if cls is str:
+            return Expr("text", value if value.isascii() else printable(value))  # type: ignore[union-attr]
+        if value is None or cls is bool:
+            return _NUMBERS[value]  # type: ignore[index]
+        if cls is int or cls is float or cls is complex:
+            return Expr("number", self.source(node))
+        return self.other(node)
+
+    def annotation(self, node) -> str:
+        """A type as written, quotes around it left out."""
+        if node is None:
+            return ""
+        if node.__class__ is ast.Constant and node.value.__class__ is str:
+            return printable(node.value)
+        return self.source(node)
+
+
+    # Visiting, for calls and uses alone
+
+    def visit(self, node) -> None:
+        """Records the calls and uses in an expression, the value of which nobody asks."""
+        visitor = _VISITORS.get(node.__class__)
+        if visitor is not None:
+            visitor(self, node)
+            return
+        for field in _CHILDREN[node.__class__]:
+            child = getattr(node, field)
+            if child.__class__ is list:
+                for item in child:
+                    if item is not None:
+                        self.visit(item)
+            elif child is not None:
+                self.visit(child)
+
+    def visit_Constant(self, node) -> None:
+        pass
+
+    def visit_Name(self, node: ast.Name) -> None:
+        name = node.id
+        if name in self.locals or self.sees(name):
+            self.accesses.append(Access(name, "read", node.lineno, self.guard))
+
+    def visit_Attribute(self, node) -> None:
+        path, local = self.reach(node)
+        if local:
+            self.accesses.append(Access(path, "read", node.lineno, self.guard))
+
+    visit_Subscript = visit_Attribute
+
+    def visit_BoolOp(self, node: ast.BoolOp) -> None:
+        saved, count = self.guard, len(self.guards)
+        kind = "if" if node.op.__class__ is ast.And else "unless"
+        values = node.values
+        self.visit(values[0])
+        facts = len(self.calls) + len(self.accesses) + len(self.assignments)
+        for before, value in pairwise(values):
+            self.push(kind, self.source(before), before.lineno)
+            self.visit(value)
+        self.guard = saved
+        if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
+            del self.guards[count:]
+
+    def visit_IfExp(self, node: ast.IfExp) -> None:
+        self.value(node, "read")
+
+    def visit_Lambda(self, node: ast.Lambda) -> None:
+        self.value_Lambda(node, "")
+
+    def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
+        self.value_NamedExpr(node, "read")
+
+    def visit_ListComp(self, node) -> None:
+        self.value_ListComp(node, "")
+
+    visit_SetComp = visit_ListComp
+    visit_GeneratorExp = visit_ListComp
+    visit_DictComp = visit_ListComp
+
+    def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
+        self.value_JoinedStr(node, "read")
+
+    def visit_Call(self, node: ast.Call) -> None:
+        self.call(node)
+
+    def visit_Yield(self, node) -> None:
+        if node.value is not None:
+            self.value(node.value, "escape")
+
+    visit_YieldFrom = visit_Yield
+
+    # Paths
+
+    def reach(self, node) -> tuple[str, bool]:
+        """The path that an expression names and whether it begins at a variable of the function; what stands inside it,
+        such as an index or a call, is visited."""
+        parts: list[str] = []
+        while True:
+            cls = node.__class__
+            if cls is ast.Attribute:
+                parts.append(node.attr)
+                node = node.value
+            elif cls is ast.Subscript:
+                self.visit(node.slice)
+                # A slice is still the container.
+                if node.slice.__class__ is not ast.Slice:
+                    parts.append("[]")
+                node = node.value
+            elif cls is ast.Await:
+                node = node.value
+            else:
+                break
+        local = False
+        if cls is ast.Name:
+            head = node.id
+            if head == self.this:
+                head = "this"
+            elif head in self.locals or self.sees(head):
+                local = True
+            elif head in self.own:
+                head = "this." + head
+        elif cls is ast.Call:
+            head = self.call(node)[0] + "()"
+        else:
+            self.visit(node)
+            head = "()"
+        if not parts:
+            return head, local
+        parts.append(head)
+        parts.reverse()
+        return ".".join(parts), local
+
+    # Values
+
+    def value(self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = "") -> Expr:
+        """An expression. use, to, position, keyword: the Access that it is if it is a path; target: what it is kept
+        in, `return` for what the function returns."""
+        cls = node.__class__
+        if cls is ast.Constant:
+            return self.constant(node)
+        if cls is ast.Name:
+            name = node.id
+            if name == self.this:
+                return Expr("name", "this")
+            if name in self.locals or self.sees(name):
+                self.accesses.append(Access(name, use, node.lineno, self.guard, to, position, keyword))
+                return Expr("name", name)
+            if name in self.own:
+                return self.member("this." + name, name)
+            return Expr("function" if self.is_function(name) else "name", name)
+        if cls is ast.Attribute:
+            path, local = self.reach(node)
+            if local:
+                self.accesses.append(Access(path, use, node.lineno, self.guard, to, position, keyword))
+                return Expr("name", path)
+            head, _, name = path.rpartition(".")
+            if head == "this":
+                return self.member(path, name)
+            known = self.class_bodies.get(head)
+            return Expr("function" if known is not None and name in known.callbacks else "name", path)
+        if cls is ast.Call:
+            return self.called(node, target)
+        maker = _VALUES.get(cls)
+        if maker is not None:
+            return maker(self, node, use, to, position, keyword, target)
+        self.visit(node)
+        return self.other(node)
+
+    def value_Subscript(self, node: ast.Subscript, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+        mark = len(self.accesses)
+        container = self.value(node.value, "read")
+        if node.slice.__class__ is ast.Slice:
+            self.visit(node.slice)
+            index = self.other(node.slice)
+            suffix = ""
+        else:
+            index = self.value(node.slice, "read")
+            suffix = ".[]"
+        # The element is used, not the container.
+        if mark < len(self.accesses) and node.value.__class__ in _PATHS:
+            path = self.spelt(node.value)
+            for place in range(mark, len(self.accesses)):
+                access = self.accesses[place]
+                if access.path == path:
+                    self.accesses[place] = Access(path + suffix, use, access.line, access.guard, to, position, keyword)
+                    break
+        return Expr("index", "", (container, index))
+
+    def value_IfExp(self, node: ast.IfExp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+        saved = self.guard
+        self.visit(node.test)
+        text, line = self.source(node.test), node.test.lineno
+        count = len(self.guards)
+        facts = len(self.calls) + len(self.accesses) + len(self.assignments)
+        self.push("if", text, line)
+        true = self.value(node.body, use, to, position, keyword, target)
+        self.guard = saved
+        self.push("unless", text, line)
+        false = self.value(node.orelse, use, to, position, keyword, target)
+        self.guard = saved
+        if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
+            del self.guards[count:]
+        return Expr("choice", "", (Expr("other", text[:LONGEST_OTHER]), true, false))
+
+    def value_BoolOp(self, node: ast.BoolOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+        """`a or b` is a choice between a and b; `a and b` one between b and a."""
+        saved, count = self.guard, len(self.guards)
+        both = node.op.__class__ is ast.And
+        values: list[Expr] = []
+        texts: list[str] = []
+        facts = 0
+        for operand in node.values:
+            if texts:
+                self.push("if" if both else "unless", texts[-1], operand.lineno)
+            values.append(self.value(operand, use, to, position, keyword, target))
+            if not texts:
+                facts = len(self.calls) + len(self.accesses) + len(self.assignments)
+            texts.append(self.source(operand))
+        self.guard = saved
+        if facts == len(self.calls) + len(self.accesses) + len(self.assignments):
+            del self.guards[count:]
+        result = values.pop()
+        texts.pop()
+        while values:
+            first = values.pop()
+            asked = Expr("other", texts.pop()[:LONGEST_OTHER])
+            result = Expr("choice", "", (asked, result, first) if both else (asked, first, result))
+        return result
+
+    def value_UnaryOp(self, node: ast.UnaryOp, *_: object) -> Expr:
+        operand = node.operand
+        if node.op.__class__ is ast.USub and operand.__class__ is ast.Constant:
+            return Expr("number", self.source(node))
+        self.visit(operand)
+        return self.other(node)
+
+    def value_Tuple(self, node, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+        element = target + ".[]" if target and target != "return" else ""
+        elements = node.elts
+        if len(elements) > LONGEST_LIST:
+            kept = [self.value(each, "escape", to, target=element) for each in elements[:LONGEST_LIST]]
+            for each in elements[LONGEST_LIST:]:
+                self.visit(each)
+            kept.append(Expr("other", f"{len(elements) - LONGEST_LIST} more"))
+            return Expr("list", "", tuple(kept))
+        return Expr("list", "", tuple([self.value(each, "escape", to, target=element) for each in elements]))
+
+    value_List = value_Tuple
+    value_Set = value_Tuple
+
+    def value_Dict(self, node: ast.Dict, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+        element = target + ".[]" if target and target != "return" else ""
+        pairs: list[Expr] = []
+        for key, value in zip(node.keys, node.values, strict=False):
+            if len(pairs) == LONGEST_LIST:
+                pairs.append(Expr("other", f"{len(node.keys) - LONGEST_LIST} more"))
+            if len(pairs) > LONGEST_LIST:
+                self.visit(value)
+            elif key is None:
+                pairs.append(Expr("keyword", "**", (self.value(value, "escape", to),)))
+            else:
+                name = self.value(key, "read")
+                pairs.append(Expr("list", "", (name, self.value(value, "escape", to, target=element))))
+        return Expr("list", "", tuple(pairs))
+
+    def value_Starred(self, node: ast.Starred, use: str, to: str, *_: object) -> Expr:
+        return Expr("keyword", "*", (self.value(node.value, "escape", to),))
+
+    def value_Await(self, node: ast.Await, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+        return self.value(node.value, use, to, position, keyword, target)
+
+    def value_NamedExpr(self, node: ast.NamedExpr, use: str, *_: object) -> Expr:
+        target = self.spelt(node.target)
+        value = self.value(node.value, "read", target, target=target)
+        self.bind(node.target, value, node.lineno)
+        return value
+
+    def value_Lambda(self, node: ast.Lambda, use: str, *_: object) -> Expr:
+        around = self.body.name
+        own = f"lambda@{node.lineno}:{self.column(node.lineno, node.col_offset)}"
+        name = f"{around}.{own}" if around else own
+        body = self.new_body(name, node, node.args)
+        self.waiting.append((body, node.body))
+        return Expr("lambda", name)
+
+    def new_body(self, name: str, node, arguments: ast.arguments, cls: ClassBody | None = None) -> Body:
+        """A function that stands where the reader is, with its parameters; defaults are visited here."""
+        current = self.body
+        outer = current.outer if current.is_class else current if current.name else None
+        body = Body(name, cls or current.cls, node.lineno, node.end_lineno, outer)
+        body.made = self.guard
+        body.this = current.this
+        body.parameters = self.parameters(arguments)
+        for parameter in body.parameters:
+            bare = parameter.name.lstrip("*")
+            body.locals.add(bare)
+            if bare == body.this:
+                body.this = ""
+        return body
+
+    def parameters(self, arguments: ast.arguments) -> tuple[Parameter, ...]:
+        found: list[Parameter] = []
+        positional = [*arguments.posonlyargs, *arguments.args]
+        without = len(positional) - len(arguments.defaults)
+        for place, argument in enumerate(positional):
+            default = None if place < without else self.value(arguments.defaults[place - without], "escape")
+            found.append(Parameter(argument.arg, self.annotation(argument.annotation), default))
+        if arguments.vararg is not None:
+            found.append(Parameter("*" + arguments.vararg.arg, self.annotation(arguments.vararg.annotation)))
+        elif arguments.kwonlyargs:
+            found.append(Parameter("*"))
+        for argument, given in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=False):
+            default = None if given is None else self.value(given, "escape")
+            found.append(Parameter(argument.arg, self.annotation(argument.annotation), default))
+        if arguments.kwarg is not None:
+            found.append(Parameter("**" + arguments.kwarg.arg, self.annotation(arguments.kwarg.annotation)))
+        return tuple(found)
+
+    def value_ListComp(
+        self, node, use: str, to: str = "", position: int = -1, keyword: str = "", target: str = ""
+    ) -> Expr:
+        saved, in_class = self.guard, self.in_class
+        self.in_class = False
+        for generator in node.generators:
+            self.walked(generator.target, generator.iter, generator.iter.lineno)
+            for condition in generator.ifs:
+                self.visit(condition)
+                self.push("if", self.source(condition), condition.lineno)
+        element = target + ".[]" if target and target != "return" else ""
+        if node.__class__ is ast.DictComp:
+            self.visit(node.key)
+            each = self.value(node.value, "escape", to, target=element)
+        else:
+            each = self.value(node.elt, "escape", to, target=element)
+        self.guard, self.in_class = saved, in_class
+        return Expr("other", self.other(node).text, (each,))
+
+    value_SetComp = value_ListComp
+    value_GeneratorExp = value_ListComp
+    value_DictComp = value_ListComp
+
+    def walked(self, target, iterated, line: int) -> None:
+        """The head of a for: what is walked through and the variable that is each of it, under the loop's guard."""
+        container = self.elements(iterated)
+        self.push("for", f"{self.source(target)} in {self.source(iterated)}", line)
+        value = container if container.kind == "list" and container.text == "each" else None
+        if value is not None and target.__class__ in (ast.Tuple, ast.List) and len(target.elts) == len(value.parts):
+            for part, each in zip(target.elts, value.parts, strict=False):
+                self.bind(part, Expr("index", "", (each, ANY)) if each is not ANY else ANY, line)
+        else:
+            plain = Expr("list", "", container.parts) if value is not None else container
+            self.bind(target, Expr("index", "", (plain, ANY)), line)
+
+    def elements(self, node) -> Expr:
+        """What is walked through by an expression; a list `each` for what goes beside another, as zip does."""
+        if node.__class__ is ast.Call and node.func.__class__ is ast.Name and node.func.id not in self.locals:
+            name, arguments = node.func.id, node.args
+            if arguments and not any(argument.__class__ is ast.Starred for argument in arguments):
+                if name in ("sorted", "reversed", "list", "tuple", "set", "iter"):
+                    for keyword in node.keywords:
+                        self.visit(keyword.value)
+                    return self.elements(arguments[0])
+                if name == "enumerate":
+                    for argument in arguments[1:]:
+                        self.visit(argument)
+                    return Expr("list", "each", (ANY, self.elements(arguments[0])))
+                if name in ("zip", "izip"):
+                    return Expr("list", "each", tuple(self.elements(argument) for argument in arguments))
+        return self.value(node, "read")
+
+    # Binding
+
+    def bind(self, target, value: Expr, line: int, type: str = "", operator: str = "=") -> None:
+        """An assignment of a value, already read, to a name, a member, an element or several of them."""
+        cls = target.__class__
+        if cls is ast.Name:
+            name = target.id
+            body = self.body
+            if self.in_class:
+                self.own.add(name)
+                body.cls.member(name, type or made(value), line, value)  # type: ignore[union-attr]
+                path = "this." + name
+            else:
+                path = name
+                if not body.name:
+                    self.constants.append(Member(name, type, line, value))
+                    self.locals.add(name)
+                elif name in body.outside:
+                    if body.outside[name] is ast.Global:
+                        self.constants.append(Member(name, type, line, value))
+                else:
+                    self.locals.add(name)
+            self.assignments.append(Assignment(path, value, line, self.guard, type, operator))
+        elif cls is ast.Attribute or cls is ast.Subscript:
+            path, local = self.reach(target)
+            if local:
+                self.accesses.append(Access(path, "write", line, self.guard))
+            elif path.startswith("this.") and path.count(".") == 1 and operator == "=" and self.body.cls is not None:
+                self.body.cls.member(path[5:], type or made(value), line, value)
+            key = target.slice if cls is ast.Subscript and target.slice.__class__ is ast.Constant else None
+            named = self.value(key, "read") if key is not None else None
+            self.assignments.append(Assignment(path, value, line, self.guard, type, operator, named))
+        elif cls is ast.Tuple or cls is ast.List:
+            parts = target.elts
+            starred = any(part.__class__ is ast.Starred for part in parts)
+            if value.kind == "list" and len(value.parts) == len(parts) and not starred:
+                for part, each in zip(parts, value.parts, strict=False):
+                    self.bind(part, each, line)
+            else:
+                if value.kind == "list" or len(parts) > len(_PLACES):
+                    value = ANY
+                for place, part in enumerate(parts):
+                    known = not starred and place < len(_PLACES)
+                    self.bind(part, Expr("index", "", (value, _PLACES[place] if known else ANY)), line)
+        elif cls is ast.Starred:
+            self.bind(target.value, value, line)
+        else:
+            self.visit(target)
+
+    # Strings and paths that are put together: joins of their pieces
+
+    def value_BinOp(self, node: ast.BinOp, use: str, to: str, position: int, keyword: str, target: str) -> Expr:
+        op = node.op.__class__
+        if op is ast.Add:
+            # Long sums lean to the left.
+            operands = [node.right]
+            left = node.left
+            while left.__class__ is ast.BinOp and left.op.__class__ is ast.Add:  # type: ignore[attr-defined]
+                operands.append(left.right)  # type: ignore[attr-defined]
+                left = left.left  # type: ignore[attr-defined]
+            operands.append(left)
+            operands.reverse()
+            return Expr("join", "+", tuple(self.value(operand, "read") for operand in operands))
+        if op is ast.Mod and node.left.__class__ is ast.Constant and node.left.value.__class__ is str:  # type: ignore[attr-defined]
+            return self.percent(node)
+        if op is ast.Div:
+            left = self.value(node.left, "read")
+            right = self.value(node.right, "read")
+            if (
+                "text" in (left.kind, right.kind)
+                or left.text.endswith("Path")
+                or (left.kind, left.text) == ("join", "/")
+            ):
+                parts = left.parts if (left.kind, left.text) == ("join", "/") else (left,)
+                return Expr("join", "/", (*parts, right))
+            return self.other(node)
+        self.visit(node.left)
+        self.visit(node.right)
+        return self.other(node)
+
+    def percent(self, node: ast.BinOp) -> Expr:
+        pieces = percent_pieces(node.left.value)  # type: ignore[attr-defined]
+        right = node.right
+        values: dict[int | str, Expr] = {}
+        if right.__class__ is ast.Tuple:
+            for place, element in enumerate(right.elts):  # type: ignore[attr-defined]
+                values[place] = self.value(element, "read")
+        elif right.__class__ is ast.Dict and None not in right.keys:  # type: ignore[attr-defined]
+            for key, element in zip(right.keys, right.values, strict=False):  # type: ignore[attr-defined]
+                known = key.value if key.__class__ is ast.Constant else ""
+                values[known if known.__class__ is str else ""] = self.value(element, "read")
+        else:
+            values[0] = self.value(right, "read")
+        return self.put_together(node, pieces, values)
+
+    def put_together(self, node, pieces: list[str | int | tuple[str]] | None, values: dict[int | str, Expr]) -> Expr:
+        """The join of literal pieces and values; other when a value is not told apart."""
+        if pieces is None:
+            return self.other(node)
+        parts: list[Expr] = []
+        for piece in pieces:
+            if piece.__class__ is str:
+                parts.append(Expr("text", printable(piece)))  # type: ignore[arg-type]
+            elif piece.__class__ is int:
+                if piece not in values:
+                    return self.other(node)
+                parts.append(values[piece])  # type: ignore[index]
+            else:
+                key = piece[0]  # type: ignore[index]
+                parts.append(values[key] if key in values else Expr("other", printable(key)[:LONGEST_OTHER]))
+        if len(parts) == 1 and parts[0].kind == "text":
+            return parts[0]
+        return Expr("join", "", tuple(parts))
+
+    def formatted(self, node: ast.Call) -> Expr:
+        """`"...".format(...)`."""
+        values: dict[int | str, Expr] = {}
+        unpacked = False
+        for place, argument in enumerate(node.args):
+            unpacked = unpacked or argument.__class__ is ast.Starred
+            values[place] = self.value(argument, "read")
+        for keyword in node.keywords:
+            value = self.value(keyword.value, "read")
+            if keyword.arg is not None:
+                values[keyword.arg] = value
+        if unpacked:
+            return self.other(node)
+        return self.put_together(node, format_pieces(node.func.value.value), values)  # type: ignore[attr-defined]
+
+    def value_JoinedStr(self, node: ast.JoinedStr, use: str, *_: object) -> Expr:
+        outermost = not self.unplaced and node.lineno != node.end_lineno
+        if outermost:
+            # Where things stand in a string of several lines, interpreters before 3.12 do not know.
+            self.unplaced = True
+            for inner in ast.walk(node):
+                if hasattr(inner, "lineno"):
+                    inner.lineno, inner.end_lineno = node.lineno, node.lineno  # type: ignore[attr-defined]
+                    inner.col_offset = inner.end_col_offset = node.col_offset  # type: ignore[attr-defined]
+        parts: list[Expr] = []
+        for piece in node.values:
+            if piece.__class__ is ast.Constant:
+                parts.append(self.constant(piece))  # type: ignore[arg-type]
+            elif piece.__class__ is ast.FormattedValue:
+                parts.append(self.value(piece.value, "read"))  # type: ignore[attr-defined]
+                if piece.format_spec is not None:  # type: ignore[attr-defined]
+                    self.visit(piece.format_spec)  # type: ignore[attr-defined]
+            else:
+                self.visit(piece)
+                parts.append(ANY)
+        if outermost:
+            self.unplaced = False
+        if not parts:
+            return Expr("text", "")
+        return parts[0] if len(parts) == 1 and parts[0].kind == "text" else Expr("join", "", tuple(parts))
+
+    # Calls
+
+    def called(self, node: ast.Call, target: str = "") -> Expr:
+        """A call as a value."""
+        func = node.func
+        if (
+            func.__class__ is ast.Attribute
+            and func.attr == "format"  # type: ignore[attr-defined]
+            and func.value.__class__ is ast.Constant  # type: ignore[attr-defined]
+            and func.value.value.__class__ is str  # type: ignore[attr-defined]
+        ):
+            return self.formatted(node)
+        callee, arguments = self.call(node, target)
+        if callee in _PARTIAL and arguments:
+            return Expr("bind", "", arguments)
+        last = callee.rpartition(".")[2].lstrip("_")
+        if last[:1].isupper() and not last.isupper():
+            return Expr("make", callee, arguments)
+        return Expr("call", callee, arguments)
+
+    def call(self, node: ast.Call, target: str = "") -> tuple[str, tuple[Expr, ...]]:
+        """Records a call, with what it is given and what it is called on; gives its callee and arguments."""
+        func = node.func
+        cls = func.__class__
+        line = node.lineno
+        accesses = self.accesses
+        reading, keeping, kept = False, -1, ""
+        if cls is ast.Attribute:
+            path, local = self.reach(func.value)  # type: ignore[attr-defined]
+            attribute = func.attr  # type: ignore[attr-defined]
+            callee = f"{path}.{attribute}"
+            if local:
+                accesses.append(Access(path, "pass", line, self.guard, callee))
+            keeping = _KEEPING.get(attribute, -1)
+            kept = path + ".[]"
+        elif cls is ast.Name:
+            name = func.id  # type: ignore[attr-defined]
+            if name in self.locals or self.sees(name):
+                accesses.append(Access(name, "read", line, self.guard))
+            elif name in self.own:
+                callee = name = "this." + name
+            else:
+                reading = name in _READING
+            callee = name if name != self.this else "this"
+        else:
+            callee, _ = self.reach(func)
+        arguments: list[Expr] = []
+        for place, argument in enumerate(node.args):
+            inside = argument.__class__
+            if inside is ast.Constant:
+                arguments.append(self.constant(argument))  # type: ignore[arg-type]
+            elif reading:
+                arguments.append(self.value(argument, "read"))
+            elif inside in _PATHS:
+                arguments.append(self.value(argument, "pass", callee, place))
+            else:
+                inner = kept if place == keeping else ""
+                arguments.append(self.value(argument, "escape", callee, target=inner))
+        for keyword in node.keywords:
+            value, name = keyword.value, keyword.arg
+            if name is None:
+                arguments.append(Expr("keyword", "**", (self.value(value, "escape", callee),)))
+            elif value.__class__ in _PATHS:
+                arguments.append(Expr("keyword", name, (self.value(value, "pass", callee, -1, name),)))
+            else:
+                arguments.append(Expr("keyword", name, (self.value(value, "escape", callee),)))
+        given = tuple(arguments)
+        if callee != "super":
+            returned = target == "return"
+            column = self.column(line, node.col_offset)
+            self.calls.append(Call(callee, given, line, column, self.guard, "", "" if returned else target, returned))
+        return callee, given
+
+
+def made(value: Expr) -> str:
+    """The class that a value is an object of, as written; empty for what is not made here."""
+    return value.text if value.kind == "make" else ""
+
+
+_VISITORS = node_methods(Expressions, "visit_")
+_VALUES = node_methods(Expressions, "value_")

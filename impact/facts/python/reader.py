@@ -1,0 +1,823 @@
+"""What a Python syntax tree says: imports, names used through them, mentions of packages, the Python it needs."""
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+
+import msgspec
+
+from ....edges.dispatch import node_methods
+from ..condition import Condition
+from ..place import Problem, Reference
+from .text import Text, child_fields
+from .uses import CALLING_BACK, ELEMENT, OWN, SURE_TO_RUN, Objects, field_type
+from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, Scope
+
+
+class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """`import module` or `from module import names`. level counts leading dots. lazy: inside a function."""
+
+    module: str
+    names: tuple[str, ...]
+    level: int
+    line: int
+    column: int
+    lazy: bool = False
+    conditions: tuple[Condition, ...] = ()
+
+
+class Attribute(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """The first use of a dotted name whose head is an imported module or name, import aliases resolved
+    (`import time as t; t.clock()` gives `time.clock`), per distinct set of conditions. The conditions are those of the
+    import and those of the use that tell about the interpreter or the machine, not every `if`. A `try` whose except
+    covers AttributeError counts. lazy: only functions that may not run use it."""
+
+    text: str
+    line: int
+    column: int
+    conditions: tuple[Condition, ...] = ()
+    lazy: bool = False
+
+
+TRY = Condition("python", "try")
+EXCEPT = Condition("python", "try", True)
+# An except that catches these makes the import, or the use of a name, optional.
+_IMPORT_ERRORS = frozenset(("ImportError", "ModuleNotFoundError", "Exception", "BaseException"))
+_NAME_ERRORS = frozenset(("AttributeError", "NameError", "Exception", "BaseException"))
+# A test that mentions one of these tells about the interpreter or the machine rather than about the run.
+_ABOUT_MACHINE = re.compile(
+    r"version|PY[23]|PYTHON|TYPE_CHECKING|platform|os\.name|environ|getenv|ROS_|distro|hasattr|find_spec|find_loader",
+    re.IGNORECASE,
+)
+_COMMAND_CALLS = frozenset(
+    (
+        "system",
+        "popen",
+        "Popen",
+        "call",
+        "check_call",
+        "check_output",
+        "run",
+        "getoutput",
+        "ExecuteProcess",
+        "ExecuteLocal",
+        "Command",
+    )
+)
+_PROGRAM = re.compile(r"[A-Za-z_][\w.+-]*")
+_IN_STRING = re.compile(
+    r"package://(?P<url>[A-Za-z]\w*)(?P<url_path>/[^\s'\"<>$%{}]*)?"
+    r"|\$\((?:find|find-pkg-share|find-pkg-prefix)\s+(?P<find>[A-Za-z][\w-]*)\)(?P<find_path>/[^\s'\"<>$%{}()]+)?"
+)
+_QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
+_TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
+_CHILDREN = child_fields(
+    *("arg", "attr", "asname", "conversion", "ctx", "id", "kind", "level", "lineno", "module", "name", "op", "ops"),
+    *("rest", "simple", "str", "tag", "type_comment", "type_ignores", "is_async", "kwd_attrs"),
+)
+
+
+class Reader(Objects, Text):
+    """One walk over a syntax tree, in the order of the source."""
+
+    def __init__(self, text: str, original: str) -> None:
+        Objects.__init__(self, text)
+        Text.__init__(self, text)
+        # The two differ where Python 2 syntax was rewritten; lines are the same, indentation may not be.
+        self.original = original.split("\n") if original != text else []
+        self.has_paths = "package://" in text or "$(find" in text
+        self.imports: list[Import] = []
+        # Line, offset, and whether only functions that may not run have it.
+        self.uses: dict[tuple[Scope, str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
+        self.assigned: set[tuple[Scope, str]] = set()
+        self.imported_names: list[Attribute] = []
+        self.references: dict[Reference, None] = {}
+        # What the include around gives.
+        self.included: tuple[str, ...] | None = None
+        # Functions that look up the package named by one of their own parameters, and all calls by a plain name.
+        self.lookups: dict[tuple[Scope, str], tuple[int, str]] = {}
+        self.calls: list[tuple[Scope, str, ast.Call, bool]] = []
+        self.defining: tuple[Scope, str] | None = None
+        self.needs: tuple[int, int, str] | None = None
+        self.python2_only: list[Problem] = []
+        self.main = False
+        self.function = False
+        self.conditions: tuple[Condition, ...] = ()
+        self.consumed: set[int] = set()
+
+    def read(self, tree: ast.Module) -> None:
+        self.block(tree.body)
+        self.looked_up_by_functions()
+
+    # Walking
+
+    def block(self, nodes) -> None:
+        handlers = _HANDLERS
+        for node in nodes:
+            handler = handlers.get(node.__class__)
+            if handler is None:
+                self.inside(node)
+            else:
+                handler(self, node)
+
+    def visit(self, node) -> None:
+        handler = _HANDLERS.get(node.__class__)
+        if handler is None:
+            self.inside(node)
+        else:
+            handler(self, node)
+
+    def inside(self, node) -> None:
+        """Visits the children of a node."""
+        handlers = _HANDLERS
+        for field in _CHILDREN.get(node.__class__, ()):
+            child = getattr(node, field)
+            if child.__class__ is list:
+                for item in child:
+                    handler = handlers.get(item.__class__)
+                    if handler is not None:
+                        handler(self, item)
+                    elif item is not None:
+                        self.inside(item)
+            elif child is not None:
+                handler = handlers.get(child.__class__)
+                if handler is not None:
+                    handler(self, child)
+                else:
+                    self.inside(child)
+
+    def visit_Pass(self, node) -> None:
+        pass
+
+    visit_Break = visit_Pass
+    visit_Continue = visit_Pass
+
+    def column(self, line: int, offset: int) -> int:
+        """The same, in the text as it was before Python 2 was rewritten."""
+        if line > len(self.lines):
+            return offset + 1
+        column = super().column(line, offset)
+        return max(1, column - len(self.lines[line - 1]) + len(self.original[line - 1])) if self.original else column
+
+    def need(self, minor: int, node, reason: str) -> None:
+        if self.needs is None or minor > self.needs[0]:
+            self.needs = (minor, node.lineno, reason)
+
+    # Names
+
+    def visit_Name(self, node: ast.Name) -> None:
+        if node.ctx.__class__ is ast.Store:
+            self.scope.bound.add(node.id)
+            self.hold(node.id, "")
+
+    def visit_Attribute(self, node: ast.Attribute, call: ast.Call | None = None) -> None:
+        steps = [node]
+        value = node.value
+        while value.__class__ is ast.Attribute:
+            steps.append(value)  # type: ignore[arg-type]
+            value = value.value  # type: ignore[attr-defined]
+        steps.reverse()
+        if value.__class__ is not ast.Name:
+            if value.__class__ is ast.Call and getattr(value.func, "id", "") == "super":  # type: ignore[attr-defined]
+                self.use_of_super(steps[0].attr, call if len(steps) == 1 else None, node)
+            elif type_ := self.type_of(value):
+                self.use_member(type_, steps, call)
+            self.visit(value)
+            return
+        head = value.id  # type: ignore[attr-defined]
+        parts = [step.attr for step in steps]
+        own = head == self.me and self.inside_class is not None
+        if type_ := f"{OWN}{id(self.inside_class)}" if own else self.object(head):
+            self.use_member(type_, steps, call)
+        elif self.has_interfaces:
+            self.use_constant(steps, call)
+        if own and len(steps) == 1 and node.ctx.__class__ is ast.Store:
+            self.hold_own(node, "")
+        if head == "self" or head == "cls":
+            return
+        if node.ctx.__class__ is ast.Store:
+            self.assigned.add((self.scope, f"{head}.{'.'.join(parts)}"))
+        key = (self.scope, f"{head}.{'.'.join(parts)}", self.use_conditions)
+        known = self.uses.get(key)
+        if known is None:
+            self.uses[key] = (value.lineno, value.col_offset, self.may_not_run)
+        elif known[2] and not self.may_not_run:
+            self.uses[key] = (*known[:2], False)
+
+    def dotted(self, scope: Scope, text: str) -> Iterator[str]:
+        """What a name with parts stands for, import aliases resolved."""
+        head, _, rest = text.partition(".")
+        return (f"{dotted}.{rest}" for dotted, _ in self.imported(head, scope))
+
+    def attributes(self) -> tuple[Attribute, ...]:
+        """Names of other modules that the file uses. What it assigns itself (`sys.maxint = sys.maxsize`) is there."""
+        own = {dotted for scope, text in self.assigned for dotted in self.dotted(scope, text)}
+        found: dict[tuple[str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
+        for attribute in self.imported_names:
+            found.setdefault((attribute.text, attribute.conditions), (attribute.line, attribute.column, attribute.lazy))
+        for (scope, text, conditions), (line, offset, lazy) in self.uses.items():
+            head, _, rest = text.partition(".")
+            for dotted, extra in self.imported(head, scope):
+                if dotted.startswith("."):
+                    continue
+                if f"{dotted}.{rest}" in own:
+                    continue
+                both = conditions if not extra else (*extra, *(c for c in conditions if c not in extra))
+                key = (f"{dotted}.{rest}", both)
+                place = (line, self.column(line, offset))
+                known = found.get(key)
+                if known is None:
+                    found[key] = (*place, lazy)
+                else:
+                    found[key] = (*min(place, known[:2]), lazy and known[2])
+        return tuple(
+            Attribute(text, line, column, conditions, lazy)
+            for (text, conditions), (line, column, lazy) in sorted(found.items(), key=lambda item: item[1][:2])
+        )
+
+    def bind_import(self, name: str, dotted: str, relevant: tuple[Condition, ...]) -> None:
+        known = self.scope.imports.setdefault(name, [])
+        if (dotted, relevant) not in known:
+            known.append((dotted, relevant))
+
+    def visit_Import(self, node: ast.Import) -> None:
+        for alias in node.names:
+            column = self.column(alias.lineno, alias.col_offset)
+            module = sys.intern(alias.name)
+            self.imports.append(Import(module, (), 0, alias.lineno, column, self.function, self.conditions))
+            if alias.asname:
+                self.bind_import(alias.asname, module, self.use_conditions)
+            else:
+                head = module.partition(".")[0]
+                self.bind_import(head, head, self.use_conditions)
+
+    def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
+        module = sys.intern(node.module or "")
+        dotted = "." * node.level + module
+        column = self.column(node.lineno, node.col_offset)
+        names = tuple(sys.intern(alias.name) for alias in node.names)
+        self.imports.append(Import(module, names, node.level, node.lineno, column, self.function, self.conditions))
+        for alias in node.names:
+            if alias.name == "*":
+                continue
+            self.bind_import(alias.asname or alias.name, f"{dotted}.{alias.name}", self.use_conditions)
+            if not node.level:
+                column = self.column(alias.lineno, alias.col_offset)
+                self.imported_names.append(
+                    Attribute(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions, self.may_not_run)
+                )
+
+    # Conditions
+
+    def under(self, nodes, condition: Condition | None, use: Condition | None) -> None:
+        """Visits statements with one more condition for imports and one for uses."""
+        before = self.conditions, self.use_conditions, self.conditional
+        if condition is not None:
+            self.conditions = (*self.conditions, condition)
+        if use is not None:
+            self.use_conditions = (*self.use_conditions, use)
+        self.conditional = True
+        self.branch(nodes)
+        self.conditions, self.use_conditions, self.conditional = before
+
+    def branch(self, nodes) -> None:
+        """Visits statements, what these bind is noted in `ways` and holds no longer."""
+        scope = self.scope
+        before = scope.objects
+        scope.objects = dict(before)
+        self.block(nodes)
+        self.ways.append(scope.objects)
+        scope.objects = before
+
+    def visit_For(self, node) -> None:
+        """A `for` or `while`, in which nothing is known that it binds itself."""
+        first = len(self.ways)
+        self.repeat(node)
+        if node.__class__ is ast.While:
+            self.visit(node.test)
+        else:
+            self.visit(node.iter)
+            self.bind_element(node.target, node.iter)
+        self.branch(node.body)
+        self.branch(node.orelse)
+        self.merge(first)
+
+    visit_AsyncFor = visit_For
+    visit_While = visit_For
+
+    def bind_element(self, target, over) -> None:
+        """The variable of a loop, which holds an element of what is walked through."""
+        self.visit(target)
+        if self.has_interfaces and target.__class__ is ast.Name and (type_ := self.type_of(over)):
+            self.hold(target.id, field_type(type_, ELEMENT))
+
+    def visit_ListComp(self, node) -> None:
+        outer = self.scope
+        self.scope = Scope(outer, False)
+        self.scope.parameters = outer.parameters
+        for generator in node.generators:
+            self.visit(generator.iter)
+            self.bind_element(generator.target, generator.iter)
+            self.block(generator.ifs)
+        self.block([node.key, node.value] if node.__class__ is ast.DictComp else [node.elt])
+        self.scope = outer
+
+    visit_SetComp = visit_ListComp
+    visit_GeneratorExp = visit_ListComp
+    visit_DictComp = visit_ListComp
+
+    def visit_If(self, node: ast.If) -> None:
+        test = self.source(node.test)
+        self.visit(node.test)
+        if "__main__" in test and "__name__" in test:
+            self.main = True
+            self.block(node.body)
+            self.block(node.orelse)
+            return
+        negated = False
+        plain = node.test
+        if isinstance(plain, ast.UnaryOp) and isinstance(plain.op, ast.Not):
+            plain, negated = plain.operand, True
+            test = self.source(plain)
+        if test.endswith(".TYPE_CHECKING"):
+            test = "TYPE_CHECKING"
+        condition = Condition("python", test, negated)
+        about_machine = _ABOUT_MACHINE.search(test) is not None
+        first = len(self.ways)
+        self.under(node.body, condition, condition if about_machine else None)
+        condition = Condition("python", test, not negated)
+        self.under(node.orelse, condition, condition if about_machine else None)
+        self.merge(first)
+
+    def visit_IfExp(self, node: ast.IfExp) -> None:
+        self.visit(node.test)
+        test = self.source(node.test)
+        before = self.use_conditions, self.conditional
+        self.conditional = True
+        if _ABOUT_MACHINE.search(test):
+            self.use_conditions = (*before[0], Condition("python", test))
+            self.visit(node.body)
+            self.use_conditions = (*before[0], Condition("python", test, True))
+            self.visit(node.orelse)
+        else:
+            self.visit(node.body)
+            self.visit(node.orelse)
+        self.use_conditions, self.conditional = before
+
+    def visit_Try(self, node) -> None:
+        caught: set[str] = set()
+        for handler in node.handlers:
+            kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+            for kind in kinds:
+                caught.add("Exception" if kind is None else getattr(kind, "id", None) or getattr(kind, "attr", ""))
+        covers_import = not caught.isdisjoint(_IMPORT_ERRORS)
+        covers_use = covers_import or not caught.isdisjoint(_NAME_ERRORS)
+        # An except for TypeError expects that a call is refused, and nothing else of what is looked for here.
+        outside = self.call_conditions
+        refusal = "TypeError" in caught and not covers_use
+        self.call_conditions = (*outside, TRY) if refusal else outside
+        first, before = len(self.ways), self.scope.objects
+        self.under(node.body, TRY if covers_import else None, TRY if covers_use else None)
+        done = self.ways[-1]
+        # Handlers run after any part of the body.
+        self.scope.objects = {name: type_ if done.get(name) == type_ else "" for name, type_ in before.items()}
+        self.call_conditions = (*outside, EXCEPT) if refusal else outside
+        for handler in node.handlers:
+            if handler.type is not None:
+                self.visit(handler.type)
+            if handler.name:
+                self.scope.bound.add(handler.name)
+                self.hold(handler.name, "")
+            self.under(handler.body, EXCEPT if covers_import else None, EXCEPT if covers_use else None)
+        self.call_conditions = outside
+        self.scope.objects = done
+        self.under(node.orelse, TRY if covers_import else None, TRY if covers_use else None)
+        self.ways[first] = self.ways.pop()
+        self.merge(first)
+        self.block(node.finalbody)
+
+    def visit_TryStar(self, node) -> None:
+        self.need(11, node, "`except*`")
+        self.visit_Try(node)
+
+    def visit_With(self, node) -> None:
+        suppressed = False
+        for item in node.items:
+            call = item.context_expr
+            if isinstance(call, ast.Call) and _last_name(call.func) == "suppress":
+                suppressed |= any(_last_name(argument) in _IMPORT_ERRORS for argument in call.args)
+            self.visit(call)
+            if item.optional_vars is not None:
+                self.visit(item.optional_vars)
+        if self.parenthesised(node):
+            self.need(9, node, "parenthesised context managers")
+        if suppressed:
+            self.under(node.body, TRY, TRY)
+            self.merge(len(self.ways) - 1, self.scope.objects)
+        else:
+            self.block(node.body)
+
+    visit_AsyncWith = visit_With
+
+    def parenthesised(self, node) -> bool:
+        """`with (a as b, c as d):`. The tree does not tell; the text around the items does."""
+        first, last = node.items[0], node.items[-1]
+        if len(node.items) == 1 and first.optional_vars is None:
+            return False
+        line = self.line_bytes(first.context_expr.lineno)
+        before = line[: first.context_expr.col_offset].decode("utf-8", "replace")
+        if first.context_expr.lineno > node.lineno:
+            before = self.lines[node.lineno - 1] + before
+        if not _TARGETS_OF_WITH.search(before):
+            return False
+        end = last.optional_vars or last.context_expr
+        inner = first.context_expr
+        after = self.line_bytes(end.end_lineno)[end.end_col_offset :].lstrip()[:1]
+        after_inner = self.line_bytes(inner.end_lineno)[inner.end_col_offset :].lstrip()[:1]
+        return after in (b")", b",", b"") and after_inner != b")"
+
+    def line_bytes(self, line: int) -> bytes:
+        return self.lines[line - 1].encode("utf-8", "replace")
+
+    # Definitions
+
+    def visit_FunctionDef(self, node) -> None:
+        self.scope.bound.add(node.name)
+        for decorator in node.decorator_list:
+            self.visit(decorator)
+        arguments = node.args
+        if arguments.posonlyargs:
+            self.need(8, node, "positional-only parameters")
+        elif arguments.kwonlyargs:
+            self.need(0, node, "keyword-only parameters")
+        if getattr(node, "type_params", None):
+            self.need(12, node, "type parameters")
+            self.block(node.type_params)
+        self.arguments(arguments)
+        if node.returns is not None:
+            self.need(0, node, "annotations")
+            self.visit(node.returns)
+        before = self.scope, self.function, self.defining, self.lazy, self.me
+        self.defining = (self.scope, node.name)
+        self.lazy = self.lazy or self.scope.parent is not None or node.name not in SURE_TO_RUN
+        if self.scope.is_class:
+            self.enter_method(node)
+            static = any(getattr(decorator, "id", "") == "staticmethod" for decorator in node.decorator_list)
+            first = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)][:1]
+            self.me = "" if static else "".join(first)
+        types = [
+            (argument.arg, type_)
+            for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)
+            if argument.annotation is not None and (type_ := self.annotated(argument.annotation))
+        ]
+        self.scope = Scope(self.scope, False)
+        self.function = True
+        self.parameters(arguments)
+        self.handed(node)
+        self.scope.objects.update(types)
+        self.block(node.body)
+        self.scope, self.function, self.defining, self.lazy, self.me = before
+
+    def visit_AsyncFunctionDef(self, node) -> None:
+        self.need(5, node, "async functions")
+        self.visit_FunctionDef(node)
+
+    def arguments(self, arguments: ast.arguments) -> None:
+        for default in (*arguments.defaults, *arguments.kw_defaults):
+            if default is not None:
+                self.visit(default)
+        for group in (arguments.posonlyargs, arguments.args, arguments.kwonlyargs):
+            for argument in group:
+                if argument.annotation is not None:
+                    self.need(0, argument, "annotations")
+                    self.visit(argument.annotation)
+
+    def parameters(self, arguments: ast.arguments) -> None:
+        names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
+        self.scope.parameters = names
+        self.scope.bound.update(names)
+        self.scope.bound.update(argument.arg for argument in arguments.kwonlyargs)
+        for argument in (arguments.vararg, arguments.kwarg):
+            if argument is not None:
+                self.scope.bound.add(argument.arg)
+
+    def visit_Lambda(self, node: ast.Lambda) -> None:
+        self.arguments(node.args)
+        before = self.scope, self.function, self.lazy
+        self.scope = Scope(self.scope, False)
+        self.function = self.lazy = True
+        self.parameters(node.args)
+        self.visit(node.body)
+        self.scope, self.function, self.lazy = before
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> None:
+        self.scope.bound.add(node.name)
+        self.block(node.decorator_list)
+        self.block(node.bases)
+        for keyword in node.keywords:
+            self.visit(keyword.value)
+        if getattr(node, "type_params", None):
+            self.need(12, node, "type parameters")
+        before = self.scope, self.inside_class, self.me
+        self.inside_class, self.me = self.enter_class(node), ""
+        self.scope = Scope(self.scope, True)
+        self.block(node.body)
+        self.inside_class.members |= self.scope.bound
+        self.scope, self.inside_class, self.me = before
+
+    def visit_Global(self, node: ast.Global) -> None:
+        # An import or assignment here binds the module's name.
+        for name in node.names:
+            self.scope.imports.setdefault(name, self.scope.module.imports.setdefault(name, []))
+
+    def visit_Assign(self, node: ast.Assign) -> None:
+        self.visit(node.value)
+        for target in node.targets:
+            if target.__class__ is ast.Name:
+                self.remember(target.id, node.value)  # type: ignore[attr-defined]
+            elif target.__class__ is not ast.Attribute or not self.hold_own(target, self.type_of(node.value)):  # type: ignore
+                self.visit(target)
+
+    def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
+        self.need(6, node, "variable annotations")
+        self.visit(node.annotation)
+        if node.value is not None:
+            self.visit(node.value)
+            if isinstance(node.target, ast.Name):
+                self.remember(node.target.id, node.value, self.annotated(node.annotation))
+                return
+        if isinstance(node.target, ast.Attribute) and self.hold_own(node.target, self.annotated(node.annotation)):
+            return
+        self.visit(node.target)
+        if isinstance(node.target, ast.Name):
+            self.hold(node.target.id, self.annotated(node.annotation))
+
+    def remember(self, name: str, node: ast.expr, annotated: str = "") -> None:
+        scope = self.scope
+        scope.bound.add(name)
+        value = self.text(node)
+        if name in scope.values and scope.values[name] != value:
+            value = None
+        scope.values[name] = value
+        if node.__class__ is ast.Constant and node.value is None:  # type: ignore[attr-defined]
+            scope.objects.pop(name, None)
+        else:
+            self.hold(name, annotated or self.type_of(node))
+
+    def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
+        self.need(8, node, "assignment expression")
+        self.visit(node.value)
+        self.visit(node.target)
+        self.hold(node.target.id, self.type_of(node.value))
+
+    def visit_Match(self, node) -> None:
+        self.need(10, node, "match statement")
+        self.visit(node.subject)
+        first = len(self.ways)
+        for case in node.cases:
+            self.branch([case])
+        self.merge(first, self.scope.objects)
+
+    def visit_TemplateStr(self, node) -> None:
+        self.need(14, node, "t-string")
+        self.inside(node)
+
+    def visit_TypeAlias(self, node) -> None:
+        self.need(12, node, "type alias statement")
+        self.inside(node)
+
+    def visit_Nonlocal(self, node: ast.Nonlocal) -> None:
+        self.need(0, node, "nonlocal")
+
+    def visit_YieldFrom(self, node: ast.YieldFrom) -> None:
+        self.need(3, node, "yield from")
+        self.visit(node.value)
+
+    def visit_Raise(self, node: ast.Raise) -> None:
+        if node.cause is not None:
+            self.need(0, node, "raise from")
+        self.inside(node)
+
+    # Mentions
+
+    def visit_Constant(self, node: ast.Constant) -> None:
+        if self.has_paths and node.value.__class__ is str:
+            self.mentioned_in(node.value, node)  # type: ignore[arg-type]
+
+    def mentioned_in(self, text: str, node) -> None:
+        for match in _IN_STRING.finditer(text):
+            package = match.group("url") or match.group("find")
+            path = (match.group("url_path") or match.group("find_path") or "").strip("/")
+            self.refer("file" if path else "package", package, path, node)
+
+    def visit_Expr(self, node: ast.Expr) -> None:
+        # A string on its own is documentation.
+        if node.value.__class__ is not ast.Constant:
+            self.visit(node.value)
+
+    def refer(self, kind: str, package: str, name: str, node, conditional: bool = False) -> None:
+        column = self.column(node.lineno, node.col_offset)
+        arguments = self.included if kind == "file" else None
+        reference = Reference(kind, package, name, node.lineno, column, self.conditional or conditional, arguments)
+        self.references[reference] = None
+
+    def all_references(self) -> tuple[Reference, ...]:
+        return tuple(sorted(self.references, key=lambda reference: (reference.line, reference.column)))
+
+    def visit_BinOp(self, node: ast.BinOp) -> None:
+        if node.op.__class__ is ast.Add or node.op.__class__ is ast.Div:
+            self.path(node)
+        elif node.op.__class__ is ast.MatMult:
+            self.need(5, node, "`@` operator")
+        elif node.op.__class__ is ast.RShift and getattr(node.left, "id", "") == "print":
+            self.python2_only.append(Problem(node.lineno, "print statement"))
+        self.visit(node.left)
+        self.visit(node.right)
+
+    def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
+        self.need(6, node, "f-string")
+        if sys.version_info >= (3, 12):
+            self.quotes(node)
+        self.path(node)
+        for value in node.values:
+            if self.has_paths or value.__class__ is ast.FormattedValue:
+                self.visit(value)
+
+    def quotes(self, node: ast.JoinedStr) -> None:
+        """Before 3.12 an expression in an f-string could hold neither the f-string's own quotes nor a backslash."""
+        start = self.line_bytes(node.lineno)[node.col_offset :].decode("utf-8", "replace")
+        match = _QUOTE.match(start)
+        if match is None:
+            return
+        for value in node.values:
+            if isinstance(value, ast.FormattedValue):
+                expression = self.source(value.value)
+                if match.group(1) in expression or "\\" in expression:
+                    self.need(12, node, "quotes or backslash inside an f-string")
+
+    def visit_List(self, node) -> None:
+        if len(node.elts) > 1:
+            self.path(node)
+        for item in node.elts:
+            self.visit(item)
+
+    visit_Tuple = visit_List
+
+    def path(self, node) -> None:
+        """A file reference, when the expression names a file in a package's share folder and nothing around it does."""
+        if id(node) in self.consumed:
+            return
+        value = self.text(node)
+        if isinstance(value, PackagePath) and value.path:
+            self.consumed.update(map(id, ast.walk(node)))
+            self.refer("file", value.package, value.path, node, value.assumed)
+
+    def visit_Call(self, node: ast.Call) -> None:
+        function = self.callee(node.func)
+        keywords = {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
+        before = self.conditional
+        if "condition" in keywords and not isinstance(keywords["condition"], ast.Constant):
+            self.conditional = True
+        if function in JOINS or function in WRAPPERS:
+            self.path(node)
+        elif function in PACKAGE_CALLS or (function in ("get_path", "find") and node.args):
+            self.package_call(node, function)
+        elif function == "DeclareLaunchArgument":
+            name = self.text(node.args[0]) if node.args else None
+            default = self.text(keywords["default_value"]) if "default_value" in keywords else None
+            if isinstance(name, str) and isinstance(default, str):
+                self.launch_defaults[name] = default
+        elif "package" in keywords:
+            self.launched(node, keywords)
+        elif function in _COMMAND_CALLS:
+            self.command(node, keywords)
+        elif function == "FindExecutable":
+            name = self.text(keywords.get("name") or (node.args[0] if node.args else node.func))
+            if isinstance(name, str) and _PROGRAM.fullmatch(name):
+                self.refer("command", "", name, node)
+        elif function == "find_node" or function == "find_resource":
+            texts = [self.text(argument) for argument in node.args[:2]]
+            if len(texts) == 2 and all(isinstance(text, str) for text in texts):
+                self.refer("executable" if function == "find_node" else "file", str(texts[0]), str(texts[1]), node)
+        elif function == "MoveItConfigsBuilder":
+            # moveit_configs_utils looks for <robot>_moveit_config unless told the package.
+            named = keywords.get("package_name")
+            robot = keywords.get("robot_name") or (node.args[0] if node.args else None)
+            told = self.text(named or robot) if named is not None or robot is not None else None
+            if isinstance(told, str) and PACKAGE_NAME.fullmatch(told):
+                self.refer("package", told if named is not None else f"{told}_moveit_config", "", node)
+        elif node.func.__class__ is ast.Name:
+            self.calls.append((self.scope, node.func.id, node, self.conditional))  # type: ignore[attr-defined]
+        if function in CALLING_BACK and self.has_interfaces:
+            self.call_back(node, function)
+        self.use_call(node)
+        if node.func.__class__ is ast.Attribute:
+            self.visit_Attribute(node.func, node)  # type: ignore[arg-type]
+        else:
+            self.visit(node.func)
+        if function == "IncludeLaunchDescription" and node.args:
+            self.included = _launch_arguments(keywords.get("launch_arguments"))
+            self.visit(node.args[0])
+            self.included = None
+            self.block(node.args[1:])
+        else:
+            self.block(node.args)
+        for keyword in node.keywords:
+            self.visit(keyword.value)
+        self.conditional = before
+
+    def package_call(self, node: ast.Call, function: str) -> None:
+        value = self.text(node)
+        argument = node.args[0] if node.args else node.keywords[0].value if node.keywords else node
+        if isinstance(value, PackagePath):
+            if id(node) not in self.consumed:
+                self.consumed.update(map(id, ast.walk(node)))
+                self.refer("package", value.package, "", argument, value.assumed)
+        elif function == "find" or self.defining is None or not isinstance(argument, ast.Name):
+            return
+        elif argument.id in self.scope.parameters:
+            self.lookups[self.defining] = (self.scope.parameters.index(argument.id), argument.id)
+
+    def looked_up_by_functions(self) -> None:
+        """Packages named in calls of this file's own functions that look up a package by a parameter."""
+        for scope, name, node, conditional in self.calls if self.lookups else ():
+            looking: Scope | None = scope
+            while looking is not None and (looking, name) not in self.lookups:
+                looking = looking.parent
+            if looking is None:
+                continue
+            index, parameter = self.lookups[looking, name]
+            argument = node.args[index] if index < len(node.args) else None
+            for keyword in node.keywords:
+                if keyword.arg == parameter:
+                    argument = keyword.value
+            self.scope = scope
+            package = None if argument is None else self.package_name(argument)
+            if argument is not None and package is not None:
+                self.refer("package", package[0], "", argument, conditional or package[1])
+
+    def launched(self, node: ast.Call, keywords: dict) -> None:
+        """Node(package=, executable=), ComposableNode(package=, plugin=) and everything that looks like them."""
+        package = self.package_name(keywords["package"])
+        if package is None:
+            return
+        executable = keywords.get("executable") or keywords.get("node_executable") or keywords.get("exec_name")
+        plugin = keywords.get("plugin") or keywords.get("node_plugin")
+        name = self.text(executable or plugin) if executable or plugin else None
+        if isinstance(name, str) and name:
+            kind = "executable" if executable else "plugin"
+            self.refer(kind, package[0], name, executable or plugin, package[1])
+        else:
+            self.refer("package", package[0], "", keywords["package"], package[1])
+
+    def command(self, node: ast.Call, keywords: dict) -> None:
+        """A program started with literal arguments, and what rosrun, roslaunch and ros2 are told to start."""
+        given = keywords.get("cmd") or keywords.get("args") or keywords.get("command") or next(iter(node.args), None)
+        words: list[str | None] = []
+        if isinstance(given, (ast.List, ast.Tuple)):
+            for item in given.elts:
+                text = self.text(item)
+                words += text.split() if isinstance(text, str) else [None]
+        elif given is not None:
+            text = self.text(given)
+            words = [*text.split()] if isinstance(text, str) else [None]
+        program = words[0] if words else None
+        if program is None or not _PROGRAM.fullmatch(program):
+            return
+        if program == "ros2" and len(words) > 3 and words[1] in ("run", "launch"):
+            kind, words = ("executable" if words[1] == "run" else "file"), words[2:]
+        elif program in ("rosrun", "roslaunch") and len(words) > 2:
+            kind, words = ("executable" if program == "rosrun" else "file"), words[1:]
+        else:
+            self.refer("command", "", program, node)
+            return
+        package, name = words[0], words[1]
+        if package and name and PACKAGE_NAME.fullmatch(package):
+            self.refer(kind, package, name, node)
+
+
+def _launch_arguments(node: ast.expr | None) -> tuple[str, ...] | None:
+    """Names of the arguments that `launch_arguments=` of an include gives; None where they cannot all be told."""
+    if node is None:
+        return ()
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
+        node = node.func.value
+    if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "dict" and not node.args:
+        names: list[object] = [keyword.arg for keyword in node.keywords]
+    elif isinstance(node, ast.Dict):
+        names = [getattr(key, "value", None) for key in node.keys]
+    elif isinstance(node, (ast.List, ast.Tuple)):
+        names = [getattr(pair.elts[0], "value", None) if isinstance(pair, ast.Tuple) and pair.elts else None
+                 for pair in node.elts]  # fmt: skip
+    else:
+        return None
+    found = tuple(name for name in names if isinstance(name, str))
+    return found if len(found) == len(names) else None
+
+
+def _last_name(node) -> str:
+    return getattr(node, "id", None) or getattr(node, "attr", "")
+
+
+_HANDLERS = node_methods(Reader, "visit_")

@@ -1,0 +1,208 @@
+"""Python sources to facts: imports, names used, and mentions of packages (launch files in Python included)."""
+
+import ast
+import codecs
+import re
+import warnings
+from functools import lru_cache
+from typing import NamedTuple
+
+import msgspec
+
+from ..markup import text_encoding
+from ..place import Problem, Reference
+from ..words import words_of
+from . import python2
+from .reader import TRY, Attribute, Import, Reader
+from .uses import FieldUse, PythonUse
+
+
+class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """imports, attributes and references in the order of the source.
+
+    python2_only: (line, what) of syntax that Python 3 refuses (print statement, except X, e, backticks ...), found when
+    the file does not parse, and `print >>f`, which parses and then fails. needs: the highest minor version of Python 3
+    its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
+    has and Python 2 has not), or None. interpreter: the first line when it is a `#!` that names python. main: has an
+    `if __name__ == '__main__'` block. uses: what calls and objects tell besides the attributes. fields: of interfaces.
+    words: see words_of().
+    """
+
+    imports: tuple[Import, ...]
+    attributes: tuple[Attribute, ...]
+    references: tuple[Reference, ...]
+    python2_only: tuple[Problem, ...] = ()
+    needs: tuple[int, int, str] | None = None
+    interpreter: str = ""
+    main: bool = False
+    problems: tuple[Problem, ...] = ()
+    uses: tuple[PythonUse, ...] = ()
+    words: str = ""
+    fields: tuple[FieldUse, ...] = ()
+
+
+class Source(NamedTuple):
+    """A source and its syntax tree. text: decoded, with `\\n` as the end of line. parsed: what the tree was made from:
+    the text, or where Python 2 was rewritten the same lines with other words. tree: None for what does not parse.
+    python2_only: as in PythonFile, of a text that was refused."""
+
+    text: str
+    parsed: str
+    tree: ast.Module | None
+    python2_only: tuple[Problem, ...]
+    problems: tuple[Problem, ...]
+
+
+_COOKIE = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
+_SHEBANG = re.compile(r"#!.*python")
+_IMPORT_LINE = re.compile(
+    r"^(?P<indent>[ \t]*)(?:import[ \t]+(?P<modules>[\w., \t]+)"
+    r"|from[ \t]+(?![ \t])(?P<dots>\.*)(?!\.)(?:[ \t]*(?P<module>[\w.]+))?[ \t]+import[ \t]*"
+    r"(?P<names>\([^()]*\)|[\w.*, \t]+))",
+    re.MULTILINE,
+)
+
+
+def _decode(data: bytes) -> tuple[str, tuple[Problem, ...]]:
+    """The text of a source by its byte order mark or coding comment, as PEP 263 says, UTF-8 without."""
+    problems: list[Problem] = []
+    if data[:3] == codecs.BOM_UTF8:
+        data = data[3:]
+    encoding, cookie_line = "utf-8", 1
+    for number, line in enumerate(data.split(b"\n", 2)[:2], 1):
+        cookie = _COOKIE.match(line)
+        if cookie:
+            encoding, cookie_line = cookie.group(1).decode("ascii", "replace").lower(), number
+            break
+        if line.strip() and not line.lstrip().startswith(b"#"):
+            break
+    try:
+        text = data.decode(text_encoding(encoding))
+    except LookupError:
+        problems.append(Problem(cookie_line, f"unknown encoding `{encoding}`"))
+        text = data.decode("utf-8", "replace")
+    except (UnicodeError, ValueError) as error:
+        at = error.start if isinstance(error, UnicodeDecodeError) else 0
+        problems.append(Problem(data.count(b"\n", 0, at) + 1, f"not {encoding} text"))
+        text = data.decode("latin-1")
+    if not text.isascii():
+        # Escapes of odd codecs may give lone surrogates, which no fact can hold.
+        text = text.encode("utf-8", "replace").decode("utf-8")
+    if "\r" in text:
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
+    return text, tuple(problems)
+
+
+def _parse(text: str) -> ast.Module:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return ast.parse(text)
+
+
+def _as_python2(text: str, error: SyntaxError) -> tuple[tuple[Problem, ...], ast.Module | None, str]:
+    """What only Python 2 reads in a refused text, the tree of the text rewritten, when that parses, and that text."""
+    old, rewritten = python2.find(text)
+    tabs = error if isinstance(error, TabError) else None
+    for _ in range(2):
+        if tabs is not None:
+            old = (*old, Problem(tabs.lineno or 1, "tabs mixed with spaces"))
+            rewritten = python2.without_tabs(rewritten)
+        if not old:
+            break
+        try:
+            return old, _parse(rewritten), rewritten
+        except TabError as again:
+            tabs = again
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            break
+    return old, None, text
+
+
+@lru_cache(maxsize=1)
+def read(data: bytes) -> Source:
+    """One Python source parsed by this interpreter's own parser, Python 2 as far as it can be rewritten. Never raises.
+
+    The last source is remembered for the second look that message flow takes at it. Syntax newer than this interpreter
+    is a problem, never `python2_only`.
+    """
+    text, problems = _decode(data)
+    try:
+        return Source(text, text, _parse(text), (), problems)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        old, tree, rewritten = _as_python2(text, error) if isinstance(error, SyntaxError) else ((), None, text)
+        if not old:
+            line = min(getattr(error, "lineno", None) or 1, text.count("\n") + 1)
+            what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
+            problems = (*problems, Problem(line, f"not parsed: {what}"))
+        return Source(text, rewritten, tree, old, problems)
+
+
+def extract(data: bytes) -> PythonFile:
+    """The facts of one Python file. Never raises.
+
+    Where the file cannot be parsed, imports are read line by line and all else is left out.
+    """
+    text, parsed, tree, old, problems = read(data)
+    first_line = text.split("\n", 1)[0]
+    interpreter = first_line.strip() if _SHEBANG.match(first_line) else ""
+    if tree is not None:
+        try:
+            reader = Reader(parsed, text)
+            reader.read(tree)
+            return PythonFile(
+                imports=tuple(reader.imports),
+                attributes=reader.attributes(),
+                references=reader.all_references(),
+                python2_only=old or tuple(reader.python2_only),
+                needs=None if old else reader.needs,
+                interpreter=interpreter,
+                main=reader.main,
+                problems=problems,
+                uses=reader.object_uses(reader.column),
+                words=words_of(data),
+                fields=reader.field_uses(reader.column),
+            )
+        except RecursionError:
+            problems = (*problems, Problem(1, "nested too deeply"))
+    return PythonFile(
+        imports=_imports_by_line(text),
+        attributes=(),
+        references=(),
+        python2_only=old,
+        interpreter=interpreter,
+        main="__main__" in text,
+        problems=problems,
+        words=words_of(data),
+    )
+
+
+def _imports_by_line(text: str) -> tuple[Import, ...]:
+    """Imports of text that no parser reads: by their look. An indented one is taken for optional, whatever it is in."""
+    visible = python2.mask(text)
+    imports: list[Import] = []
+    line, at = 1, 0
+    for match in _IMPORT_LINE.finditer(visible):
+        start = match.end("indent")
+        line += visible.count("\n", at, start)
+        at = start
+        column = len(match.group("indent")) + 1
+        conditions = (TRY,) if column > 1 else ()
+        if match.group("modules") is not None:
+            for module in match.group("modules").split(","):
+                words = module.split()
+                if words:
+                    imports.append(Import(words[0], (), 0, line, column, column > 1, conditions))
+        else:
+            names = [part.split() for part in match.group("names").strip("()").split(",")]
+            imports.append(
+                Import(
+                    match.group("module") or "",
+                    tuple(words[0] for words in names if words),
+                    len(match.group("dots")),
+                    line,
+                    column,
+                    column > 1,
+                    conditions,
+                )
+            )
+    return tuple(imports)

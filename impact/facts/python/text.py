@@ -1,0 +1,119 @@
+"""The source of parts of a Python syntax tree, and the pieces of strings that are put together."""
+
+import ast
+import re
+import string
+
+# A comment, or a string in which a `#` is none.
+_COMMENT = re.compile(r"(\"\"\"[\s\S]*?\"\"\"|'''[\s\S]*?'''|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*')|#[^\n]*|\\\n")
+_PERCENT = re.compile(
+    r"%(?:\((?P<key>[^()]*)\))?[#0\- +]*(?P<width>\*|[1-9]\d*)?(?:\.(?P<precision>\*|\d+))?[hlL]?"
+    r"(?P<kind>[diouxXeEfFgGcrsa%])"
+)
+_AT_MOST_LINES = 40
+
+
+def child_fields(*left_out: str) -> dict[type, tuple[str, ...]]:
+    """For every node class the fields that can hold nodes, all but those left out."""
+    fields = {
+        cls: tuple(field for field in cls._fields if field not in left_out)
+        for cls in vars(ast).values()
+        if isinstance(cls, type) and issubclass(cls, ast.AST)
+    }
+    # Their fields hold strings and constants, not nodes.
+    return {**fields, **dict.fromkeys((ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton), ())}
+
+
+class Text:
+    """The text that a syntax tree was made from, by lines."""
+
+    def __init__(self, text: str) -> None:
+        self.lines = text.split("\n")
+        # Inside strings of several lines, the places that nodes tell differ between interpreters.
+        self.unplaced = False
+
+    def source(self, node) -> str:
+        """The source of an expression or pattern, white space as single blanks, comments left out."""
+        if self.unplaced:
+            return " ".join(printable(ast.unparse(node)).split())
+        first, last = node.lineno - 1, node.end_lineno - 1
+        lines = self.lines
+        if first == last:
+            line = lines[first]
+            if line.isascii():
+                text = line[node.col_offset : node.end_col_offset]
+            else:
+                encoded = line.encode("utf-8", "replace")[node.col_offset : node.end_col_offset]
+                text = encoded.decode("utf-8", "replace")
+            return text if "  " not in text and "\t" not in text else " ".join(text.split())
+        parts = [line.encode("utf-8", "replace") for line in lines[first : min(last + 1, first + _AT_MOST_LINES)]]
+        if last < first + _AT_MOST_LINES:
+            parts[-1] = parts[-1][: node.end_col_offset]
+        parts[0] = parts[0][node.col_offset :]
+        text = b"\n".join(parts).decode("utf-8", "replace")
+        return " ".join(_COMMENT.sub(lambda match: match.group(1) or " ", text).split())
+
+    def column(self, line: int, offset: int) -> int:
+        """A parser's offset in UTF-8 bytes as a column in characters, from 1."""
+        text = self.lines[line - 1]
+        if text.isascii():
+            return min(offset, len(text)) + 1
+        return len(text.encode("utf-8", "replace")[:offset].decode("utf-8", "ignore")) + 1
+
+
+def printable(text: str) -> str:
+    """The text without lone surrogates, which no fact can hold."""
+    return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")
+
+
+def percent_pieces(text: str) -> list[str | int | tuple[str]] | None:
+    """What `text % values` is made of: literal text, places in a tuple of values, or (key,) of a mapping; None for what
+    is no format or takes its widths from values."""
+    pieces: list[str | int | tuple[str]] = []
+    literal, at, number = "", 0, 0
+    for match in _PERCENT.finditer(text):
+        before = text[at : match.start()]
+        if "%" in before or match.group("width") == "*" or match.group("precision") == "*":
+            return None
+        literal += before
+        at = match.end()
+        if match.group("kind") == "%":
+            literal += "%"
+            continue
+        if literal:
+            pieces.append(literal)
+            literal = ""
+        if match.group("key") is not None:
+            pieces.append((match.group("key"),))
+        else:
+            pieces.append(number)
+            number += 1
+    literal += text[at:]
+    if "%" in text[at:]:
+        return None
+    if literal:
+        pieces.append(literal)
+    return pieces
+
+
+def format_pieces(text: str) -> list[str | int | tuple[str]] | None:
+    """What `text.format(...)` is made of: literal text, places of positional arguments, or (name,) of keywords, members
+    and elements included; None for what is no format."""
+    pieces: list[str | int | tuple[str]] = []
+    number = 0
+    try:
+        for literal, field, spec, _ in string.Formatter().parse(text):
+            if literal:
+                pieces.append(literal)
+            if field is None:
+                continue
+            if spec and "{" in spec:
+                return None
+            if not field:
+                pieces.append(number)
+                number += 1
+            else:
+                pieces.append(int(field) if field.isdecimal() else (field,))
+    except ValueError:
+        return None
+    return pieces

@@ -1,0 +1,473 @@
+"""What a Python source does with things of other packages: calls with their arguments, members of objects whose class
+shows, methods that override; and fields and constants of interfaces.
+
+A class shows where a name is bound to what its constructor gives, where a parameter or variable is annotated with it,
+and in `self` and `super()` of a subclass; that of a message also in the callback it is handed to, and in what is a
+field of another. Nothing outside of the file is looked at.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import msgspec
+
+from ..condition import Condition
+from .values import Scope, Values
+
+
+class Given(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """The arguments of a call. positional: how many. open: `*args` or `**kwargs` gives more."""
+
+    positional: int
+    keywords: tuple[str, ...] = ()
+    open: bool = False
+
+
+class PythonUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A use of something of another module, the first one like it.
+
+    name: dotted, import aliases resolved; a relative import has leading dots. A member of an object is called by what
+    made the object, `pkg.mod.Class.member`, whether that is a class or a function.
+    how: `call`, `method` (a call of a member of an object), `member` (of an object, not called) or `override` (a method
+    that a class defines; name is then that of the base's). given: of a call. parameters: of an override, as Python
+    writes them, defaults as `...`.
+    lazy: only a function that may not run uses it. alone: no other base class is known, or not known, that could have
+    the member.
+    """
+
+    name: str
+    how: str
+    line: int
+    column: int
+    given: Given | None = None
+    parameters: str = ""
+    lazy: bool = False
+    alone: bool = True
+    conditions: tuple[Condition, ...] = ()
+
+
+class FieldUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """The first use like it of a member of an interface. type: dotted, `pkg.msg.Name`, `pkg.srv.Name.Request`. steps:
+    fields on the way, ELEMENT for an element of a sequence; the last is the member that is used. line, column: of it.
+    """
+
+    type: str
+    steps: tuple[str, ...]
+    line: int
+    column: int
+
+
+class _Class:
+    """A class of the file. bases: as types. members: what it defines itself. objects: types of what `self` holds."""
+
+    def __init__(self, bases: list[str]):
+        self.bases = bases
+        self.members: set[str] = set()
+        self.objects: dict[str, str] = {}
+        self.methods: dict[str, tuple[int, int, str]] = {}
+
+
+class _Raw(NamedTuple):
+    type: str
+    member: str
+    given: Given | None
+    line: int
+    offset: int
+    lazy: bool
+    conditions: tuple[Condition, ...]
+
+
+# A type is a dotted name; of the file's own classes the name after this mark. Empty: not known. Behind a dot stands
+# what is a member of such an object; whether that is a field shows at the end.
+OWN = ":"
+# A parameter of a function that may be a callback: `@name:how many:which`.
+_HANDED = "@"
+KINDS = frozenset(("msg", "srv", "action"))
+SECTIONS = frozenset(("Request", "Response", "Goal", "Result", "Feedback"))
+ELEMENT = "[]"
+_INTERFACE = re.compile(rf"\w+\.(?:{'|'.join(sorted(KINDS))})\.[A-Z]\w*(?:\.(?:{'|'.join(sorted(SECTIONS))}))?(?![^.])")
+_MENTIONS_INTERFACES = re.compile(r"\b(?:msg|srv|action)\b")
+_ASK_FOR_MESSAGES = frozenset(("create_subscription", "Subscriber"))
+CALLING_BACK = _ASK_FOR_MESSAGES | {"create_service", "Service"}
+_DEEPEST = 40
+_DOTTED = re.compile(r"\.*[A-Za-z_][\w.]*\Z")
+SURE_TO_RUN = frozenset(("generate_launch_description", "main"))
+
+
+class Objects(Values):
+    """What the walk notes of objects and calls; finished by object_uses()."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.classes: dict[str, _Class] = {}
+        self.inside_class: _Class | None = None
+        # First parameters of the methods around, by which the object is called.
+        self.me = ""
+        self.raw: dict[tuple, _Raw] = {}
+        self.has_interfaces = _MENTIONS_INTERFACES.search(text) is not None
+        # Type and member to the place.
+        self.raw_fields: dict[tuple[str, str], tuple[int, int]] = {}
+        # Of functions that are handed over as callbacks, by name: the types of their parameters.
+        self.called_back: dict[str, set[tuple[str, ...]]] = {}
+        # What names hold at the end of the branches of the statement that is read.
+        self.ways: list[dict[str, str]] = []
+        # In a function that may not run, or under a condition.
+        self.lazy = False
+        self.conditional = False
+        # Tests about the interpreter or the machine that hold here.
+        self.use_conditions: tuple[Condition, ...] = ()
+        # The same of calls alone.
+        self.call_conditions: tuple[Condition, ...] = ()
+
+    @property
+    def may_not_run(self) -> bool:
+        """True where reading or starting the file does not surely come by."""
+        return self.lazy or self.conditional
+
+    # What things are
+
+    def type_of(self, node) -> str:
+        """The type of an expression's value, empty where it does not show."""
+        if node.__class__ is ast.Call:
+            return self.called(node.func)
+        if node.__class__ is ast.Name:
+            return self.object(node.id)
+        if not self.has_interfaces:
+            return ""
+        if node.__class__ is ast.Attribute:
+            if node.value.__class__ is ast.Name and node.value.id == self.me and self.inside_class is not None:
+                return f"{OWN}{id(self.inside_class)}.{node.attr}"
+            return field_type(self.type_of(node.value), node.attr)
+        if node.__class__ is ast.Subscript and node.slice.__class__ is not ast.Slice:
+            return field_type(self.type_of(node.value), ELEMENT)
+        return ""
+
+    def called(self, node) -> str:
+        """What a callee is: a dotted name of another module, or a class of the file."""
+        parts: list[str] = []
+        while node.__class__ is ast.Attribute:
+            parts.append(node.attr)
+            node = node.value
+        if node.__class__ is not ast.Name:
+            return ""
+        looking: Scope | None = self.scope
+        while looking is not None:
+            known = looking.imports.get(node.id)
+            if known is not None:
+                # What several imports bind, or one under a condition, is left to those who watch single names.
+                plain = len(known) == 1 and not known[0][1] and node.id not in looking.bound
+                return ".".join([known[0][0], *reversed(parts)]) if plain else ""
+            if node.id in looking.bound:
+                return f"{OWN}{node.id}" if not parts and node.id in self.classes else ""
+            looking = looking.parent
+        return ""
+
+    def object(self, name: str) -> str:
+        """The type of what a variable holds."""
+        looking: Scope | None = self.scope
+        while looking is not None:
+            if name in looking.objects:
+                return looking.objects[name]
+            if name in looking.bound:
+                return ""
+            looking = looking.parent
+        return ""
+
+    def annotated(self, node) -> str:
+        """The type that an annotation names, in quotes or not."""
+        if node.__class__ is ast.Constant and node.value.__class__ is str and _DOTTED.match(node.value):
+            try:
+                node = ast.parse(node.value, mode="eval").body
+            except (SyntaxError, ValueError):
+                return ""
+        return self.called(node) if node.__class__ in (ast.Name, ast.Attribute) else ""
+
+    def hold(self, name: str, type_: str) -> None:
+        """A variable of the scope is bound."""
+        self.scope.objects[name] = type_
+
+    def repeat(self, loop: ast.AST) -> None:
+        """A loop begins, in which a variable that it binds itself has a type only where that stays the same."""
+        objects = self.scope.objects
+        same: set[int] = set()
+        for node in ast.walk(loop) if any(objects.values()) else ():
+            if node.__class__ is ast.Assign:
+                type_ = self.type_of(node.value)  # type: ignore[attr-defined]
+                targets = node.targets if type_ else ()  # type: ignore[attr-defined]
+                same.update(id(target) for target in targets if objects.get(getattr(target, "id", "")) == type_)
+            elif getattr(node, "id", "") in objects and isinstance(node.ctx, ast.Store) and id(node) not in same:  # type: ignore[attr-defined]
+                objects[node.id] = ""  # type: ignore[attr-defined]
+
+    def handed(self, function) -> None:
+        """Parameters of a function that is entered, which show their types where it is a callback."""
+        positional = [*function.args.posonlyargs, *function.args.args]
+        # None stands for what is yet to come.
+        defaults = zip(reversed(positional), reversed(function.args.defaults), strict=False)
+        given = {argument.arg for argument, default in defaults if getattr(default, "value", 0) is None}
+        self.scope.objects.update(dict.fromkeys(self.scope.bound - given, ""))
+        if self.inside_class is not None and positional[:1] and positional[0].arg == "self":
+            del positional[0]
+        if self.has_interfaces and 0 < len(positional) < 3 and not any(one.annotation for one in positional):
+            for place, one in enumerate(positional):
+                self.scope.objects[one.arg] = f"{_HANDED}{function.name}:{len(positional)}:{place}"
+
+    def call_back(self, call: ast.Call, function: str) -> None:
+        """A call that asks for messages or requests of one interface, and names who gets them."""
+        arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
+        types = [type_ for one in arguments if _INTERFACE.fullmatch(type_ := self.annotated(one))]
+        if len(types) != 1:
+            return
+        given = (types[0],) if function in _ASK_FOR_MESSAGES else (f"{types[0]}.Request", f"{types[0]}.Response")
+        for one in arguments:
+            own = isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id == "self"
+            name = one.attr if own else getattr(one, "id", "")  # type: ignore[attr-defined]
+            if name:
+                self.called_back.setdefault(name, set()).add(given)
+
+    def merge(self, first: int, *others: dict[str, str]) -> None:
+        """Names hold behind a statement what they hold at the end of those of its branches that bind them: of those
+        noted since first, and others."""
+        merged: dict[str, str] = {}
+        for way in (*self.ways[first:], *others):
+            for name, type_ in way.items():
+                merged[name] = type_ if merged.get(name, type_) == type_ else ""
+        self.scope.objects = merged
+        del self.ways[first:]
+
+    def hold_own(self, target: ast.Attribute, type_: str) -> bool:
+        """`self.name = ...`; True where the target is such."""
+        inside = self.inside_class
+        if inside is None or target.value.__class__ is not ast.Name or target.value.id != self.me:  # type: ignore
+            return False
+        inside.members.add(target.attr)
+        inside.objects[target.attr] = type_ if inside.objects.get(target.attr, type_) == type_ else ""
+        return True
+
+    # What is used
+
+    def use_member(self, type_: str, steps: list[ast.Attribute], call: ast.Call | None) -> None:
+        """`object.a.b`, called or not. type_: of the object. steps: the nodes of its members, the last is the whole."""
+        own, outer = type_[:1] == OWN and "." not in type_, steps[-1]
+        if outer.ctx.__class__ is ast.Load:
+            given = _given(call) if call is not None else None
+            if type_ != f"{OWN}{id(self.inside_class)}" or len(steps) == 1:
+                self.note(type_, steps[0].attr, given if len(steps) == 1 else None, outer)
+            elif len(steps) == 2:
+                self.note(f"{type_}.{steps[0].attr}", steps[1].attr, given, outer)
+        if self.has_interfaces:
+            if own:
+                type_, steps = f"{type_}.{steps[0].attr}", steps[1:]
+            self.use_fields(type_, steps, call)
+
+    def use_constant(self, steps: list[ast.Attribute], call: ast.Call | None) -> None:
+        """`Name.CONSTANT`, and what follows, of an interface that an import brings."""
+        path = self.called(steps[-1])
+        known = _INTERFACE.match(path)
+        if known is not None:
+            self.use_fields(known.group(), steps[len(steps) - path.count(".", known.end()) :], call)
+
+    def use_fields(self, type_: str, steps: list[ast.Attribute], call: ast.Call | None) -> None:
+        """Members of an object that may be fields of an interface; what is called is none."""
+        for step in steps if call is None else steps[:-1]:
+            if not _has_fields(type_):
+                break
+            line, end = step.end_lineno or 0, step.end_col_offset or 0
+            self.use_field(type_, step.attr, (line, end - len(step.attr.encode())))
+            type_ = field_type(type_, step.attr)
+
+    def use_of_super(self, member: str, call: ast.Call | None, node) -> None:
+        """`super().member`."""
+        for base in self.inside_class.bases if self.inside_class is not None else ():
+            self.note(base, member, _given(call) if call is not None else None, node)
+
+    def use_call(self, call: ast.Call) -> None:
+        """A call of something that an import brought."""
+        name = self.called(call.func)
+        if name and name[0] != OWN and not _standard(name):
+            self.note(name, "", _given(call), call.func)
+            if _INTERFACE.fullmatch(name):
+                for keyword in call.keywords:
+                    if keyword.arg is not None:
+                        self.use_field(name, keyword.arg, (keyword.lineno, keyword.col_offset))
+
+    def use_field(self, type_: str, name: str, place: tuple[int, int]) -> None:
+        self.raw_fields[type_, name] = min(place, self.raw_fields.get((type_, name), place))
+
+    def note(self, type_: str, member: str, given: Given | None, node) -> None:
+        if not type_ or (type_[0] != OWN and _standard(type_)) or _is_field(type_):
+            return
+        conditions = self.use_conditions if given is None else (*self.use_conditions, *self.call_conditions)
+        lazy = self.may_not_run
+        key = (type_, member, given, conditions, lazy)
+        if key not in self.raw:
+            self.raw[key] = _Raw(type_, member, given, node.lineno, node.col_offset, lazy, conditions)
+
+    # Classes and functions
+
+    def enter_class(self, node: ast.ClassDef) -> _Class:
+        """A class of the file, from here on known by its name."""
+        found = _Class([self.called(base) for base in node.bases])
+        if node.keywords:
+            found.bases.append("")  # a metaclass may add members
+        known = self.classes.get(node.name)
+        self.classes[node.name] = found
+        if known is not None:
+            known.bases.append("")
+            found.bases.append("")
+        self.classes[str(id(found))] = found
+        return found
+
+    def enter_method(self, node) -> None:
+        """A function right in the body of a class."""
+        inside = self.inside_class
+        if inside is None:
+            return
+        inside.members.add(node.name)
+        plain = all(getattr(d, "id", "") in ("", "override") for d in node.decorator_list)
+        if plain and not node.name.startswith("_"):
+            column = node.col_offset + (4 if node.__class__ is ast.FunctionDef else 10)
+            inside.methods[node.name] = (node.lineno, column, _parameters(node.args))
+
+    # The end
+
+    def object_uses(self, column: Callable[[int, int], int]) -> tuple[PythonUse, ...]:
+        """Every use of what is not the file's own, in the order of the source. column: of a line and an offset."""
+        found: dict[tuple, PythonUse] = {}
+        for raw in self.raw.values():
+            how = "member" if raw.given is None else "method" if raw.member else "call"
+            for type_, alone in self.types(raw):
+                name = f"{type_}.{raw.member}" if raw.member else type_
+                key = (name, how, raw.given, raw.conditions)
+                known = found.get(key)
+                if known is None or (known.lazy and not raw.lazy):
+                    at = column(raw.line, raw.offset)
+                    found[key] = PythonUse(name, how, raw.line, at, raw.given, "", raw.lazy, alone, raw.conditions)
+        for key, one in self.classes.items():
+            bases = [] if key.isdigit() else [base for base, _ in self.bases(one) if base and not _standard(base)]
+            for base in bases:
+                for method, (line, offset, parameters) in one.methods.items():
+                    name, at = f"{base}.{method}", column(line, offset)
+                    found[name, line] = PythonUse(name, "override", line, at, None, parameters)
+        return tuple(sorted(found.values(), key=lambda use: (use.line, use.column, use.name)))
+
+    def field_uses(self, column: Callable[[int, int], int]) -> tuple[FieldUse, ...]:
+        """Every use of a field or constant of an interface, in the order of the source."""
+        found: dict[str, FieldUse] = {}
+        for (type_, member), (line, offset) in self.raw_fields.items():
+            path = f"{self.resolved(type_)}.{member}"
+            known = _INTERFACE.match(path)
+            if known is not None and known.end() < len(path):
+                steps = tuple(path[known.end() + 1 :].split("."))
+                use = FieldUse(known.group(), steps, line, column(line, offset))
+                found[path] = min(use, found.get(path, use), key=lambda use: (use.line, use.column))
+        return tuple(sorted(found.values(), key=lambda use: (use.line, use.column)))
+
+    def resolved(self, type_: str) -> str:
+        """A type whose first part is one of another module, where it shows; empty elsewhere."""
+        for _ in range(_DEEPEST):
+            head, _, rest = type_[1:].partition(".")
+            if type_[:1] == _HANDED:
+                name, count, place = head.split(":")
+                (types, *others) = self.called_back.get(name, ((),))
+                type_ = types[int(place)] if not others and int(count) <= len(types) else ""
+            elif type_[:1] == OWN and rest and head in self.classes:
+                name, _, rest = rest.partition(".")
+                type_ = self.held(self.classes[head], name)
+            else:
+                return type_
+            if rest:
+                type_ = f"{type_}.{rest}" if type_ and (type_[0] == OWN or _has_fields(type_)) else ""
+        return ""
+
+    def types(self, raw: _Raw) -> Iterator[tuple[str, bool]]:
+        """The types of other modules that a use may be of, and whether it is the only one."""
+        type_ = self.resolved(raw.type) if "." in raw.type else raw.type
+        if type_[:1] != OWN:
+            if type_ and (type_ == raw.type or not _standard(type_)):
+                yield type_, True
+            return
+        one = self.classes.get(type_[1:])
+        if one is None:
+            return
+        bases = list(self.bases(one))
+        if raw.member in one.members or any(raw.member in self.classes[own].members for _, own in bases if own):
+            return
+        outside = [base for base, own in bases if not own]
+        yield from ((base, len(outside) == 1) for base in outside if base and not _standard(base))
+
+    def held(self, one: _Class, attribute: str) -> str:
+        for own in (one, *(self.classes[name] for _, name in self.bases(one) if name)):
+            if attribute in own.objects:
+                return own.objects[attribute]
+        return ""
+
+    def bases(self, one: _Class) -> Iterator[tuple[str, str]]:
+        """All base classes over any number of steps: (dotted, "") of other modules, ("", name) of the file, ("", "")
+        where it is not known."""
+        seen: set[str] = set()
+        todo = list(one.bases)
+        while todo:
+            base = todo.pop(0)
+            if not base or base[0] != OWN:
+                yield base, ""
+            elif base not in seen:
+                seen.add(base)
+                yield "", base[1:]
+                todo += self.classes[base[1:]].bases
+
+
+def _has_fields(type_: str) -> bool:
+    """Whether members of an object may be fields of an interface."""
+    return type_[:1] == _HANDED or ("." in type_ if type_[:1] == OWN else _INTERFACE.match(type_) is not None)
+
+
+def _is_field(type_: str) -> bool:
+    """Whether a type is none but what a field holds, so that its members are nobody else's."""
+    if type_[0] in (OWN, _HANDED):
+        return type_[0] == _HANDED or type_.count(".") > 1
+    known = _INTERFACE.match(type_)
+    return known is not None and known.end() < len(type_)
+
+
+def field_type(type_: str, name: str) -> str:
+    """The type of a field of an object, empty where it has none that anybody asks for."""
+    return f"{type_}.{name}" if type_ and _has_fields(type_) and type_.count(".") < _DEEPEST else ""
+
+
+def _standard(name: str) -> bool:
+    """Whether a dotted name is one of Python's own library, in which no package of ROS has anything."""
+    return name.partition(".")[0] in sys.stdlib_module_names
+
+
+def _given(call: ast.Call) -> Given:
+    positional = [a for a in call.args if a.__class__ is not ast.Starred]
+    keywords = tuple(k.arg for k in call.keywords if k.arg is not None)
+    return Given(len(positional), keywords, len(positional) + len(keywords) < len(call.args) + len(call.keywords))
+
+
+def _parameters(arguments: ast.arguments) -> str:
+    """Parameters of a method without the first, as Python writes them."""
+    positional = [*arguments.posonlyargs, *arguments.args]
+    required = len(positional) - len(arguments.defaults)
+    texts = [a.arg + ("" if at < required else "=...") for at, a in enumerate(positional)]
+    if arguments.posonlyargs:
+        texts.insert(len(arguments.posonlyargs), "/")
+    del texts[:1]
+    if texts[:1] == ["/"]:
+        del texts[:1]
+    if arguments.vararg is not None:
+        texts.append(f"*{arguments.vararg.arg}")
+    elif arguments.kwonlyargs:
+        texts.append("*")
+    texts += [
+        a.arg + ("" if default is None else "=...")
+        for a, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+    ]
+    if arguments.kwarg is not None:
+        texts.append(f"**{arguments.kwarg.arg}")
+    return f"({', '.join(texts)})"

@@ -1,0 +1,181 @@
+"""What expressions of a Python source are known to be, without running it: text, or a place in a package.
+
+Module-level and local names bound to one such value count; anything else is unknown.
+"""
+
+import ast
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from ....edges.dispatch import node_methods
+from ..condition import Condition
+from .constants import Constants, PackagePath, path_of, put_together
+
+# Functions and launch substitutions whose first argument is a package's name.
+PACKAGE_CALLS = frozenset(
+    (
+        "get_package_share_directory",
+        "get_package_share_path",
+        "get_package_prefix",
+        "get_pkg_dir",
+        "load_manifest",
+        "FindPackage",
+        "FindPackagePrefix",
+        "FindPackageShare",
+    )
+)
+JOINS = frozenset(("join", "joinpath", "PathJoinSubstitution"))
+# Wrappers through which the first argument's value passes unchanged, as far as naming a file goes.
+WRAPPERS = frozenset(
+    (
+        "abspath",
+        "normpath",
+        "realpath",
+        "expanduser",
+        "str",
+        "Path",
+        "PurePath",
+        "PythonLaunchDescriptionSource",
+        "AnyLaunchDescriptionSource",
+        "FrontendLaunchDescriptionSource",
+        "XMLLaunchDescriptionSource",
+        "YAMLLaunchDescriptionSource",
+        "TextSubstitution",
+        "ParameterFile",
+        "as_posix",
+        "resolve",
+    )
+)
+PACKAGE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_\-]*")
+VALUED = frozenset((ast.Constant, ast.Name, ast.BinOp, ast.JoinedStr, ast.List, ast.Tuple, ast.Call))
+
+
+class Scope:
+    """Names of a module, class or function: imported, otherwise bound, and bound to a known value."""
+
+    __slots__ = ("bound", "imports", "is_class", "module", "objects", "parameters", "parent", "values")
+
+    def __init__(self, parent: "Scope | None", is_class: bool) -> None:
+        # A class body is no scope for the functions in it.
+        while parent is not None and parent.is_class and not is_class:
+            parent = parent.parent
+        self.parent = parent
+        self.is_class = is_class
+        self.imports: dict[str, list[tuple[str, tuple[Condition, ...]]]] = {}
+        self.bound: set[str] = set()
+        self.values: dict[str, object] = {}
+        # Types of what variables hold, see python_objects.py.
+        self.objects: dict[str, str] = {}
+        self.parameters: list[str] = []
+        self.module: Scope = self if parent is None else parent.module
+
+
+class Values(Constants):
+    """Evaluates expressions within the scope being read. Launch arguments count by their declared default."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.has_rospkg = "rospkg" in text
+        self.scope = Scope(None, False)
+        self.launch_defaults: dict[str, str] = {}
+
+    def imported(self, name: str, scope: Scope | None = None) -> list[tuple[str, tuple[Condition, ...]]]:
+        """What a name stands for by the imports in view; empty when it is bound otherwise."""
+        looking: Scope | None = scope or self.scope
+        while looking is not None:
+            if name in looking.imports:
+                return looking.imports[name]
+            if name in looking.bound:
+                return []
+            looking = looking.parent
+        return []
+
+    def text(self, node) -> str | PackagePath | None:
+        """The text or the place in a package that an expression is known to be. A list is one text, as substitutions
+        of a launch file are."""
+        value = self.value(node) if node.__class__ in VALUED else None
+        if isinstance(value, list):
+            value = put_together(_flat(value))
+        return str(value) if isinstance(value, str) else value if isinstance(value, PackagePath) else None
+
+    def value_Name(self, node: ast.Name) -> Any:
+        scope: Scope | None = self.scope
+        while scope is not None:
+            if node.id in scope.values:
+                return scope.values[node.id]
+            if node.id in scope.bound:
+                return None
+            scope = scope.parent
+        return None
+
+    def value_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
+        return super().value_List(node) if len(node.elts) <= 20 else None  # a longer one is data
+
+    value_Tuple = value_List
+
+    def value_IfExp(self, node: ast.IfExp) -> None:
+        return None
+
+    def result(self, call: ast.Call) -> Any:
+        function, receiver = self.callee(call.func), getattr(call.func, "value", None)
+        if function in PACKAGE_CALLS or (function == "get_path" and self.has_rospkg):
+            return self.package_folder(call)
+        if function == "find" and isinstance(receiver, ast.Call) and self.callee(receiver.func) in PACKAGE_CALLS:
+            return self.package_folder(call)
+        if function in JOINS:
+            arguments = call.args
+            if len(arguments) == 1 and isinstance(arguments[0], (ast.List, ast.Tuple)):
+                arguments = arguments[0].elts
+            if function == "joinpath" and receiver is not None:
+                arguments = [receiver, *arguments]
+            return path_of(map(self.text, arguments), call.lineno)
+        if function in ("as_posix", "resolve") and receiver is not None:
+            return self.text(receiver)
+        if function in WRAPPERS:
+            inner = call.args or [keyword.value for keyword in call.keywords if keyword.arg in ("text", "param_file")]
+            return self.text(inner[0]) if inner else None
+        return None
+
+    def package_folder(self, call: ast.Call) -> PackagePath | None:
+        package = self.package_argument(call)
+        return None if package is None else PackagePath(package[0], "", package[1])
+
+    def callee(self, node) -> str:
+        """The last name of what is called, import aliases resolved."""
+        if node.__class__ is ast.Attribute:
+            return node.attr
+        if node.__class__ is not ast.Name:
+            return ""
+        imported = self.imported(node.id)
+        return imported[0][0].rpartition(".")[2] if imported else node.id
+
+    def package_argument(self, node: ast.Call) -> tuple[str, bool] | None:
+        """The package a call names, and whether that rests on a launch argument's default."""
+        argument = node.args[0] if node.args else None
+        for keyword in node.keywords:
+            if keyword.arg in ("package", "package_name"):
+                argument = keyword.value
+        if argument is None:
+            return None
+        return self.package_name(argument)
+
+    def package_name(self, argument) -> tuple[str, bool] | None:
+        value = self.text(argument)
+        if isinstance(value, str) and PACKAGE_NAME.fullmatch(value):
+            return value, False
+        if isinstance(argument, ast.Call) and self.callee(argument.func) == "LaunchConfiguration" and argument.args:
+            name = self.text(argument.args[0])
+            default = self.launch_defaults.get(name) if isinstance(name, str) else None
+            if default and PACKAGE_NAME.fullmatch(default):
+                return default, True
+        return None
+
+
+Values.evaluators = node_methods(Values, "value_")
+
+
+def _flat(value: Any) -> Iterator[Any]:
+    """The items of a list, of those in it too; what is none as the only one."""
+    for item in value if isinstance(value, list) else (value,):
+        yield from _flat(item) if isinstance(item, list) else (item,)
