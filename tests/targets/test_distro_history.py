@@ -5,8 +5,8 @@ import json
 import sqlite3
 
 import pytest
+from rosimpact.databuild.distro_history import Behind, Graph, History, Life, Sync, behind, kind_of_step, lags
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
-from rosimpact.impact.targets.distro.history import Behind, Graph, History, Life, Sync, behind, kind_of_step, lags
 from rosimpact.impact.targets.snapshot import FACT_SCHEMA, SCHEMA
 
 

@@ -1,4 +1,6 @@
-"""The life of a distro: what stood in it on every day, what each sync changed, who depends on whom, what lags behind.
+"""The life of a distro, for the study of updates (notebooks/03_updates.ipynb).
+
+What stood in it on every day, what each sync changed, who depends on whom, what lags behind.
 
 Versions are upstream ones (`1.2.3` of `1.2.3-4`): a package built again from the same source has not changed.
 Availability follows syncs as in `distro.py`: before a distro's first known sync the commit's day stands.
@@ -15,11 +17,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import snapshot as snapshots
-from ..snapshot import Snapshot
-from ..version import parts
-from .distro import TargetError, condition_holds, version_key
-from .known import Known, day_of, end_of_day, known_distros
+from ..impact.targets import snapshot as snapshots
+from ..impact.targets.distro.distro import TargetError, condition_holds, version_key
+from ..impact.targets.distro.known import Known, day_of, end_of_day, known_distros
+from ..impact.targets.snapshot import Snapshot
+from ..impact.targets.version import parts
 
 ABSENT = -1
 """Stands in a table of versions where a package is not released."""
