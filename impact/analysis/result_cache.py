@@ -180,7 +180,7 @@ def _packed(rule: str, diagnostic: Diagnostic | Hit) -> _Stored:
         diagnostic.evidence,
         kind,
         dict(data),
-        tuple(doubt.name for doubt in doubts),
+        tuple(doubt.name for doubt in doubts if isinstance(doubt, Doubt)),
     )
 
 

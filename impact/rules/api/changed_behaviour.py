@@ -1,4 +1,4 @@
-"""changed-behaviour: a call that is written rightly does something else on a target.
+"""changed-behaviour: a call compiles everywhere and behaves differently on a target.
 
 What it does
     Reports the first use in each package, in C++, Python or a file of parameters, of what, as the reviewed table of
@@ -32,12 +32,17 @@ from ...targets.behaviour import Behaviour, all_behaviour
 from ...targets.distro.distro import DistroTarget
 from ...targets.distro.known import known_distros
 from ...targets.evidence import Evidence
-from ..rule import Hit, rule
-from .build_api import of_another_distro
+from ..rule import Diagnostic, rule
+from ..text import Text
+from .diagnosis import is_of_another_distro
 
 
-@rule(scope="targets", severity="note")
-def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Hit]]:
+@rule(
+    scope="targets",
+    severity="note",
+    texts=Text("`{subject}` behaves differently since {since}: {clause}", "[[{advice}]]"),
+)
+def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Diagnostic]]:
     if not views:
         return
     table = all_behaviour()
@@ -46,10 +51,10 @@ def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Hit]]:
     before = _before(views[0]) if len(views) == 1 else None
     fresh: dict[str, bool] = {}
     for package in workspace:
-        told: set[tuple[str, str]] = set()
+        seen: set[tuple[str, str]] = set()
         for use in package.digest.uses:
             row = table.get(use.text)
-            if row is None or use.role not in ("build", "run") or (row.clause, row.package) in told:
+            if row is None or use.role not in ("build", "run") or (row.clause, row.package) in seen:
                 continue
             if row.package in workspace.packages or (row.pattern.calls and row.pattern.word in own):
                 continue
@@ -62,22 +67,15 @@ def changed_behaviour(views: Sequence[View]) -> Iterator[tuple[View, Hit]]:
             with_it = [view for view in asked if view in holding]
             if not with_it or (len(with_it) == len(asked) and not fresh[row.label]):
                 continue
-            told.add((row.clause, row.package))
+            seen.add((row.clause, row.package))
+            shown = use.shown or use.text
+            data = {"since": f"{row.package} {row.since}" if row.since[0].isdigit() else row.since}
+            data |= {"clause": row.clause, "advice": row.help}
+            evidence = Evidence(
+                row.package, "changed", row.label, first=row.since, library=row.library, source=row.source
+            )
             for view in with_it:
-                since = f"{row.package} {row.since}" if row.since[0].isdigit() else row.since
-                yield (
-                    view,
-                    Hit(
-                        use.at,
-                        use.shown or use.text,
-                        f"`{use.shown or use.text}` does otherwise since {since}: {row.clause}",
-                        row.help,
-                        package.name,
-                        evidence=Evidence(
-                            row.package, "changed", row.label, first=row.since, library=row.library, source=row.source
-                        ),
-                    ),
-                )
+                yield view, Diagnostic(use.at, shown, package.name, data, evidence=evidence)
 
 
 def _counts(view: View, package: Package, use: NameUse, row: Behaviour) -> bool:
@@ -88,7 +86,7 @@ def _counts(view: View, package: Package, use: NameUse, row: Behaviour) -> bool:
         return False
     if row.holds(view.target) is None or not view.active(use.conditions):
         return False
-    if use.language == "yaml" and of_another_distro(view, use.at.path, package.digest.files):
+    if use.language == "yaml" and is_of_another_distro(view, use.at.path, package.digest.files):
         return False
     return view.concerned(package, row.change, use.at.path)
 

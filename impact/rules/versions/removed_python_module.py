@@ -30,10 +30,19 @@ from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for
 from ...targets.target import Target
 from ..rule import rule
 from ..severity import Doubt
+from ..text import Text
 from .python_files import Refused, report_refused
 
 
-@rule(scope="target", severity="error", group="python-version")
+@rule(
+    scope="target",
+    severity="error",
+    group="python-version",
+    texts=Text(
+        "the standard library of Python {version} does not have `{subject}`[[ ({horizon})]]",
+        "use its successor, with an except branch if both versions must work",
+    ),
+)
 def removed_python_module(view: View):
     def find(package: Package, target: Target) -> Iterator[Refused]:
         for item in package.digest.imports:
@@ -41,8 +50,6 @@ def removed_python_module(view: View):
                 continue
             if ever_stdlib(item.module) and not stdlib(item.module, target.python, 3):
                 doubts = (Doubt.LATE,) if item.lazy or stood_in_for(item.module) else ()
-                message = f"the standard library of Python 3.{target.python} does not have `{item.module}`"
-                advice = "use its successor, with an except branch if both versions must work"
-                yield Refused(item, item.module, message, advice, doubts, item.conditions)
+                yield Refused(item, item.module, doubts=doubts, conditions=item.conditions)
 
     yield from report_refused(view, find)
