@@ -30,6 +30,7 @@ class Doubt(enum.Enum):
     GUARDED = "a test in the code itself stands around it, which most likely tells the versions apart", "note"
     UNCOMPILED = "nothing in the package compiles it on its own", "note"
     EXAMPLE = "it is an example, or documentation", "note"
+    DISPENSABLE = "builds and programs go on without it, at least where a condition does not hold", "note"
     # Of the evidence
     INCOMPLETE = "what decides is not known completely: a type, a version, the contents of a package", "warning"
     AMBIGUOUS = "something else of the same name may be meant", "warning"

@@ -18,7 +18,7 @@ Use instead
     install(DIRECTORY include/ DESTINATION include FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 
 Not reported
-    Headers that the build makes; includes under a condition; packages of which it cannot be told what they install.
+    Headers that the build makes; includes under a condition; packages of which it cannot be seen what they install.
 """
 
 import posixpath
@@ -27,12 +27,21 @@ import re
 from ...model.cmake.installed import installed_headers
 from ...model.package import IncludeUse, role_of_folder
 from ...model.view import View
-from ..rule import Hit, rule
+from ..rule import Diagnostic, rule
+from ..severity import Doubt
+from ..text import Text
 
 _DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
 
 
-@rule(severity="warning")
+@rule(
+    scope="target",
+    severity="warning",
+    texts=Text(
+        "`{header}` is installed and includes `{subject}`, which is not installed",
+        "install `{file}`, or include it from sources alone",
+    ),
+)
 def uninstalled_header(view: View):
     for package in view:
         if not package.build.files or not package.digest.public_headers:
@@ -41,27 +50,22 @@ def uninstalled_header(view: View):
         if not installed.known:
             continue
         made = set(package.build.made)
-        told = set()
+        seen = set()
         written = dict(package.digest.written_inner)
         for path, inner in package.digest.inner:
             place = installed.headers.get(path)
             if place is None or role_of_folder(path[len(package.path) :].lstrip("/")):
                 continue
-            lost = [to for to in inner if to not in installed.headers and to not in told and not to.endswith(".in")]
+            lost = [to for to in inner if to not in installed.headers and to not in seen and not to.endswith(".in")]
             for to in lost if lost else ():
                 include = _include_of(view, written.get(path, ()), to)
                 if include is None or to in made or _answered(installed.headers, place, include.path):
                     continue
-                told.add(to)
+                seen.add(to)
                 dependants = package.name in view.workspace.includers
-                yield Hit(
-                    include.at,
-                    include.path,
-                    f"`{posixpath.basename(path)}` is installed and includes `{include.path}`, which is not",
-                    f"install `{to[len(package.path) :].lstrip('/')}`, or include it from sources alone",
-                    package.name,
-                    severity="note" if _DETAIL.search(path) and not dependants else "warning",
-                )
+                data = {"header": posixpath.basename(path), "file": to[len(package.path) :].lstrip("/")}
+                doubts = (Doubt.UNCOMPILED,) if _DETAIL.search(path) and not dependants else ()
+                yield Diagnostic(include.at, include.path, package.name, data, doubts=doubts)
 
 
 def _include_of(view: View, includes: tuple[IncludeUse, ...], to: str) -> IncludeUse | None:
