@@ -5,7 +5,6 @@ What the files themselves say is read in cpp/uses.py and members_python.py.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -181,8 +180,3 @@ def section_of(told: tuple[Interface, str], words: list[str]) -> str | None:
             return None
         section = part
     return section
-
-
-def any_of(words: Iterable[str]) -> str:
-    """A regular expression that matches any of the words, the longest that does."""
-    return "|".join(sorted(map(re.escape, words), key=len, reverse=True))

@@ -18,7 +18,7 @@ from ..config import Config
 from ..facts.condition import Condition
 from ..facts.interface import Interface
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
-from ..targets.changes import DISTROS
+from ..targets.changes import DISTROS, Row
 from ..targets.evidence import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, apt_of
@@ -601,7 +601,7 @@ class View:
         newest = self.newest
         return newest.distro if newest is not None else ""
 
-    def concerned(self, package: Package, change: Change, path: str) -> bool:
+    def concerned(self, package: Package, change: Change | Row, path: str) -> bool:
         """True when a file can mean the changed package by a name: the package declares or includes something of it,
         and the workspace does not hold it in a version of its own."""
         head = change.package

@@ -23,7 +23,6 @@ from .surface.offers import Offer, Offered, Offers
 from .surface.surface import BuildSurface
 from .symbol import Availability, Horizon, State, Symbol
 from .target import Change, Target
-from .uses import uses_in_force
 
 # Parts of a build by kind: what of a surface can be unknown as a whole, and the names that one version has.
 _BUILT: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {
@@ -93,7 +92,7 @@ def coming_changes(target: Target, ahead: Horizon) -> tuple[Change, ...]:
         return version_of(package, library, target) != version_of(package, library, ahead.target)
 
     here = {(c.kind, c.package, c.old) for c in target.changes() if c.state == "removed"}
-    found = (*changes_in_force(ahead.target, asked=moves), *uses_in_force(ahead.target, moves))
+    found = changes_in_force(ahead.target, asked=moves)
     return tuple(c for c in found if c.state == "removed" and (c.kind, c.package, c.old) not in here)
 
 

@@ -4,12 +4,13 @@ from types import SimpleNamespace
 
 import pytest
 from rosimpact.databuild.jobs import Packing
+from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.surface_cpp import extract as header
 from rosimpact.impact.facts.surface_python import extract as module
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_cpp import availability_of_use
-from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import (
     BuildSurface,
     Header,

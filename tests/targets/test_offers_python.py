@@ -4,12 +4,13 @@ from types import SimpleNamespace
 
 import pytest
 from rosimpact.databuild.jobs import Packing
+from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.python_objects import Given, PythonUse
 from rosimpact.impact.facts.surface_python import extract
 from rosimpact.impact.targets.surface.compare import State
 from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.surface.offers_python import PythonOffers, read_parameters, refused, unlike
-from rosimpact.impact.targets.surface.store import Surfaces, write
+from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, Module, PythonSurface, Surface
 
 

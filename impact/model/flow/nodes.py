@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from ...facts.flow import Expr
-from .calls import Use
 from .code import Cls, Code, Fn, Source, made_in, tail
 from .endpoints import Sites
 from .types import parsed
@@ -218,8 +217,3 @@ def _loaded_as(cls: Cls, code: Code, kinds_of) -> str:
     if "node" in kinds_of(cls):
         return "component"
     return "plugin"
-
-
-def node_uses(functions: set[int], uses: Iterable[Use]) -> list[Use]:
-    """The uses that name a node, among the functions reached."""
-    return [use for use in uses if use.row.does == "node" and id(use.fn) in functions]

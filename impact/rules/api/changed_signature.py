@@ -37,10 +37,10 @@ from ...model.package import NameUse
 from ...model.view import View
 from ...model.workspace import Package
 from ...targets.availability import of_row
+from ...targets.changes import function_of, standards_of
 from ...targets.providers.library import default_standard, standard_year
 from ...targets.symbol import Horizon, Symbol
 from ...targets.target import Change
-from ...targets.uses import function_of, standards_of
 from ...targets.version import at_least
 from ..rule import Diagnostic, rule
 from ..severity import Doubt, doubts_of_place

@@ -11,11 +11,11 @@ from ...model.package import CppApiUse, PythonApiUse
 from ...model.python.api import packages_of
 from ...model.view import View
 from ...model.workspace import Package
+from ...targets.changes import function_of
 from ...targets.surface.offers import Offers
 from ...targets.surface.offers_cpp import availability_of_use
 from ...targets.surface.offers_python import PythonOffers
 from ...targets.symbol import Availability
-from ...targets.uses import function_of
 from ..severity import Doubt, doubts_of_place
 
 

@@ -16,13 +16,14 @@ from ..upcoming import Upcoming, rate_upcoming
 
 
 class Refused(NamedTuple):
-    """What is not accepted. kind, needs: of the rule's text. doubts: beside those of its place. conditions: of the
-    file, under which it stands."""
+    """What is not accepted. kind, needs, replacement: of the rule's text. doubts: beside those of its place.
+    conditions: of the file, under which it stands."""
 
     use: SyntaxUse | ImportUse
     subject: str
     kind: str = ""
     needs: int = 0
+    replacement: str = ""
     doubts: tuple[Doubt, ...] = ()
     conditions: tuple[Condition, ...] = ()
 
@@ -41,7 +42,7 @@ def report_refused(view: View, find: Callable[[Package, Target], Iterable[Refuse
         for refused in find(package, target):
             use = refused.use
             doubts = (*doubts_of_place(view, use.role), *refused.doubts, use.role != "test" or Doubt.TEST)
-            data = {"version": f"3.{target.python}", "needs": f"3.{refused.needs}"}
+            data = {"version": f"3.{target.python}", "needs": f"3.{refused.needs}", "replacement": refused.replacement}
             data["horizon"] = ahead.name if ahead is not None else ""
             one = Diagnostic(use.at, refused.subject, package.name, data, refused.kind, doubts)
             if ahead is None:

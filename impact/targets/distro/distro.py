@@ -564,20 +564,6 @@ class DistroTarget(Target):
             self._all_keys = found
         return self._all_keys
 
-    def declared_ok(self, name: str) -> str:
-        """How a name in a manifest stands here.
-
-        `released` (a package of this target), `key` (rosdep resolves it here), `known-elsewhere` (a package or key of
-        another distro, day or platform), `unknown` (never seen in public).
-        """
-        if name in self.released_names():
-            return "released"
-        if self.resolve(name) is not None:
-            return "key"
-        if self.ever_released(name) or self.known_key(name):
-            return "known-elsewhere"
-        return "unknown"
-
     # Platform libraries
 
     def _libraries(self) -> dict[str, Library]:
@@ -621,29 +607,10 @@ class DistroTarget(Target):
         """True for ROS packages whose version was given for this machine, and is not the distro's."""
         return package in self._overrides
 
-    def library_source(self, name: str) -> str:
-        """Where a platform library's version is from, in words; empty when the version is not known."""
-        cell = self._libraries().get(library_name(name))
-        if cell is None:
-            return ""
-        row = self._data.row("SELECT text FROM source_note WHERE id = ?", (cell.source,))
-        return row[0] if row else cell.source
-
     def library_names(self) -> frozenset[str]:
         """Platform libraries whose version is known here."""
         own = {name for name, value in self._own_libraries.items() if value and name in self._all_libraries()}
         return frozenset(self._libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
-
-    def library_since(self, name: str) -> tuple[str, str] | None:
-        """(platform, version) of the oldest platform of the same system that has this library in the same version."""
-        wanted, version = library_name(name), self.library(name)
-        if version is None:
-            return None
-        order = _platform_order()
-        system = split_platform(self.platform)[0]
-        rows = self._data.rows("SELECT platform FROM library WHERE name = ? AND version = ?", (wanted, version))
-        same = sorted((p for (p,) in rows if p.startswith(system + " ")), key=lambda p: order.get(p, len(order)))
-        return (same[0], version) if same else (self.platform, version)
 
     # Known upstream changes
 
@@ -665,9 +632,8 @@ class DistroTarget(Target):
     def changes(self) -> tuple[Change, ...]:
         if self._changes is None:
             from ..changes import changes_in_force
-            from ..uses import uses_in_force
 
-            found: tuple[Change, ...] = (*changes_in_force(self), *uses_in_force(self))
+            found: tuple[Change, ...] = changes_in_force(self)
             self._changes = found
             return found
         return self._changes
