@@ -866,6 +866,11 @@ class View:
         return known
 
     @cached_property
+    def brought_to_workspace(self) -> frozenset[str]:
+        """Everything on a machine that has just what all packages of the workspace declare."""
+        return frozenset().union(*(self.closure(package) for package in self.everyone()))
+
+    @cached_property
     def apt(self) -> Apt:
         """What comes along with the platform's packages."""
         return apt_of(self.target.platform)
@@ -880,14 +885,18 @@ class View:
         in it is sure to be missing, unless the package is blind()."""
         known = self._widest.get(package.name)
         if known is None:
-            found, waiting = set(self.closure(package)), list(self.closure(package))
-            while waiting:
-                for other in self._possibly_with(waiting.pop()):
-                    if other not in found:
-                        found.add(other)
-                        waiting.append(other)
-            known = self._widest[package.name] = frozenset(found)
+            known = self._widest[package.name] = self.widest_spread(self.closure(package))
         return known
+
+    def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
+        """spread(), and all that packages whose manifests this distro does not tell bring in any other."""
+        found, waiting = set(names), list(names)
+        while waiting:
+            for other in self._possibly_with(waiting.pop()):
+                if other not in found:
+                    found.add(other)
+                    waiting.append(other)
+        return frozenset(found)
 
     @cached_property
     def roles(self) -> Roles:
@@ -952,17 +961,21 @@ class View:
         this name: packages that are called as those of interfaces are bring others of them, and what they run with."""
         unknown = self._unknown.get(package.name)
         if unknown is None:
-            target = self.target
-            unknown = self._unknown[package.name] = tuple(
-                n for n in self.closure(package)
-                if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
-                and not target.known_key(n)  # a key that the platform lacks brings nothing
-                and target.dependencies(n) is None and target.similar_dependencies(n) is None
-                and not target.other_generation(n)  # nor does a package that cannot be had
-            )  # fmt: skip
+            unknown = self._unknown[package.name] = self.list_unknown(self.closure(package))
         if unknown and name and not _INTERFACES.search(name) and name not in self.spread(_WITH_INTERFACES):
             return any(not _INTERFACES.search(n) for n in unknown)
         return bool(unknown)
+
+    def list_unknown(self, names: frozenset[str]) -> tuple[str, ...]:
+        """Those of the names whose dependencies are not known anywhere."""
+        target = self.target
+        return tuple(
+            n for n in names
+            if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
+            and not target.known_key(n)  # a key that the platform lacks brings nothing
+            and target.dependencies(n) is None and target.similar_dependencies(n) is None
+            and not target.other_generation(n)  # nor does a package that cannot be had
+        )  # fmt: skip
 
     def sealed(self, package: Package) -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
@@ -1257,7 +1270,8 @@ class View:
         if providers and providers[0].name and found.name not in self.apt.base:
             certain = all(self.certain((c,)) or packages_asked(c.text) for c in found.conditions)
             role = "test" if for_tests(found.conditions) else "build"
-            yield Need("program", found.name, providers, found.at, role, certain)
+            required = self.certain(found.conditions)
+            yield Need("program", found.name, providers, found.at, role, certain, required)
 
 
 def _field_lost(package: str, history: History, spans: Iterable[tuple[int, int]], state: int) -> Evidence:

@@ -30,6 +30,7 @@ class Doubt(enum.Enum):
     GUARDED = "a test in the code itself stands around it, which most likely tells the versions apart", "note"
     UNCOMPILED = "nothing in the package compiles it on its own", "note"
     EXAMPLE = "it is an example, or documentation", "note"
+    DISPENSABLE = "builds and programs go on without it, at least where a condition does not hold", "note"
     # Of the evidence
     INCOMPLETE = "what decides is not known completely: a type, a version, the contents of a package", "warning"
     AMBIGUOUS = "something else of the same name may be meant", "warning"
@@ -37,6 +38,7 @@ class Doubt(enum.Enum):
     # Of what follows
     UPCOMING = "it holds only after an update of the distro, or on a newer one", "warning"
     FAR = "it holds only some long-term distros later", "note"
+    LUCKY = "it is there as long as something else that is declared happens to bring it", "warning"
     DISTURBS = "builds and programs go on, and others that use it may not", "warning"
     CHANGED = "it is built and runs, and does something else", "note"
     DEPRECATED = "it is there, and produces a warning", "note"
@@ -78,6 +80,11 @@ def doubts_of_place(view: View, role: str, conditions: Iterable[Condition] = ())
         own = tuple(condition for condition in conditions if condition.language in _IN_CODE)
         doubts.append(Doubt.CONDITIONAL if view.certain(own) else Doubt.GUARDED)
     return tuple(doubts)
+
+
+AT_RUN_TIME = 2
+"""How many things that a package runs with and does not declare are worth a warning: launch files and modules are used
+one by one, and whoever declares the first ones looks for the others."""
 
 
 class Repeats:
