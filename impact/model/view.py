@@ -1187,7 +1187,9 @@ class View:
                 if testing or role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
                 else "build",
                 certain,
-                found.required or (found.how == "catkin" and not found.quiet),
+                found.required
+                or (found.how == "catkin" and not found.quiet)
+                or (found.name == "PkgConfig" and self._requires_modules(package)),
             )
             yield from self._parts_asked(found, testing, certain)
         for include in digest.includes:
@@ -1230,6 +1232,11 @@ class View:
                 not reference.conditional,
                 not reference.conditional,
             )
+
+    def _requires_modules(self, package: Package) -> bool:
+        """Whether pkg_check_modules(REQUIRED) is called in any case, which stops where find_package(PkgConfig) has not
+        found the program."""
+        return any(f.how == "pkg_check_modules" and f.required and self.certain(f.conditions) for f in package.build.found)
 
     def _modules_asked(self, found: Found) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
