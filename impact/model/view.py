@@ -881,15 +881,16 @@ class View:
         return self.spread(["ros_workspace"]) if self.target.ros == 2 else frozenset()
 
     def may_bring(self, package: Package) -> frozenset[str]:
-        """closure(), and all that packages whose manifests this distro does not tell bring in any other: what is not
-        in it is sure to be missing, unless the package is blind()."""
+        """closure(), and all that packages whose manifests are not known for their version here bring in the next one
+        that is, or in any distro: what is not in it is sure to be missing, unless the package is blind()."""
         known = self._widest.get(package.name)
         if known is None:
             known = self._widest[package.name] = self.widest_spread(self.closure(package))
         return known
 
     def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
-        """spread(), and all that packages whose manifests this distro does not tell bring in any other."""
+        """spread(), and all that packages whose manifests are not known for their version here bring in the next one
+        that is, or in any distro."""
         found, waiting = set(names), list(names)
         while waiting:
             for other in self._possibly_with(waiting.pop()):
@@ -904,10 +905,14 @@ class View:
         return Roles(self)
 
     def _possibly_with(self, name: str) -> Iterable[str]:
-        if name in self.workspace.packages or self.target.dependencies(name) is not None:
+        if name in self.workspace.packages:
             return self._installed_with(name)
         if name not in self._possible:
-            self._possible[name] = self.target.possible_dependencies(name)
+            self._possible[name] = (
+                self.target.possible_dependencies(name)
+                if self.target.dependencies(name) is None
+                else self.target.later_dependencies(name).union(self._installed_with(name))
+            )
         return self._possible[name]
 
     def _built_with(self, package: Package) -> list[str]:
