@@ -642,7 +642,7 @@ class View:
             return None
         close = nearest(rest.rpartition(".")[0], Names(s for s in history.by_header if ("/" in s) == ("/" in rest)))
         ending = rest.rpartition(".")[2]
-        return Misnamed(f"no version of {head} has an interface for `{path}`",
+        return Misnamed(f"no released version of {head} has an interface for `{path}`",
                         f"did you mean `{head}/{close}.{ending}`?" if close else "", never=True)  # fmt: skip
 
     def _moved_interface(self, head: str, rest: str, stem: str, once: bool) -> Misnamed | None:

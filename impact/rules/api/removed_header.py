@@ -13,12 +13,12 @@ Why it breaks
 
 Severity
     error for compiled code that is not guarded, tests of ROS 2 included, and for what goes with the next sync (which
-    the build farm builds against already); warning for tests of ROS 1, under CMake conditions that are not known, for
-    the first include of each header that goes with a later update or on the newest distro's platform, for headers of C
-    where nothing else brings the C++ types, for installed headers that include what is not installed, and once in a
-    package for a path through the folder of a version that is there, since another machine may have it elsewhere; note
-    for its other includes, for examples, for installed headers that the package does not compile itself, and under
-    other tests of the code itself.
+    the build farm builds against already), and for an installed header that includes what nobody has, so that nobody
+    can compile it; warning for tests of ROS 1, under CMake conditions that are not known, for the first include of each
+    header that goes with a later update or on the newest distro's platform, for headers of C where nothing else brings
+    the C++ types, for installed headers that include what is not installed, and once in a package for a path through
+    the folder of a version that is there, since another machine may have it elsewhere; note for its other includes, for
+    examples, for installed headers that the package does not compile itself, and under other tests of the code itself.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -151,7 +151,7 @@ def removed_header(view: View):
                     f"nothing has `{path}`, and `{package.name}` has `{own}`",
                     f"include `{own}`",
                     package.name,
-                    severity="warning" if include.role != "aside" and (include.targets or include.public) else "note",
+                    severity=severity(*_doubts_of_misspelt(view, package, include)),
                 )
                 continue
             wrong = view.misnamed_interface(path) or view.lost_interface(path)
@@ -166,8 +166,8 @@ def removed_header(view: View):
                 continue
             if wrong is None and path not in gone and path not in early and path not in view.coming:
                 quiet.add(path)
-            if wrong and wrong.never and bad == "note" and include.public and view.certain(include.conditions):
-                bad = "warning"  # nobody can compile the installed header
+            if wrong and wrong.never and include.public and include.role != "aside":
+                bad = severity(view.certain(include.conditions) or Doubt.GUARDED)  # nobody can compile what is installed
             if wrong and not dual:
                 yield Hit(
                     include.at,
@@ -202,6 +202,16 @@ def _misspelt(view: View, package: Package, path: str) -> str | None:
         if one_edit(path, own) and re.findall(r"\d", path) == re.findall(r"\d", own):
             return own
     return None
+
+
+def _doubts_of_misspelt(view: View, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
+    """Nobody can compile an installed header with it, nor the package itself where it does."""
+    if include.role == "aside" or not (include.targets or include.public):
+        return (Doubt.UNCOMPILED,)
+    name = include.path.rpartition("/")[2]
+    if package.build.unresolved or any(path.rstrip("/").endswith(name) for path in package.build.made):
+        return (Doubt.INCOMPLETE,)  # the build may make it
+    return () if view.certain(include.conditions) else (Doubt.GUARDED,)
 
 
 # Letters of a file's name: shorter ones are alike by chance.

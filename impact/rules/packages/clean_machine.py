@@ -51,6 +51,14 @@ def doubts_of_chance(view: View, package: Package, need: Need) -> tuple[Doubt, .
     return (Doubt.INCOMPLETE,) if _is_grouped(package) or view.list_unknown(installed) else ()
 
 
+def doubts_of_compiled(view: View, package: Package, need: Need) -> tuple[Doubt, ...]:
+    """Of an include that a target compiles, where the compiler is sure to stop at it."""
+    doubts = () if view.built(need.role) else (Doubt.TEST,)
+    if any(view.certain(target.conditions) for target in package.build.targets if target.name in need.targets):
+        return doubts
+    return (*doubts, Doubt.CONDITIONAL)
+
+
 def is_chance(view: View, package: Package, need: Need) -> bool:
     """True where what a need rests on is installed for another role than the need's, or is handed on by nobody."""
     if need.role == "aside" or (need.how == "include" and not need.targets):
@@ -86,11 +94,7 @@ def _of_include(view: View, package: Package, need: Need, name: str) -> tuple[Do
         if not passed_on or circular(view, package, name):
             return (Doubt.UNCOMPILED,)
         return () if _stops_another(view, package, need) else (Doubt.DISTURBS,)
-    doubts = _unknown(view, package, need, name)
-    if not view.built(need.role):
-        doubts = (*doubts, Doubt.TEST)
-    if not any(view.certain(target.conditions) for target in package.build.targets if target.name in need.targets):
-        doubts = (*doubts, Doubt.CONDITIONAL)
+    doubts = (*_unknown(view, package, need, name), *doubts_of_compiled(view, package, need))
     # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
     if not first.sure and first.kind == "system":
         return (*doubts, Doubt.AMBIGUOUS)

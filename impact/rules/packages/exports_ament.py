@@ -10,6 +10,8 @@ from ...model.view import View
 from ...model.workspace import Package
 from ...targets.version import at_least
 from ..rule import Hit
+from ..severity import Doubt, severity
+from .dependants import links_without
 from .find_targets import ONE_FOLDER
 
 _HOWS = frozenset(
@@ -93,8 +95,18 @@ def _passed_on(view: View, package: Package, reach: set[str], told: set[str]) ->
                 f"`{target.name}` passes `{item}` on and `{known.name}` is not exported",
                 f"add `{known.name}` to ament_export_dependencies",
                 package.name,
-                severity="note" if link.how == "ament" and _loaded_alone(view, package) else "warning",
+                severity=severity(*_doubts_of_passed_on(view, package, link, known.name)),
             )
+
+
+def _doubts_of_passed_on(view: View, package: Package, link, name: str) -> tuple[Doubt, ...]:
+    if link.how == "ament" and _loaded_alone(view, package):
+        return (Doubt.UNCOMPILED,)
+    other = view.workspace.packages.get(name)
+    by_target = link.how == "link" or (
+        other is not None and any(e.how == "ament_export_targets" for e in other.build.exports)
+    )
+    return () if by_target and links_without(view, package, name) else (Doubt.DISTURBS,)
 
 
 def _loaded_alone(view: View, package: Package) -> bool:
@@ -164,6 +176,7 @@ def _never_built(view: View, package: Package, exports) -> Iterator[Hit]:
                 f"the exported library `{item}` is not installed, so find_package({package.name}) stops",
                 "add it to install(TARGETS ...)",
                 package.name,
+                severity="error",
             )
         elif item not in names and (not view.cmake(item) or item == package.name):
             yield Hit(

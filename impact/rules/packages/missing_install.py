@@ -11,11 +11,11 @@ Why it breaks
 
 Severity
     error for an install rule of something that does not exist, or with a variable that nothing sets; and where the
-    installed package is sure to fail: a program that an installed launch file starts in any case, a script among
-    programs, or a node in Python, that cannot be executed, the description of plugins whose library is installed, all
-    of a package that only holds data which launch files open, headers in a folder where another package of the
-    workspace, which compiles them, does not look. warning otherwise: in a workspace that is never installed all of this
-    works.
+    installed package is sure to fail: a library that catkin_package() exports beside installed ones, a program that an
+    installed launch file starts in any case, a script among programs, or a node in Python, that cannot be executed, the
+    description of plugins whose library is installed, all of a package that only holds data which launch files open,
+    headers in a folder where another package of the workspace, which compiles them, does not look. warning otherwise:
+    in a workspace that is never installed all of this works.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
@@ -294,7 +294,10 @@ def _targets(view: View, package, installs, referred):
         ):
             why = "other executables are"
         if why:
-            stops = target.kind == "executable" and installed and _is_started(view, package, name)
+            # Who finds a package that exports a library stops where the library is neither a target nor installed.
+            stops = installed and (why == "it is exported" or (
+                target.kind == "executable" and _is_started(view, package, name)
+            ))  # fmt: skip
             yield Hit(
                 target.at,
                 name,
