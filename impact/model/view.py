@@ -1241,7 +1241,8 @@ class View:
     def _requires_modules(self, package: Package) -> bool:
         """Whether pkg_check_modules(REQUIRED) is called in any case, which stops where find_package(PkgConfig) has not
         found the program."""
-        return any(f.how == "pkg_check_modules" and f.required and self.certain(f.conditions) for f in package.build.found)
+        asked = (f for f in package.build.found if f.how == "pkg_check_modules" and f.required)
+        return any(self.certain(f.conditions) for f in asked)
 
     def _modules_asked(self, found: Found) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""

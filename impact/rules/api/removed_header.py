@@ -167,7 +167,8 @@ def removed_header(view: View):
             if wrong is None and path not in gone and path not in early and path not in view.coming:
                 quiet.add(path)
             if wrong and wrong.never and include.public and include.role != "aside":
-                bad = severity(view.certain(include.conditions) or Doubt.GUARDED)  # nobody can compile what is installed
+                # Nobody can compile what is installed.
+                bad = severity(view.certain(include.conditions) or Doubt.GUARDED)
             if wrong and not dual:
                 yield Hit(
                     include.at,

@@ -10,7 +10,7 @@ Why it breaks
     it worked as long as another package happened to export the library.
 
 Severity
-    warning.
+    error for programs that include headers of gtest or gmock; warning.
 
 Example
     add_executable(loader test/loader.cpp)        # includes gtest/gtest.h
@@ -29,6 +29,7 @@ from ...model.cmake.links import package_of
 from ...model.view import View
 from ...model.workspace import Package
 from ..rule import Hit, rule
+from ..severity import Doubt, severity
 from .unlinked import BRING_NOTHING, Exported, linked_items, linked_packages, plain, stem_of
 
 # How the include paths of compiled libraries begin, and a word of every name that each is linked by, without
@@ -81,7 +82,15 @@ def unlinked_library(view: View):
                     f"`{name}` compiles `{include.path}` and is linked to nothing that brings the library",
                     f"link the library to `{name}` with target_link_libraries()",
                     package.name,
+                    severity=severity(*_doubts(target, word)),
                 )
+
+
+def _doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:
+    """A program that includes a header for tests defines tests, which the library runs; of other headers it may use
+    what needs no library."""
+    sure = target.kind == "executable" and word in ("gtest", "gmock")
+    return () if sure else (Doubt.INCOMPLETE,)
 
 
 def _brought(
