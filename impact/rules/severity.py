@@ -82,9 +82,11 @@ def doubts_of_place(view: View, role: str, conditions: Iterable[Condition] = ())
     return tuple(doubts)
 
 
-AT_RUN_TIME = 2
+AT_RUN_TIME = 1
 """How many things that a package runs with and does not declare are worth a warning: launch files and modules are used
-one by one, and whoever declares the first ones looks for the others."""
+one by one, and whoever declares the first looks for the others."""
+EXPORTED = 3
+"""How many things that a package does not hand on to dependants are worth a warning."""
 
 
 class Repeats:
@@ -97,10 +99,10 @@ class Repeats:
         self._count: dict[Hashable, int] = {}
 
     def severity(self, kind: Hashable, *doubts: Doubt | bool | None) -> str:
-        """As severity() has it for the first findings of a kind, and a note for the rest. What is a note anyway does
-        not count, so that findings are to be given in the order in which they are to be read."""
+        """As severity() has it, but for warnings after the first ones of a kind, which become notes. Findings are to be
+        given in the order in which they are to be read."""
         plain = severity(*doubts)
-        if plain == "note":
+        if plain != "warning":
             return plain
         self._count[kind] = self._count.get(kind, 0) + 1
         return plain if self._count[kind] <= self._most else severity(Doubt.REPEATED)

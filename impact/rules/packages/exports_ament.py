@@ -10,7 +10,7 @@ from ...model.view import View
 from ...model.workspace import Package
 from ...targets.version import at_least
 from ..rule import Hit
-from ..severity import Doubt, severity
+from ..severity import EXPORTED, Doubt, Repeats
 from .dependants import links_without
 from .find_targets import ONE_FOLDER
 
@@ -33,8 +33,9 @@ def lacking(view: View, package: Package) -> Iterator[Hit]:
     named |= {f.name for f in package.build.handed_on}
     reach = found_with(view, named)
     told: set[str] = set()
-    yield from _passed_on(view, package, {name.lower() for name in reach}, told)
-    yield from _included(view, package, reach, exports, told)
+    repeats = Repeats(EXPORTED)
+    yield from _passed_on(view, package, {name.lower() for name in reach}, told, repeats)
+    yield from _included(view, package, reach, exports, told, repeats)
     yield from _never_built(view, package, exports)
     yield from _without_components(view, package, exports)
     yield from _off_path(view, package, exports, reach)
@@ -72,7 +73,9 @@ def _nothing(view: View, package: Package, exports) -> Iterator[Hit]:
 _BY_TARGET = "0.9.0"
 
 
-def _passed_on(view: View, package: Package, reach: set[str], told: set[str]) -> Iterator[Hit]:
+def _passed_on(
+    view: View, package: Package, reach: set[str], told: set[str], repeats: Repeats
+) -> Iterator[Hit]:
     """Packages that an exported target passes on, and that dependants are not told to find: CMake stops at a target of
     theirs."""
     found = {f.name.lower(): f for f in package.build.found}
@@ -95,18 +98,25 @@ def _passed_on(view: View, package: Package, reach: set[str], told: set[str]) ->
                 f"`{target.name}` passes `{item}` on and `{known.name}` is not exported",
                 f"add `{known.name}` to ament_export_dependencies",
                 package.name,
-                severity=severity(*_doubts_of_passed_on(view, package, link, known.name)),
+                severity=repeats.severity("passed on", *_doubts_of_passed_on(view, package, target, link, known.name)),
             )
 
 
-def _doubts_of_passed_on(view: View, package: Package, link, name: str) -> tuple[Doubt, ...]:
+def _doubts_of_passed_on(view: View, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
     if link.how == "ament" and _loaded_alone(view, package):
         return (Doubt.UNCOMPILED,)
+    if _with_client_library(view, name):
+        return (Doubt.DISPENSABLE,)
     other = view.workspace.packages.get(name)
     by_target = link.how == "link" or (
         other is not None and any(e.how == "ament_export_targets" for e in other.build.exports)
     )
-    return () if by_target and links_without(view, package, name) else (Doubt.DISTURBS,)
+    return () if by_target and links_without(view, package, target, name) else (Doubt.DISTURBS,)
+
+
+def _with_client_library(view: View, name: str) -> bool:
+    """True for what comes along with the client library: dependants that build a node find it all the same."""
+    return name in view.spread(("rclcpp",))
 
 
 def _loaded_alone(view: View, package: Package) -> bool:
@@ -126,7 +136,9 @@ def _named_by(link) -> str:
     return package_of(link.item) if "::" in link.item or "$" in link.item else ""
 
 
-def _included(view: View, package: Package, reach: frozenset[str], exports, told: set[str]) -> Iterator[Hit]:
+def _included(
+    view: View, package: Package, reach: frozenset[str], exports, told: set[str], repeats: Repeats
+) -> Iterator[Hit]:
     """Packages that installed headers include."""
     hows = {e.how for e in exports}
     links = "ament_export_libraries" in hows or "ament_export_targets" in hows
@@ -142,13 +154,14 @@ def _included(view: View, package: Package, reach: frozenset[str], exports, told
         # What the distro does not bring lies in a folder of its own there too.
         overlaid = name in view.workspace.packages or view.target.version(name) is None
         apart = view.target.distro not in ONE_FOLDER or overlaid
+        missed = apart and needed and not _with_client_library(view, name)
         yield Hit(
             need.at,
             name,
             f"an installed header includes `{need.subject}` and `{name}` is not exported",
             f"add `{name}` to ament_export_dependencies",
             package.name,
-            severity="warning" if apart and needed else "note",
+            severity=repeats.severity("included", Doubt.DISTURBS, missed or Doubt.DISPENSABLE),
         )
 
 

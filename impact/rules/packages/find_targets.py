@@ -118,7 +118,7 @@ def check_client_links(view: View, package):
 
 def check_own_name(view: View, package):
     """ament_target_dependencies() with the package itself, which nothing has found when it is built."""
-    if not stops_at_names(view) or any(f.name == package.name for f in package.build.found) or any("$" in f.name for f in package.build.found):
+    if not stops_at_names(view) or any(f.name == package.name or "$" in f.name for f in package.build.found):
         return
     for target in package.build.targets:
         for link in target.links:
@@ -135,8 +135,8 @@ def check_own_name(view: View, package):
 
 
 def stops_at_names(view: View) -> bool:
-    """Whether ament_target_dependencies() stops at a name that was not found. Before 0.8.0 it meant to, and its test was
-    never true. Source: commit 99d316a of ament_cmake."""
+    """Whether ament_target_dependencies() stops at a name that was not found. Before 0.8.0 it meant to, and its test
+    was never true. Source: commit 99d316a of ament_cmake."""
     return at_least(view.target.version("ament_cmake_target_dependencies") or "0.8.0", "0.8.0")
 
 

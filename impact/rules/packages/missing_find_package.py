@@ -35,7 +35,14 @@ from ...targets.version import at_least
 from ..rule import Hit, rule
 from ..severity import Doubt, severity
 from .find_catkin import check_components, check_find_modules, check_include_directories
-from .find_targets import ONE_FOLDER, check_client_links, check_given_packages, check_own_name, list_given_names, stops_at_names
+from .find_targets import (
+    ONE_FOLDER,
+    check_client_links,
+    check_given_packages,
+    check_own_name,
+    list_given_names,
+    stops_at_names,
+)
 from .find_variables import check_prefixes, check_unset_libraries, fold
 from .unlinked import unlinked
 

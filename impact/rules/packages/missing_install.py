@@ -287,7 +287,7 @@ def _targets(view: View, package, installs, referred):
             why = "it is exported"
         elif target.kind != "executable" and (target.name in plugins or name in plugins):
             why = "a plugin description names it"
-        elif target.kind == "library" and target.name in linked and not _static(target):
+        elif target.kind == "library" and target.name in linked and not target.static:
             why = "an installed target links it"
         elif target.kind == "executable" and any(
             t.name in installed for t in package.build.targets if t.kind == "executable"
@@ -319,10 +319,6 @@ def _is_started(view: View, package, name: str) -> bool:
             if ".launch" in use.at.path and _covered(other, installs, use.at.path):
                 return True
     return False
-
-
-def _static(target) -> bool:
-    return "STATIC" in target.definitions or "OBJECT" in target.definitions
 
 
 def _aside(package, target) -> bool:

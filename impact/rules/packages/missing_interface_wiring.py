@@ -26,6 +26,7 @@ Not reported
 import re
 
 from ...facts.interface import PRIMITIVES
+from ...model.cmake.build import for_tests
 from ...model.view import View
 from ..fix_actions import Declare, Insert
 from ..rule import Hit, rule
@@ -110,7 +111,7 @@ def _at(interface, field):
 
 def _rosidl_manifest(view: View, package):
     for generated in package.build.generated:
-        if generated.how != "rosidl" or not view.certain(generated.conditions):
+        if generated.how != "rosidl" or not view.certain(generated.conditions) or for_tests(generated.conditions):
             continue
         groups = {d.name for d in package.manifest.dependencies if d.kind == "member_of_group"}
         if "rosidl_interface_packages" not in groups:
