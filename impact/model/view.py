@@ -653,6 +653,11 @@ class View:
         return known
 
     @cached_property
+    def brought_to_workspace(self) -> frozenset[str]:
+        """Everything on a machine that has just what all packages of the workspace declare."""
+        return frozenset().union(*(self.closure(package) for package in self.everyone()))
+
+    @cached_property
     def apt(self) -> Apt:
         """What comes along with the platform's packages."""
         return apt_of(self.target.platform)
@@ -663,18 +668,23 @@ class View:
         return self.spread(["ros_workspace"]) if self.target.ros == 2 else frozenset()
 
     def may_bring(self, package: Package) -> frozenset[str]:
-        """closure(), and all that packages whose manifests this distro does not tell bring in any other: what is not
-        in it is sure to be missing, unless the package is blind()."""
+        """closure(), and all that packages whose manifests are not known for their version here bring in the next one
+        that is, or in any distro: what is not in it is sure to be missing, unless the package is blind()."""
         known = self._widest.get(package.name)
         if known is None:
-            found, waiting = set(self.closure(package)), list(self.closure(package))
-            while waiting:
-                for other in self._possibly_with(waiting.pop()):
-                    if other not in found:
-                        found.add(other)
-                        waiting.append(other)
-            known = self._widest[package.name] = frozenset(found)
+            known = self._widest[package.name] = self.widest_spread(self.closure(package))
         return known
+
+    def widest_spread(self, names: Iterable[str]) -> frozenset[str]:
+        """spread(), and all that packages whose manifests are not known for their version here bring in the next one
+        that is, or in any distro."""
+        found, waiting = set(names), list(names)
+        while waiting:
+            for other in self._possibly_with(waiting.pop()):
+                if other not in found:
+                    found.add(other)
+                    waiting.append(other)
+        return frozenset(found)
 
     @cached_property
     def roles(self) -> Roles:
@@ -682,10 +692,14 @@ class View:
         return Roles(self)
 
     def _possibly_with(self, name: str) -> Iterable[str]:
-        if name in self.workspace.packages or self.target.dependencies(name) is not None:
+        if name in self.workspace.packages:
             return self._installed_with(name)
         if name not in self._possible:
-            self._possible[name] = self.target.possible_dependencies(name)
+            self._possible[name] = (
+                self.target.possible_dependencies(name)
+                if self.target.dependencies(name) is None
+                else self.target.later_dependencies(name).union(self._installed_with(name))
+            )
         return self._possible[name]
 
     def _built_with(self, package: Package) -> list[str]:
@@ -739,17 +753,21 @@ class View:
         this name: packages that are called as those of interfaces are bring others of them, and what they run with."""
         unknown = self._unknown.get(package.name)
         if unknown is None:
-            target = self.target
-            unknown = self._unknown[package.name] = tuple(
-                n for n in self.closure(package)
-                if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
-                and not target.known_key(n)  # a key that the platform lacks brings nothing
-                and target.dependencies(n) is None and target.similar_dependencies(n) is None
-                and not target.other_generation(n)  # nor does a package that cannot be had
-            )  # fmt: skip
+            unknown = self._unknown[package.name] = self.list_unknown(self.closure(package))
         if unknown and name and not _INTERFACES.search(name) and name not in self.spread(_WITH_INTERFACES):
             return any(not _INTERFACES.search(n) for n in unknown)
         return bool(unknown)
+
+    def list_unknown(self, names: frozenset[str]) -> tuple[str, ...]:
+        """Those of the names whose dependencies are not known anywhere."""
+        target = self.target
+        return tuple(
+            n for n in names
+            if n not in self.workspace.packages and n not in self.preinstalled and target.resolve(n) is None
+            and not target.known_key(n)  # a key that the platform lacks brings nothing
+            and target.dependencies(n) is None and target.similar_dependencies(n) is None
+            and not target.other_generation(n)  # nor does a package that cannot be had
+        )  # fmt: skip
 
     def sealed(self, package: Package) -> list[str]:
         """Declared keys of libraries whose contents and own dependencies are not known, since no archive of the
@@ -961,7 +979,9 @@ class View:
                 if testing or role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
                 else "build",
                 certain,
-                found.required or (found.how == "catkin" and not found.quiet),
+                found.required
+                or (found.how == "catkin" and not found.quiet)
+                or (found.name == "PkgConfig" and self._requires_modules(package)),
             )
             yield from self._parts_asked(found, testing, certain)
         for include in digest.includes:
@@ -1005,6 +1025,12 @@ class View:
                 not reference.conditional,
             )
 
+    def _requires_modules(self, package: Package) -> bool:
+        """Whether pkg_check_modules(REQUIRED) is called in any case, which stops where find_package(PkgConfig) has not
+        found the program."""
+        asked = (f for f in package.build.found if f.how == "pkg_check_modules" and f.required)
+        return any(self.certain(f.conditions) for f in asked)
+
     def _modules_asked(self, found: Found) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
         name = re.split(r"[<>=]", found.name)[0]
@@ -1044,7 +1070,8 @@ class View:
         if providers and providers[0].name and found.name not in self.apt.base:
             certain = all(self.certain((c,)) or packages_asked(c.text) for c in found.conditions)
             role = "test" if for_tests(found.conditions) else "build"
-            yield Need("program", found.name, providers, found.at, role, certain)
+            required = self.certain(found.conditions)
+            yield Need("program", found.name, providers, found.at, role, certain, required)
 
 
 @lru_cache(maxsize=10000)

@@ -252,6 +252,14 @@ def test_what_a_package_may_bring_in_any_distro():
     assert "message_generation" not in target("noetic").possible_dependencies("std_msgs")
 
 
+def test_what_the_next_known_manifest_brings_where_this_version_has_none():
+    rolling = target("rolling@2022-12-12")
+    assert "diagnostic_updater" not in {d.name for d in rolling.dependencies("controller_manager")}
+    assert "diagnostic_updater" in rolling.later_dependencies("controller_manager")
+    assert target("rolling").later_dependencies("controller_manager") == frozenset()  # its own is known
+    assert rolling.later_dependencies("no_such_package") == rolling.later_dependencies("eigen") == frozenset()
+
+
 def test_packages_of_the_other_ros():
     assert target("rolling").other_generation("eigen_conversions")
     assert not target("noetic").other_generation("eigen_conversions")

@@ -21,7 +21,7 @@ TEXTS = {
     "case": Text("no header `{subject}` is generated: generated headers are in lower case", "include `{replacement}`"),
     "moved": Text("`{upstream}` generates no `{subject}`", "include `{replacement}`"),
     "never generated": Text(
-        "no version of {upstream} has an interface for `{subject}`", "[[did you mean `{replacement}`?]]"
+        "no released version of {upstream} has an interface for `{subject}`", "[[did you mean `{replacement}`?]]"
     ),
     "c": Text("`{subject}` is the generated header for C; C++ code needs the `.hpp`", "include `{replacement}`"),
 }

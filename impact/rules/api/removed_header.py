@@ -13,12 +13,12 @@ Why it breaks
 
 Severity
     error for compiled code that is not guarded, tests of ROS 2 included, and for what goes with the next sync (which
-    the build farm builds against already); warning for tests of ROS 1, under CMake conditions that are not known, for
-    the first include of each header that goes with a later update or on the newest distro's platform, for headers of C
-    where nothing else brings the C++ types, for installed headers that include what is not installed, and once in a
-    package for a path through the folder of a version that is there, since another machine may have it elsewhere; note
-    for its other includes, for examples, for installed headers that the package does not compile itself, and under
-    other tests of the code itself.
+    the build farm builds against already), and for an installed header that includes what nobody has, so that nobody
+    can compile it; warning for tests of ROS 1, under CMake conditions that are not known, for the first include of each
+    header that goes with a later update or on the newest distro's platform, for headers of C where nothing else brings
+    the C++ types, for installed headers that include what is not installed, and once in a package for a path through
+    the folder of a version that is there, since another machine may have it elsewhere; note for its other includes, for
+    examples, for installed headers that the package does not compile itself, and under other tests of the code itself.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -44,7 +44,7 @@ from ...targets.providers.library import versioned_folder
 from ...targets.symbol import Symbol
 from ...targets.target import Change
 from ..rule import Diagnostic, rule
-from ..severity import Doubt, Repeats, doubts_of_place, severity
+from ..severity import Doubt, Repeats, doubts_of_place
 from ..text import Text
 from ..upcoming import Upcoming, rate_upcoming
 from .diagnosis import availability_texts, diagnose
@@ -152,9 +152,8 @@ def _of_release(
             yield diagnose(found, at, path, package.name, doubts, kind=found.form)
         return  # else something that comes along has contents that are not known
     if (own := _find_misspelt(view, package, path)) is not None:
-        used = include.role != "aside" and (include.targets or include.public)
-        data = {"replacement": own}
-        yield Diagnostic(at, path, package.name, data, "misspelt", (Doubt.AMBIGUOUS if used else Doubt.UNCOMPILED,))
+        doubts = _doubts_of_misspelt(view, package, include)
+        yield Diagnostic(at, path, package.name, {"replacement": own}, "misspelt", doubts)
         return
     yield from _of_interface(view, package, include, rows, doubts, order)
 
@@ -183,10 +182,20 @@ def _of_interface(
     if fault.found is not None:
         yield diagnose(fault.found, at, path, package.name, doubts)
         return
-    bad = ""
-    if fault.kind == "never generated" and include.public and view.certain(include.conditions):
-        bad = "warning" if severity(*doubts) == "note" else ""  # nobody can compile the installed header
-    yield Diagnostic(at, path, package.name, fault.data, fault.kind, doubts, bad)
+    if fault.kind == "never generated" and include.public and include.role != "aside":
+        # Nobody can compile what is installed.
+        doubts = () if view.certain(include.conditions) else (Doubt.GUARDED,)
+    yield Diagnostic(at, path, package.name, fault.data, fault.kind, doubts)
+
+
+def _doubts_of_misspelt(view: View, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
+    """Nobody can compile an installed header with it, nor the package itself where it does."""
+    if include.role == "aside" or not (include.targets or include.public):
+        return (Doubt.UNCOMPILED,)
+    name = include.path.rpartition("/")[2]
+    if package.build.unresolved or any(path.rstrip("/").endswith(name) for path in package.build.made):
+        return (Doubt.INCOMPLETE,)  # the build may make it
+    return () if view.certain(include.conditions) else (Doubt.GUARDED,)
 
 
 # Letters of a file's name: shorter ones are alike by chance.

@@ -10,8 +10,9 @@ from ...model.view import View
 from ...model.workspace import Package
 from ...targets.version import at_least
 from ..rule import Diagnostic
-from ..severity import Doubt
+from ..severity import EXPORTED, Doubt, Repeats
 from ..text import Text
+from .dependants import links_without
 from .find_targets import ONE_FOLDER
 
 _HOWS = frozenset(
@@ -63,8 +64,9 @@ def list_unexported(view: View, package: Package) -> Iterator[Diagnostic]:
     named |= {f.name for f in package.build.handed_on}
     reach = found_with(view, named)
     seen: set[str] = set()
-    yield from _passed_on(view, package, {name.lower() for name in reach}, seen)
-    yield from _included(view, package, reach, exports, seen)
+    repeats = Repeats(EXPORTED)
+    yield from _passed_on(view, package, {name.lower() for name in reach}, seen, repeats)
+    yield from _included(view, package, reach, exports, seen, repeats)
     yield from _never_built(view, package, exports)
     yield from _without_components(view, package, exports)
     yield from _off_path(view, package, exports, reach)
@@ -97,7 +99,9 @@ def _list_nothing(view: View, package: Package, exports) -> Iterator[Diagnostic]
 _BY_TARGET = "0.9.0"
 
 
-def _passed_on(view: View, package: Package, reach: set[str], seen: set[str]) -> Iterator[Diagnostic]:
+def _passed_on(
+    view: View, package: Package, reach: set[str], seen: set[str], repeats: Repeats
+) -> Iterator[Diagnostic]:
     """Packages that an exported target passes on, and that dependants are not seen to find: CMake stops at a target of
     theirs."""
     found = {f.name.lower(): f for f in package.build.found}
@@ -114,9 +118,26 @@ def _passed_on(view: View, package: Package, reach: set[str], seen: set[str]) ->
                 continue
             seen.add(known.name)
             item = link.item if link.how == "link" else known.name
-            alone = link.how == "ament" and _is_only_loaded(view, package)
-            doubts = (Doubt.DISPENSABLE,) if alone else (Doubt.DISTURBS,)
-            yield Diagnostic(link.at, known.name, package.name, {"target": target.name, "item": item}, "link", doubts)
+            bad = repeats.severity("passed on", *_doubts_of_passed_on(view, package, target, link, known.name))
+            data = {"target": target.name, "item": item}
+            yield Diagnostic(link.at, known.name, package.name, data, "link", severity=bad)
+
+
+def _doubts_of_passed_on(view: View, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
+    if link.how == "ament" and _is_only_loaded(view, package):
+        return (Doubt.UNCOMPILED,)
+    if _comes_with_client_library(view, name):
+        return (Doubt.DISPENSABLE,)
+    other = view.workspace.packages.get(name)
+    by_target = link.how == "link" or (
+        other is not None and any(e.how == "ament_export_targets" for e in other.build.exports)
+    )
+    return () if by_target and links_without(view, package, target, name) else (Doubt.DISTURBS,)
+
+
+def _comes_with_client_library(view: View, name: str) -> bool:
+    """True for what comes along with the client library: dependants that build a node find it all the same."""
+    return name in view.spread(("rclcpp",))
 
 
 def _is_only_loaded(view: View, package: Package) -> bool:
@@ -136,7 +157,9 @@ def _named_by(link) -> str:
     return package_of(link.item) if "::" in link.item or "$" in link.item else ""
 
 
-def _included(view: View, package: Package, reach: frozenset[str], exports, seen: set[str]) -> Iterator[Diagnostic]:
+def _included(
+    view: View, package: Package, reach: frozenset[str], exports, seen: set[str], repeats: Repeats
+) -> Iterator[Diagnostic]:
     """Packages that installed headers include."""
     hows = {e.how for e in exports}
     links = "ament_export_libraries" in hows or "ament_export_targets" in hows
@@ -152,8 +175,9 @@ def _included(view: View, package: Package, reach: frozenset[str], exports, seen
         # What the distro does not bring lies in a folder of its own there too.
         overlaid = name in view.workspace.packages or view.target.version(name) is None
         apart = view.target.distro not in ONE_FOLDER or overlaid
-        doubts = (Doubt.DISTURBS,) if apart and needed else (Doubt.DISPENSABLE,)
-        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", doubts)
+        missed = apart and needed and not _comes_with_client_library(view, name)
+        bad = repeats.severity("included", Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
+        yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include", severity=bad)
 
 
 def _never_built(view: View, package: Package, exports) -> Iterator[Diagnostic]:
@@ -174,7 +198,7 @@ def _never_built(view: View, package: Package, exports) -> Iterator[Diagnostic]:
             continue
         target = targets.get(item)
         if target is not None and target.kind == "library" and item not in installed and not target.alias_of:
-            yield Diagnostic(export.at, item, package.name, kind="not installed", doubts=(Doubt.DISTURBS,))
+            yield Diagnostic(export.at, item, package.name, kind="not installed")
         elif item not in names and (not view.cmake(item) or item == package.name):
             yield Diagnostic(export.at, item, package.name, kind="not built", doubts=(Doubt.DISTURBS,))
 

@@ -70,11 +70,11 @@ def _list_doubled(view: View, package, installs) -> Iterator[Diagnostic]:
 
 
 def _is_lost(view: View, package, install, folder: str) -> bool:
-    """True when another package of the workspace compiles a header of the folder, which no other rule of the package
-    installs and whose way into the include path the package does not tell."""
+    """True when another package of the workspace compiles a header of the folder, or the package exports the place
+    where its headers should lie, and no other rule installs them there."""
     if not view.certain(install.conditions) or package.build.unresolved:
         return False
-    exported = [e.item for e in package.build.exports if "include" in e.how]
+    exported = [e.item for e in package.build.exports if "include" in e.how and view.certain(e.conditions)]
     if any("$" in item or item.rstrip("/").endswith("include/include") for item in exported):
         return False
     others = [i for i in package.build.installs if i is not install and i.kind in ("directory", "files")]
@@ -82,6 +82,8 @@ def _is_lost(view: View, package, install, folder: str) -> bool:
     headers = {h[len(start) :] for h in package.digest.headers if h.startswith(start)}
     if any(is_installed(package, others, start + h) for h in headers):
         return False
+    if headers and any(item.rstrip("/") in ("include", install.destination.rstrip("/")) for item in exported):
+        return True
     return any(
         include.path in headers and include.role == "build" and include.targets and view.certain(include.conditions)
         for other in view.everyone()

@@ -8,9 +8,10 @@ Why it breaks
     Everything works from the build tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
 
 Severity
-    error where the installed package is sure to fail: a program that an installed launch file starts in any case, the
-    description of plugins whose library is installed, all of a package that only holds data which launch files open.
-    warning otherwise: in a workspace that is never installed all of this works.
+    error where the installed package is sure to fail: a library that catkin_package() exports beside installed ones, a
+    program that an installed launch file starts in any case, the description of plugins whose library is installed, all
+    of a package that only holds data which launch files open. warning otherwise: in a workspace that is never installed
+    all of this works.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
@@ -122,14 +123,16 @@ def _list_targets(view: View, package, installs, used) -> Iterator[Diagnostic]:
             why = "exported"
         elif target.kind != "executable" and (target.name in plugins or name in plugins):
             why = "plugin"
-        elif target.kind == "library" and target.name in linked and not _is_static(target):
+        elif target.kind == "library" and target.name in linked and not target.static:
             why = "linked"
         elif target.kind == "executable" and any(
             t.name in installed for t in package.build.targets if t.kind == "executable"
         ):
             why = "program"
         if why:
-            stops = target.kind == "executable" and installed and _is_started(view, package, name)
+            # Who finds a package that exports a library stops where the library is neither a target nor installed.
+            started = target.kind == "executable" and _is_started(view, package, name)
+            stops = installed and (why == "exported" or started)
             doubts = () if stops and not package.build.unresolved else (Doubt.DISTURBS,)
             yield Diagnostic(target.at, name, package.name, kind=why, doubts=doubts)
 
@@ -145,10 +148,6 @@ def _is_started(view: View, package, name: str) -> bool:
             if ".launch" in use.at.path and is_installed(other, installs, use.at.path):
                 return True
     return False
-
-
-def _is_static(target) -> bool:
-    return "STATIC" in target.definitions or "OBJECT" in target.definitions
 
 
 def _is_aside(package, target) -> bool:

@@ -26,7 +26,7 @@ Not reported
 import re
 
 from ...facts.interface import PRIMITIVES
-from ...model.cmake.build import At
+from ...model.cmake.build import At, for_tests
 from ...model.view import View
 from ..fix_actions import Declare, Insert
 from ..rule import Diagnostic, rule
@@ -116,7 +116,7 @@ def _at(interface, field):
 
 def _rosidl_manifest(view: View, package):
     for generated in package.build.generated:
-        if generated.how != "rosidl" or not view.certain(generated.conditions):
+        if generated.how != "rosidl" or not view.certain(generated.conditions) or for_tests(generated.conditions):
             continue
         groups = {d.name for d in package.manifest.dependencies if d.kind == "member_of_group"}
         if "rosidl_interface_packages" not in groups:

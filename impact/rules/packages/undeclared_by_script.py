@@ -22,6 +22,7 @@ Not reported
 
 from ...model.view import View
 from ..rule import Diagnostic, rule
+from ..severity import Doubt
 from ..text import Text
 
 _TOOLS = frozenset({"ament_cmake", "ament_cmake_auto", "ament_cmake_ros", "catkin"})
@@ -30,10 +31,11 @@ _HANDED_ON = frozenset({"build_export", "buildtool_export", "exec"})
 
 @rule(
     scope="target",
-    severity="warning",
+    severity="error",
+    doubts=(Doubt.DISTURBS,),
     texts=Text(
         "a script that dependants run finds `{found}`, but package.xml does not export `{subject}`",
-        "add `<build_export_depend>{subject}</build_export_depend>` to {manifest}",
+        help="add `<build_export_depend>{subject}</build_export_depend>` to {manifest}",
     ),
 )
 def undeclared_by_script(view: View):
@@ -43,11 +45,11 @@ def undeclared_by_script(view: View):
         declared = view.declared(package)
         # Who finds the package builds with the same tool.
         closure = view.spread(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
-        seen = {package.name}
+        reported = {package.name}
         for found in package.build.handed_on:
-            if not found.required or not view.certain(found.conditions) or found.name in seen or "$" in found.name:
+            if not found.required or not view.certain(found.conditions) or found.name in reported or "$" in found.name:
                 continue
-            seen.add(found.name)
+            reported.add(found.name)
             providers = view.cmake(found.name)
             ros = bool(providers) and all(p.kind == "ros" for p in providers)
             if not ros or view.answered(providers, closure) or view.blind(package):

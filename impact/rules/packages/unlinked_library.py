@@ -10,7 +10,7 @@ Why it breaks
     it worked as long as another package happened to export the library.
 
 Severity
-    warning.
+    error for programs that include headers of gtest or gmock; warning.
 
 Example
     add_executable(loader test/loader.cpp)        # includes gtest/gtest.h
@@ -24,10 +24,12 @@ Not reported
     and shared ones that are not installed: the programs of the package bring what they lack.
 """
 
+from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import package_of
 from ...model.view import View
 from ...model.workspace import Package
 from ..rule import Diagnostic, rule
+from ..severity import Doubt
 from ..text import Text
 from .catkin_links import BRING_NOTHING, Exported, linked_packages, list_linked, plain, stem_of
 from .library_links import COMPILED
@@ -37,7 +39,7 @@ _COMPILED = (*COMPILED, ("gtest/gtest.h", "gtest"), ("gmock/gmock.h", "gmock"))
 
 @rule(
     scope="target",
-    severity="warning",
+    severity="error",
     texts=Text(
         "`{target}` compiles `{header}` but links nothing that brings the library",
         "link the library to `{target}` with target_link_libraries()",
@@ -71,7 +73,15 @@ def unlinked_library(view: View):
                     continue
                 seen.add((word, name))
                 subject = include.path.partition("/")[0].removesuffix(".h")
-                yield Diagnostic(include.at, subject, package.name, {"target": name, "header": include.path})
+                data = {"target": name, "header": include.path}
+                yield Diagnostic(include.at, subject, package.name, data, doubts=_doubts(target, word))
+
+
+def _doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:
+    """A program that includes a header for tests defines tests, which the library runs; of other headers it may use
+    what needs no library."""
+    sure = target.kind == "executable" and word in ("gtest", "gmock")
+    return () if sure else (Doubt.INCOMPLETE,)
 
 
 def _is_brought(view: View, package: Package, target: str, header: str, word: str) -> bool:

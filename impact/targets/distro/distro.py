@@ -355,6 +355,24 @@ class DistroTarget(Target):
         chosen = next((row for row in reversed(keyed) if row[0] <= wanted), keyed[0])
         return chosen[1] or "", chosen[2] or ""
 
+    def later_dependencies(self, package: str) -> frozenset[str]:
+        """Names that come along with the next later version whose manifest is known here, where this very version's is
+        not known: what dependencies() may lack."""
+        version = self.version(package)
+        if version is None:
+            return frozenset()
+        known = {
+            tuple(version_key(of)): entries or ""
+            for of, entries in self._data.rows(
+                "SELECT m.version, d.entries FROM manifest m JOIN package p ON p.id = m.package"
+                " LEFT JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND m.distro = ?",
+                (package, self._id),
+            )
+        }
+        wanted = tuple(version_key(version))
+        later = min((key for key in known if key > wanted), default=None)
+        return frozenset() if wanted in known or later is None else _come_along(known[later])
+
     def _read_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         manifest = self._manifest(package)
         if manifest is None:
@@ -412,8 +430,7 @@ class DistroTarget(Target):
             " o.id = m.distro JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND o.ros = ?",
             (package, self.ros),
         )
-        lines = (line.split("\t") for (entries,) in rows for line in entries.splitlines())
-        return frozenset(fields[0] for fields in lines if not _COMES_ALONG.isdisjoint(fields[1]))
+        return frozenset().union(*(_come_along(entries) for (entries,) in rows))
 
     def known_build_types(self, package: str) -> frozenset[str]:
         """Every build type that a package is known to have had in a distro of this generation."""
@@ -651,6 +668,12 @@ _COMPARE = {
 
 
 _TURNED = re.compile(r"""["']?(\w+)["']?\s*(==|!=|<=|>=|<|>)\s*\$(\w+)\Z""")
+
+
+def _come_along(entries: str) -> frozenset[str]:
+    """The names among the stored entries of a manifest that are installed along with it, conditions aside."""
+    fields = (line.split("\t") for line in entries.splitlines())
+    return frozenset(name for name, letters, *_ in fields if not _COMES_ALONG.isdisjoint(letters))
 
 
 def _compared(term: str, variables: Mapping[str, str]) -> bool | None:
