@@ -19,8 +19,10 @@ KINDS = {
     "build": frozenset({"build", "buildtool", "build_export", "buildtool_export"}),
     "run": frozenset({"exec", "build_export", "buildtool_export"}),
     "test": frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test"}),
+    "tests alone": frozenset({"test"}),
 }
-"""Kinds of dependencies that install what a role needs. Tests are built and run where everything is."""
+"""Kinds of dependencies that install what a role needs. Tests are built and run where everything is; what is for them
+alone is asked for by itself."""
 
 _BUILD_DEPENDS = frozenset({"build", "buildtool", "test"})
 _TOOLS = frozenset({"buildtool_export"})
@@ -40,7 +42,7 @@ class Roles:
         self._on_farm: dict[str, frozenset[str]] = {}
 
     def at_hand(self, package: Package, role: str) -> frozenset[str]:
-        """Everything that is installed along with what a package declares for a role (`build`, `run`, `test`)."""
+        """Everything that is installed along with what a package declares for a role: a key of KINDS."""
         known = self._at_hand.get((package.name, role))
         if known is None:
             declared = self._view.declared(package)

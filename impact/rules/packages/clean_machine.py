@@ -30,7 +30,7 @@ def doubts_of_missing(view: View, package: Package, need: Need, name: str) -> tu
     if need.role == "aside":
         return (Doubt.EXAMPLE,)
     if need.how in _STARTED or need.how == "import":
-        return _at_run_time(view, need, name)
+        return _at_run_time(view, package, need, name)
     if need.how in ASKED and need.how != "program" and not (need.required and any(p.sure for p in need.providers)):
         return (Doubt.DISPENSABLE,)
     if not need.certain:
@@ -59,9 +59,15 @@ def doubts_of_compiled(view: View, package: Package, need: Need) -> tuple[Doubt,
     return (*doubts, Doubt.CONDITIONAL)
 
 
-def is_chance(view: View, package: Package, need: Need) -> bool:
-    """True where what a need rests on is installed for another role than the need's, or is handed on by nobody."""
+def is_chance(view: View, package: Package, need: Need, name: str) -> bool:
+    """True where what a need rests on is installed for another role than the need's, or is handed on by nobody. name:
+    what answers it. Whoever starts launch files has what their command brings, and what is declared for tests brings
+    what tests use."""
     if need.role == "aside" or (need.how == "include" and not need.targets):
+        return False
+    if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
+        return False
+    if need.role == "test" and view.answered(need.providers, view.roles.at_hand(package, "tests alone")):
         return False
     if need.subject == package.build_type:
         return not view.roles.has_build_tool(package, need.subject)
@@ -73,9 +79,12 @@ def is_chance(view: View, package: Package, need: Need) -> bool:
     return not view.answered(need.providers, view.roles.handed_on(package, need.role, need.how != "include"))
 
 
-def _at_run_time(view: View, need: Need, name: str) -> tuple[Doubt, ...]:
-    """Of modules, and of what launch files and scripts start."""
+def _at_run_time(view: View, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+    """Of modules, and of what launch files and scripts start. What depends on the package itself cannot be declared,
+    and who wants both has it."""
     if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
+        return (Doubt.DISPENSABLE,)
+    if circular(view, package, name):
         return (Doubt.DISPENSABLE,)
     # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
     wanted = need.required or (need.how == "launch" and name in view.workspace.packages)

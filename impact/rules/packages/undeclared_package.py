@@ -98,7 +98,7 @@ def _borrowed(view: View, package: Package, borrowed: dict[str, list[Need]]):
     declared = view.declared(package)
     for name, needs in borrowed.items():
         strong = [
-            n for n in needs if n.certain and (n.required or n.how == "program") and is_chance(view, package, n)
+            n for n in needs if n.certain and (n.required or n.how == "program") and is_chance(view, package, n, name)
         ]
         if not strong:
             continue
